@@ -19,16 +19,19 @@ import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 from strainwave.orders.measured import OrdersFound, orders_found
+from strainwave.orders.ripple import Ripple
 
 SHARED = Path(__file__).parents[3] / "shared"
 JOINT = Path(os.environ.get("STRAINWAVE_RIG", SHARED / "independent-rig")) / "measure.py"
 ROBOT = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "cobot-temperature" / "dataset_02052023.csv"
+ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
 ZERO = 2971.3  # of its motor's encoder in degrees
 
 joint_is_here = pytest.mark.skipif(
     not JOINT.is_file() or shutil.which("cc") is None, reason=f"no independent joint: {JOINT} (set STRAINWAVE_RIG), or no cc"
 )
 robot_is_here = pytest.mark.skipif(not ROBOT.is_file(), reason=f"measured data not found: {ROBOT} (set STRAINWAVE_DATA)")
+arms_are_here = pytest.mark.skipif(not ARMS.is_dir(), reason=f"measured data not found: {ARMS} (set STRAINWAVE_DATA)")
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +89,75 @@ def test_a_log_of_one_sample_per_second_is_refused_with_the_reason() -> None:
     read = recognise(ROBOT, FileMapping(joint="3"))
     with pytest.raises(ValueError, match=r"samples per second show orders up to .* 60 per revolution .* record faster"):
         orders_found(read.recording, ROBOT.name, side="output")
+
+
+def ripple_of(path: Path, mapping: FileMapping) -> Ripple:
+    read = recognise(path, mapping)
+    found = orders_found(read.recording, path.name, side="output", other_angles=read.neighbours).ripple
+    assert found is not None
+    return found
+
+
+def of_the_ur10e(joint: int, others: bool) -> FileMapping:
+    """Columns of its files without header: time, six angles, six speeds, six currents."""
+    columns = {"time": "1", "output_angle": str(joint + 1), "current": str(joint + 13)}
+    if others:
+        columns["other_angles"] = ",".join(str(each + 1) for each in range(1, 7) if each != joint)
+    return FileMapping(columns=columns, units={"output_angle": "rad", "current": "A"})
+
+
+@arms_are_here
+@pytest.mark.parametrize("joint", [1, 2, 4, 5])
+def test_a_joint_of_the_ur10e_alone_has_its_ratio(joint: int) -> None:
+    """Its gear of 101 has lines at 202, or at 200, as either spline sees the wave generator."""
+    found = ripple_of(ARMS / "ur10e" / f"ur-20_01_22-joint_{joint}.csv", of_the_ur10e(joint, others=False))
+    line = next(each for each in found.lines if each.kind == "order")
+    print(f"\njoint {joint}: {line.order:.2f} ± {line.order_sigma:.2f}, {found.concluded}")
+    assert 200.0 * (1.0 - 0.005) < line.order < 202.0 * (1.0 + 0.005)
+    assert found.concluded
+    assert set(found.concluded) <= {100, 101}
+
+
+@arms_are_here
+@pytest.mark.parametrize("others", [True, False])
+@pytest.mark.parametrize("name", ["01_17-ptp_10_points", "02_05-20sec_12harm", "02_19_14harm50secLoad"])
+def test_no_joint_of_the_moving_ur10e_gets_a_ratio_of_another(name: str, others: bool) -> None:
+    found = [ripple_of(ARMS / "ur10e" / f"ur-20_{name}.csv", of_the_ur10e(joint, others)) for joint in range(1, 7)]
+    print(f"\n{name}: {[each.concluded for each in found]}")
+    assert all(set(each.concluded) <= {100, 101} for each in found)
+    assert sum(bool(each.concluded) for each in found) >= 4
+    if others:
+        assert any(each.kind == "joint" and abs(each.order - 201.0) < 3.0 for ripple in found for each in ripple.lines)
+
+
+@arms_are_here
+@pytest.mark.parametrize("name", ["joint_{}_trapez.csv", "Trajectory1.csv", "RunTrajectory1.csv"])
+def test_no_joint_of_the_kinova_gets_another_ratio_than_100(name: str) -> None:
+    concluded = {}
+    for joint in range(1, 8):
+        path = ARMS / "kinova-gen3" / name.format(joint)
+        if path.is_file():
+            columns = {"current": f"Cur{joint}"}
+            mapping = FileMapping(columns=columns, constants={"rate": 1000.0}, joint=str(joint), side="output")
+            concluded[joint] = ripple_of(path, mapping).concluded
+    print(f"\n{name}: {concluded}")
+    assert set(concluded.values()) <= {(), (100,), (100, 101)}
+    if name.startswith("joint"):
+        assert concluded[5] == concluded[6] == (100,)
+
+
+@arms_are_here
+@pytest.mark.parametrize("axis", [1, 3])
+def test_two_encoders_of_an_rv_gear_take_the_ratio_given(axis: int) -> None:
+    """Its motor angle is exported in joint units."""
+    ratio = {1: 1798.0 / 7.0, 3: 757.0 / 3.0}[axis]
+    names = {"time": "rec.time_cont", "input_angle": "rec.act_pos_mot_deg_{}", "output_angle": "rec.act_pos_se_deg_{}"}
+    columns = {name: wanted.format(axis) for name, wanted in names.items()}
+    units = {"input_angle": "deg", "output_angle": "deg"}
+    read = recognise(ARMS / "kuka-kr300" / "FF_A.mat", FileMapping(columns=columns, units=units))
+    found = orders_found(read.recording, side="output", ratio=ratio).transmission
+    assert found is not None
+    assert found.ratio.used == ratio
+    assert found.ratio.in_joint_units
+    assert not any("teeth" in each for each in found.remarks)
+    assert any("joint units" in each for each in found.remarks)

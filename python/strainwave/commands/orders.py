@@ -15,18 +15,17 @@ if TYPE_CHECKING:
 
 
 def orders(
-    paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a drive, each by itself.")],
+    paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a drive, each examined separately.")],
     ratio: Annotated[
         float | None,
         typer.Option(
-            parser=number_option, help="Ratio of the gear, if it is known; found, or guessed from the lines, if not given."
+            parser=number_option,
+            help="Ratio of the gear, if it is known, with all its digits; else it is found, if the file determines it.",
         ),
     ] = None,
     column: Columns = None,
     unit: Units = None,
-    side: Annotated[
-        str | None, typer.Option(help="Where an angle was measured whose name does not say it: input or output.")
-    ] = None,
+    side: Annotated[str | None, typer.Option(help="Side of an angle whose name does not contain it: input or output.")] = None,
     rate: Annotated[
         float | None, typer.Option(parser=number_option, help="Samples per second of files without time, in Hz.")
     ] = None,
@@ -39,9 +38,9 @@ def orders(
 ) -> None:
     """Find the orders of a gear: its kinematic error from two encoders, its ripple from torque or current.
 
-    A file with the angles of both shafts tells ratio, kinematic error and lost motion. A file with torque or current and one
-    angle tells the lines that repeat with the angle, and from them the ratio; lines that repeat with time, as mains and
-    resonances, are told apart where the speed varies.
+    The angles of both shafts determine ratio, kinematic error and lost motion. Torque or current and one angle determine the
+    lines that repeat with the angle, and from them the ratio. Lines that repeat with time, as mains and resonances, are
+    separated if the speed varies; lines of other joints that move, if their angles are in the file.
     """
     from rich.console import Console
 
@@ -78,7 +77,7 @@ def orders(
 
 
 def _check_files(paths: Sequence[Path]) -> None:
-    """Refuses the name of a gear set, which other commands take before the files."""
+    """Raise ValueError for the name of a gear set, which other commands take before the files."""
     from strainwave.files.gear_set import catalogue
 
     sets = [str(path) for path in paths if not path.exists() and str(path) in catalogue()]
@@ -104,13 +103,13 @@ def _of_file(
     from strainwave.identification.reading.channels import CHANNELS
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.recognise import recognise
-    from strainwave.messages import listed, pairs
+    from strainwave.messages import pairs
     from strainwave.orders.measured import orders_found
 
     where: Any = side
     known = set(CHANNELS)
     names = known | names_in(path) if unit else known
-    said = FileMapping(
+    mapping = FileMapping(
         columns=pairs("--column", list(column), known),
         units=pairs("--unit", list(unit), names),
         constants={} if rate is None else {"rate": rate},
@@ -118,10 +117,6 @@ def _of_file(
         side=where,
         kind=kind,
     )
-    read = recognise(path, said)
-    found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest)
-    remarks = [*read.remarks, *found.remarks]
-    if read.neighbours:
-        which = f"joints {listed(read.neighbours)} move too"
-        remarks.append(f"{which}: their torque may look like slow lines, as of orders below 60; a record of one joint has none")
-    return replace(found, remarks=tuple(remarks))
+    read = recognise(path, mapping)
+    found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest, other_angles=read.neighbours)
+    return replace(found, remarks=(*read.remarks, *found.remarks))

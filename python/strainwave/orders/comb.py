@@ -1,25 +1,29 @@
-"""The ratio of a gear from the orders of a joint: which comb of whole ratios they stand on."""
+"""The ratio of a gear from the orders of a joint: the comb of whole multiples on which its lines lie."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, sqrt
+from math import exp, inf, log, pi, sqrt
 
 from strainwave.orders.lines import Line
 
-RATIOS = range(20, 401)  # of strain wave gears
-USUAL = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # sizes that makers offer, with either spline fixed
-USUAL_GAIN = 2.0  # logarithm of the odds by which these are preferred (assumed)
-# How often an order of the input is the one that is seen: logarithm of the odds (assumed; order 2 leads in published records,
-# then 1 and 4, as of documents R and A).
-EXPECTED = {2.0: 0.0, 4.0: -1.5, 1.0: -2.0, 6.0: -4.0, 3.0: -4.0, 8.0: -4.5}
-RELATIVE = 0.15  # of the evidence of the strongest line, below which a line is not asked
-WITHIN = 3.0  # standard deviations
-SHIFTED = 0.12  # of the resolution, by which a line moves whose phase changes with the speed, as near a resonance (assumed)
-ACCIDENT = -3.0  # logarithm of the chance that a line lies on a comb by accident (assumed)
-MISSED = -1.0  # of the odds of a ratio for a line that it does not explain (assumed)
-MOST = 5  # candidates that are told
+RATIOS = range(30, 401)  # of strain wave gears
+USUAL_RATIOS = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # that makers offer, with either spline fixed
+USUAL_PREFERENCE = 4.0  # logarithm of the prior odds of these over others (assumed)
+MIN_LINE_ORDER = 2.0 * RATIOS[0]  # per output turn: slower lines of an arm are gravity, inertia and friction of its joints
+WAVE_ORDERS = {2.0: 0.45, 4.0: 0.11, 1.0: 0.09, 3.0: 0.02, 6.0: 0.02, 8.0: 0.01}  # prior share of lines by order (assumed)
+MAX_MOTOR_ORDER = 48  # pole pairs, slots and their multiples
+MOTOR_SHARES = (0.15, 0.05)  # over the order: prior share of the lines of even and odd orders of the motor (assumed)
+OTHER_SPLINE_SHARE = 0.5  # of a wave order, that is seen from the spline that is not fixed (as in records of robots)
+ACCIDENT_SHARE = {"order": 0.35, "either": 0.75}  # prior chance that a line is not of the gear (assumed)
+NO_COMB_PRIOR = 0.05  # prior probability that the lines are those of no gear (assumed)
+LINE_SHIFT = 0.12  # of the resolution [1], by which a phase that changes with the speed moves a line (assumed)
+SPLINE_SPLIT = 2.0  # resolutions, below which lines of both splines are one line between them
+MIN_RELATIVE_EVIDENCE = 0.15  # of the strongest line [1]: weaker ones do not count for the ratio
+MATCH_SIGMA = 3.0  # standard deviations, within which a line lies on a comb
+MAX_CANDIDATES = 5  # that are listed
+MIN_CONCLUSIVE_SHARE = 0.7  # probability of a ratio with its neighbour, from which it is concluded
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,7 @@ class Candidate:
 
     Attributes:
         ratio: its size
-        share: probability among the candidates, under the assumptions that this module states
+        share: probability among all ratios and no comb at all, under the assumptions that this module states
         matched: order of the input of each line that it explains, by order of the joint
     """
 
@@ -37,47 +41,106 @@ class Candidate:
     matched: tuple[tuple[float, float], ...]
 
 
-def candidates(lines: Sequence[Line], resolution: float) -> tuple[Candidate, ...]:
-    """Ratios whose multiples 1, 2, 3, 4, 6, 8 the order lines of a joint are.
+def usable_lines(lines: Sequence[Line]) -> list[Line]:
+    """Return the lines from which a ratio may be found: of this joint, strong, and too fast for the motion of an arm.
 
-    The odds of a ratio grow with each line that lies on its comb, by the chance that it does so by accident, and fall with each
-    that does not.
+    Lines of other joints and of time are left out. So are lines that may be those of time or of another joint, unless a line of
+    this joint alone is among the others.
+    """
+    fast = [each for each in lines if each.kind in ("order", "either") and each.order >= MIN_LINE_ORDER]
+    if not any(each.kind == "order" for each in fast):
+        return []
+    strongest = max(each.evidence for each in fast)
+    return [each for each in fast if each.evidence >= MIN_RELATIVE_EVIDENCE * strongest]
+
+
+def candidates(lines: Sequence[Line], resolution: float, highest: float) -> tuple[Candidate, ...]:
+    """Return the most probable ratios whose multiples the order lines of a joint are.
+
+    The probability of a ratio follows from Bayes' rule. A line is a wave order or an order of the motor with its prior share,
+    or it lies anywhere by accident. That no ratio explains the lines is one hypothesis among them.
 
     Args:
         lines: of a spectrum over the joint angle
         resolution: 1 / revolutions, in which two lines merge [1]
+        highest: order up to which lines were looked for
     """
-    order_lines = [each for each in lines if each.kind != "time"]
-    if not order_lines:
+    usable = usable_lines(lines)
+    if not usable:
         return ()
-    strongest = max(each.evidence for each in order_lines)
-    asked = [each for each in order_lines if each.evidence >= RELATIVE * strongest]
-    scored = [(_score(ratio, asked, resolution), ratio) for ratio in RATIOS]
-    scored = [((odds, matched), ratio) for (odds, matched), ratio in scored if matched]
-    if not scored:
-        return ()
-    best = max(odds for (odds, _), _ in scored)
-    total = sum(exp(odds - best) for (odds, _), _ in scored)
-    ranked = sorted(scored, key=lambda each: -each[0][0])[:MOST]
-    return tuple(Candidate(ratio, exp(odds - best) / total, tuple(matched)) for (odds, matched), ratio in ranked)
+    priors = {ratio: exp(USUAL_PREFERENCE) if ratio in USUAL_RATIOS else 1.0 for ratio in RATIOS}
+    whole = sum(priors.values())
+    range_of_logarithms = log(max(highest, 2.0 * MIN_LINE_ORDER) / MIN_LINE_ORDER)
+    scores = {}
+    for ratio, prior in priors.items():
+        likelihood, matched = _explained(ratio, usable, resolution, range_of_logarithms)
+        scores[ratio] = (log((1.0 - NO_COMB_PRIOR) * prior / whole) + likelihood, matched)
+    best = max(score for score, _ in scores.values())
+    total = sum(exp(score - best) for score, _ in scores.values()) + exp(log(NO_COMB_PRIOR) - best)
+    ranked = sorted(scores, key=lambda ratio: -scores[ratio][0])[:MAX_CANDIDATES]
+    return tuple(Candidate(ratio, exp(scores[ratio][0] - best) / total, scores[ratio][1]) for ratio in ranked)
 
 
-def _score(ratio: int, lines: Sequence[Line], resolution: float) -> tuple[float, list[tuple[float, float]]]:
-    odds = USUAL_GAIN if ratio in USUAL else 0.0
-    matched = []
+def conclusive(found: Sequence[Candidate]) -> tuple[int, ...]:
+    """Return the ratio that the candidates determine, or two neighbours: one gear with either spline fixed; else none.
+
+    >>> conclusive([Candidate(101, 0.6, ()), Candidate(100, 0.3, ()), Candidate(50, 0.05, ())])
+    (100, 101)
+    >>> conclusive([Candidate(44, 0.5, ()), Candidate(22, 0.3, ())])
+    ()
+    """
+    if not found:
+        return ()
+    best = found[0]
+    if best.share >= MIN_CONCLUSIVE_SHARE:
+        return (best.ratio,)
+    for other in found[1:]:
+        if abs(other.ratio - best.ratio) == 1 and best.share + other.share >= MIN_CONCLUSIVE_SHARE:
+            low, high = sorted((best.ratio, other.ratio))
+            return low, high
+    return ()
+
+
+def _explained(
+    ratio: int, lines: Sequence[Line], resolution: float, range_of_logarithms: float
+) -> tuple[float, tuple[tuple[float, float], ...]]:
+    """Return the logarithm of the likelihood of a ratio over that of accident, and the order of each line that it explains."""
+    total, matched = 0.0, []
     for line in lines:
-        sigma = sqrt(line.order_sigma**2 + (SHIFTED * resolution) ** 2)
-        fits = []
-        for order, expected in EXPECTED.items():
-            # with either spline fixed, and as either spline sees the wave generator
-            for seen in (ratio, ratio + 1, ratio - 1):
-                off = (line.order - order * seen) / sigma
-                if abs(off) < WITHIN:
-                    fits.append((expected - 0.5 * off**2 - (0.0 if seen == ratio else 2.0), order))
-        if fits:
-            gain, order = max(fits)
-            odds += gain - ACCIDENT
-            matched.append((line.order, order))
-        else:
-            odds += MISSED
-    return odds, matched
+        sigma = sqrt(line.order_sigma**2 + (LINE_SHIFT * resolution) ** 2)
+        accident = 1.0 / (line.order * range_of_logarithms)
+        density, nearest = 0.0, (inf, 0.0)
+        for order, share, place in _teeth(ratio, line.order, resolution):
+            off = (line.order - place) / sigma
+            density += share * exp(-0.5 * off**2) / (sigma * sqrt(2.0 * pi))
+            if abs(off) < MATCH_SIGMA:
+                nearest = min(nearest, (abs(off), order))
+        chance = ACCIDENT_SHARE[line.kind]
+        total += log(chance + (1.0 - chance) * density / accident)
+        if nearest[0] < MATCH_SIGMA:
+            matched.append((line.order, nearest[1]))
+    return total, tuple(matched)
+
+
+def _other_splines(ratio: int) -> tuple[int, ...]:
+    """Return the turns of the wave generator per output turn, as the spline that is not fixed sees them.
+
+    The gear is one of an even ratio with the circular spline fixed, or of the next odd one with the flexspline fixed.
+    """
+    if ratio in USUAL_RATIOS:
+        return (ratio + 1,) if ratio % 2 == 0 else (ratio - 1,)
+    return ratio + 1, ratio - 1
+
+
+def _teeth(ratio: int, line: float, resolution: float) -> list[tuple[float, float, float]]:
+    """Return order of the input, prior share and place per output turn of the comb's lines that one line may be."""
+    teeth, others = [], _other_splines(ratio)
+    for order, share in WAVE_ORDERS.items():
+        teeth.append((order, (1.0 - OTHER_SPLINE_SHARE) * share, order * ratio))
+        for other in others:
+            low, high = sorted((order * ratio, order * other))
+            merged = high - low < SPLINE_SPLIT * resolution  # then one line lies anywhere between both
+            place = min(max(line, low), high) if merged else order * other
+            teeth.append((order, OTHER_SPLINE_SHARE * share / len(others), place))
+    nearest = min(max(1, round(line / ratio)), MAX_MOTOR_ORDER)
+    return [*teeth, (float(nearest), MOTOR_SHARES[nearest % 2] / nearest, float(nearest * ratio))]

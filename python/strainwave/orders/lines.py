@@ -1,7 +1,8 @@
-"""Lines in a series: found one after the other in the spectra over angle and over time, each told from the other kind."""
+"""Lines in a series: found one after the other in spectra over the angle, over time and over the angles of other joints."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import hypot, tau
 from typing import Literal
@@ -11,16 +12,18 @@ from numpy.typing import NDArray
 
 from strainwave.orders.floor import Floor, floor_under
 from strainwave.orders.scan import Spectrum, order_spectrum_of, spread_of, time_spectrum_of
-from strainwave.orders.smooth_part import Moving
+from strainwave.orders.smooth_part import Moving, Shaft
 
 Array = NDArray[np.float64]
-Kind = Literal["order", "time", "either"]
+Kind = Literal["order", "time", "joint", "either"]
 
-MOST = 16  # lines that are looked for
-DECIDED = 10.0  # natural logarithm of the likelihood, by which one kind must be better than the other
-DECIDED_SHARE = 0.05  # of the evidence, by which it must be so at the least: speeds are never quite constant
-LOWEST = 3.0  # lines of resolution, below which an order is a trend
-BESIDE = 2.0  # lines of resolution, within which a weaker line belongs to a stronger one
+MAX_LINES = 16  # lines that are looked for
+MIN_EVIDENCE_LEAD = 10.0  # natural logarithm of the likelihood, by which one explanation must be better than another
+MIN_EVIDENCE_LEAD_SHARE = 0.05  # the same as a share of the evidence [1]: speeds are never quite constant
+MIN_PERIODS = 3.0  # periods in the span, below which an order is a trend
+MERGE_PERIODS = 2.0  # periods in the span, by which a weaker line differs at most from a stronger one that it belongs to
+MIN_OVERLAP = 0.5  # squared canonical correlation [1], from which two waves are the same line
+SWIFT_WEIGHT = 0.5  # weight [1] of a sample that counts as moving
 
 
 @dataclass(frozen=True)
@@ -28,25 +31,30 @@ class Line:
     """A line, as it was found.
 
     Attributes:
-        kind: whether it follows the angle or the time; `either` where the speed is too constant to tell
-        order: periods per revolution; of a time line that at its typical speed
+        kind: what the line repeats with: `order` with the angle, `time` with the time, `joint` with the angle of another joint;
+            `either` if the record does not separate the angle from another explanation
+        joint: name of the other joint of a `joint` line, else empty
+        rivals: explanations of an `either` line beside the angle: `time` or names of joints
+        order: periods per revolution, of a `joint` line per revolution of that joint; of a time line at the typical speed
         order_sigma: its standard deviation
-        frequency: cycles per sample; of an order line that at its typical speed
+        frequency: cycles per sample; of an order line at the typical speed
         evidence: logarithm of the likelihood that it adds
         false_alarm: probability that noise alone makes such a line anywhere in the spectra
-        forward, backward: complex amplitudes over the angle or over time; nan where there is no such motion
+        forward, backward: complex amplitudes over the angle or over time; nan without enough such motion
         sigma: standard deviation of their real and imaginary parts, the larger one of both
     """
 
     kind: Kind
+    joint: str
+    rivals: tuple[str, ...]
     order: float
     order_sigma: float
     frequency: float
     evidence: float
     false_alarm: float
-    forward: complex
-    backward: complex
-    sigma: float
+    forward: complex = complex("nan")
+    backward: complex = complex("nan")
+    sigma: float = 0.0
 
     @property
     def amplitude(self) -> float:
@@ -55,103 +63,129 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Found:
-    """Lines, and the spectra in which they stand.
+class LineSearch:
+    """Lines, and the spectra that contain them.
 
     Attributes:
         lines: by evidence
-        beside: lines that were found beside stronger ones, which they only widen
+        merged: number of lines close to stronger ones, which they only widen
         orders: spectrum over the angle, with all lines in it
-        times: spectrum over time, with all lines in it
         floor: of the series without the lines
         residual: series less these lines, shape (n,)
-        tested: lines of both spectra
+        tested: lines of all spectra
     """
 
     lines: tuple[Line, ...]
-    beside: int
+    merged: int
     orders: Spectrum
-    times: Spectrum
     floor: Floor
     residual: Array
     tested: float
 
 
-def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) -> Found:
-    """All lines that noise would make with less than the allowed probability.
+@dataclass(frozen=True)
+class _Spectra:
+    """Spectra over the angle of each shaft, the own one first, and over time; and the floor under them."""
+
+    floor: Floor
+    over_angle: tuple[Spectrum, ...]
+    over_time: Spectrum
+
+    @property
+    def tested(self) -> float:
+        return float(sum(len(each.place) for each in (*self.over_angle, self.over_time)))
+
+
+def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) -> LineSearch:
+    """Return all lines that noise makes with less than the allowed probability.
 
     Args:
-        moving: the series and the shaft
+        moving: the series and the shafts
         lowest, highest: order [1]
         allowed: probability of a false alarm, over all lines tested together
     """
     kept: list[Line] = []
     left = moving.series
-    tested = 0.0
-    for _ in range(MOST):
-        floor, orders, times = _spectra(moving, left, lowest, highest)
-        tested = float(len(orders.place) + len(times.place))
-        line = _strongest(moving, orders, times, tested)
+    for _ in range(MAX_LINES):
+        spectra = _spectra(moving, left, lowest, highest)
+        line = _strongest(moving, spectra)
         if line is None or line.false_alarm > allowed:
             break
         kept.append(line)
-        kept, left = refitted(moving, kept, floor)
-    floor, orders, times = _spectra(moving, moving.series, lowest, highest, floor)
-    own = [line for place, line in enumerate(kept) if not any(_beside(moving, line, other) for other in kept[:place])]
-    if own:  # by themselves, as lines beside each other are hardly told apart
-        own, left = refitted(moving, own, floor)
-    return Found(tuple(sorted(own, key=lambda each: -each.evidence)), len(kept) - len(own), orders, times, floor, left, tested)
+        kept, left = refitted(moving, kept, spectra.floor)
+    spectra = _spectra(moving, moving.series, lowest, highest, _spectra_floor(moving, left))
+    own = [line for place, line in enumerate(kept) if not any(_same(moving, line, other) for other in kept[:place])]
+    if own:  # by themselves, as lines close to each other are hardly separated
+        own, left = refitted(moving, own, spectra.floor)
+    ranked = tuple(sorted(own, key=lambda each: -each.evidence))
+    return LineSearch(ranked, len(kept) - len(own), spectra.over_angle[0], spectra.floor, left, spectra.tested)
 
 
-def _beside(moving: Moving, line: Line, stronger: Line) -> bool:
-    """Whether a line only tells that another one, found before it, varies with speed or load."""
-    if line.kind == "time" or stronger.kind == "time":
-        return line.kind == stronger.kind and abs(line.frequency - stronger.frequency) * len(moving.angle) < BESIDE
-    return abs(line.order - stronger.order) * float(np.ptp(moving.angle)) / tau < BESIDE
+def _same(moving: Moving, line: Line, stronger: Line) -> bool:
+    """True if a line only shows that a stronger one varies with speed or load."""
+    if (line.kind == "time") != (stronger.kind == "time") or line.joint != stronger.joint:
+        return False
+    if line.kind == "time":
+        return abs(line.frequency - stronger.frequency) * len(moving.series) < MERGE_PERIODS
+    return abs(line.order - stronger.order) * _shaft(moving, line).revolutions < MERGE_PERIODS
 
 
-def _spectra(
-    moving: Moving, left: Array, lowest: float, highest: float, floor: Floor | None = None
-) -> tuple[Floor, Spectrum, Spectrum]:
-    weighted = left * moving.weight
-    floor = floor_under(weighted, moving.weight) if floor is None else floor
+def _shaft(moving: Moving, line: Line) -> Shaft:
+    return next(each for each in moving.shafts if each.name == line.joint)
+
+
+def _spectra_floor(moving: Moving, left: Array) -> Floor:
+    return floor_under(left * moving.weight, moving.weight)
+
+
+def _spectra(moving: Moving, left: Array, lowest: float, highest: float, floor: Floor | None = None) -> _Spectra:
+    weighted, weight = left * moving.weight, moving.weight
+    floor = _spectra_floor(moving, left) if floor is None else floor
     weighed = floor.weighed(weighted)
-    orders = order_spectrum_of(weighed, moving.weight, floor, moving.angle, moving.speed, moving.sense, lowest, highest)
-    slowest = max(lowest * float(np.quantile(np.abs(moving.speed), 0.95)) / tau, LOWEST / len(left))
-    return floor, orders, time_spectrum_of(weighted, moving.weight, floor, slowest)
+    over_angle = [order_spectrum_of(weighed, weight, floor, moving.own, lowest, highest)]
+    for other in moving.shafts[1:]:
+        over_angle.append(order_spectrum_of(weighed, weight, floor, other, MIN_PERIODS / other.revolutions, highest))
+    slowest = max(lowest * float(np.quantile(np.abs(moving.own.speed), 0.95)) / tau, MIN_PERIODS / len(left))
+    return _Spectra(floor, tuple(over_angle), time_spectrum_of(weighted, weight, floor, slowest))
 
 
-def _strongest(moving: Moving, orders: Spectrum, times: Spectrum, tested: float) -> Line | None:
-    """The line of the spectra that noise makes with the least probability."""
-    if not len(orders.place):
+def _strongest(moving: Moving, spectra: _Spectra) -> Line | None:
+    """Return the line that noise makes with the least probability, with what it may repeat with; none without an order."""
+    if not len(spectra.over_angle[0].place):
         return None
-    (order, in_order), (frequency, in_time) = _peak(orders), _peak(times)
-    alarm_order, alarm_time = float(orders.false_alarm(in_order, tested)), float(times.false_alarm(in_time, tested))
-    swift = np.abs(moving.speed[moving.weight > 0.5])
-    swift = swift if len(swift) else np.abs(moving.speed)
-    low, middle, high = (max(float(each), 1e-300) for each in np.quantile(swift, [0.02, 0.5, 0.98]))
-    step = 2.0 / len(moving.angle)
-    of_angle = (alarm_order, -in_order) <= (alarm_time, -in_time)
-    evidence, alarm = (in_order, alarm_order) if of_angle else (in_time, alarm_time)
-    if of_angle:
-        passed = (times.place >= order * low / tau - step) & (times.place <= order * high / tau + step)
-        frequency, other = _peak(times, passed)
-    else:
-        passed = (orders.place >= tau * (frequency - step) / high) & (orders.place <= tau * (frequency + step) / low)
-        order, other = _peak(orders, passed)
-    kind: Kind = "order" if of_angle else "time"
-    if evidence - other <= max(DECIDED, DECIDED_SHARE * evidence):
-        kind = "either"
-    elif of_angle:
-        frequency = order * middle / tau
-    else:
-        order = tau * frequency / middle
-    sigma = 1.0 / (np.sqrt(2.0 * evidence) * max(spread_of(moving.angle, moving.weight), 1e-300))
-    return Line(kind, order, float(sigma), frequency, evidence, alarm, complex("nan"), complex("nan"), 0.0)
+    found = [_peak_line(moving, shaft, each, spectra) for shaft, each in zip(moving.shafts, spectra.over_angle, strict=True)]
+    found.append(_peak_line(moving, None, spectra.over_time, spectra))
+    best = min(found, key=lambda each: (each.false_alarm, -each.evidence))
+    margin = max(MIN_EVIDENCE_LEAD, MIN_EVIDENCE_LEAD_SHARE * best.evidence)
+    near = [each for each in _passing(moving, best, spectra) if best.evidence - each.evidence <= margin]
+    joints = {"joint"} & {each.kind for each in (best, *near)}  # any order of another joint may pass at these frequencies
+    rivals = [each for each in near if not joints or _overlap(moving, best, each, spectra.floor) > MIN_OVERLAP]
+    own = next((each for each in (best, *rivals) if each.kind == "order"), None)
+    if own is None:
+        return best
+    names = tuple(each.joint or "time" for each in (best, *rivals) if each is not own)
+    if not names:
+        return best
+    time = next((each.frequency for each in (best, *rivals) if each.kind == "time"), own.frequency)
+    return replace(own, kind="either", rivals=names, frequency=time, evidence=best.evidence, false_alarm=best.false_alarm)
+
+
+def _peak_line(
+    moving: Moving, shaft: Shaft | None, spectrum: Spectrum, spectra: _Spectra, among: NDArray[np.bool_] | None = None
+) -> Line:
+    """Return the highest peak of a spectrum over the angle of a shaft, or over time without one."""
+    place, evidence = _peak(spectrum, among)
+    alarm = float(spectrum.false_alarm(evidence, spectra.tested))
+    along = moving.own if shaft is None else shaft
+    _, usual, _ = _speeds(moving, along)
+    sigma = 1.0 / (np.sqrt(2.0 * max(evidence, 1e-300)) * max(spread_of(along.angle, moving.weight), 1e-300))
+    order, frequency = (tau * place / usual, place) if shaft is None else (place, place * usual / tau)
+    kind: Kind = "time" if shaft is None else "joint" if shaft.name else "order"
+    return Line(kind, "" if shaft is None else shaft.name, (), order, float(sigma), frequency, evidence, alarm)
 
 
 def _peak(spectrum: Spectrum, among: NDArray[np.bool_] | None = None) -> tuple[float, float]:
-    """Place and evidence of the highest peak, between lines, by the parabola through three; nothing where there are none."""
+    """Return place and evidence of the highest peak, by the parabola through three lines; zeros without any peak."""
     evidence = spectrum.evidence if among is None else np.where(among, spectrum.evidence, 0.0)
     if not len(evidence) or float(evidence.max()) == 0.0:
         return 0.0, 0.0
@@ -160,29 +194,66 @@ def _peak(spectrum: Spectrum, among: NDArray[np.bool_] | None = None) -> tuple[f
     if not 0 < at < len(evidence) - 1:
         return place, height
     left, right = float(spectrum.evidence[at - 1]), float(spectrum.evidence[at + 1])
-    bend = left - 2.0 * height + right
-    if bend >= 0.0 or max(left, right) > height:
+    curvature = left - 2.0 * height + right
+    if curvature >= 0.0 or max(left, right) > height:
         return place, height
-    shift = 0.5 * (left - right) / bend
+    shift = 0.5 * (left - right) / curvature
     return place + shift * float(spectrum.place[1] - spectrum.place[0]), height - 0.25 * (left - right) * shift
 
 
+def _passing(moving: Moving, line: Line, spectra: _Spectra) -> list[Line]:
+    """Return the highest peak of every other spectrum at frequencies at which the line passes."""
+    step = 2.0 / len(moving.series)
+    low = high = line.frequency
+    if line.kind != "time":
+        slow, _, fast = _speeds(moving, _shaft(moving, line))
+        low, high = line.order * slow / tau, line.order * fast / tau
+    low, high = low - step, high + step
+    found = []
+    for shaft, spectrum in zip(moving.shafts, spectra.over_angle, strict=True):
+        if line.kind == "time" or shaft.name != line.joint:
+            slow, _, fast = _speeds(moving, shaft)
+            passed = (spectrum.place >= tau * low / fast) & (spectrum.place <= tau * high / slow)
+            found.append(_peak_line(moving, shaft, spectrum, spectra, passed))
+    if line.kind != "time":
+        passed = (spectra.over_time.place >= low) & (spectra.over_time.place <= high)
+        found.append(_peak_line(moving, None, spectra.over_time, spectra, passed))
+    return [each for each in found if each.evidence > 0.0]
+
+
+def _speeds(moving: Moving, shaft: Shaft) -> tuple[float, float, float]:
+    """Return a slow, the usual and a fast speed of a shaft while the own one moves [rad per sample]."""
+    counting = moving.weight > SWIFT_WEIGHT
+    swift = np.abs(shaft.speed[counting] if counting.any() else shaft.speed)
+    low, usual, high = (max(float(each), 1e-300) for each in np.quantile(swift, [0.02, 0.5, 0.98]))
+    return low, usual, high
+
+
+def _overlap(moving: Moving, line: Line, other: Line, floor: Floor) -> float:
+    """Return the largest squared canonical correlation of the waves of two lines under the noise."""
+    bases = []
+    for each in (line, other):
+        white = np.stack([floor.whitened(wave) for wave in waves(moving, each)], axis=1)
+        bases.append(np.linalg.qr(white)[0])
+    return float(np.linalg.norm(bases[0].T @ bases[1], 2) ** 2)
+
+
 def waves(moving: Moving, line: Line) -> list[Array]:
-    """What a line may look like: cosine and minus sine over angle or time, each direction by itself."""
-    phase = moving.angle * line.order if line.kind != "time" else tau * line.frequency * np.arange(len(moving.angle))
+    """Return the shapes of a line: cosine and minus sine over angle or time, each direction by itself."""
+    if line.kind == "time":
+        phase = tau * line.frequency * np.arange(len(moving.series))
+        return [moving.weight * np.cos(phase), -moving.weight * np.sin(phase)]
+    shaft = _shaft(moving, line)
+    phase = shaft.angle * line.order
     shapes = []
-    for sense in _senses(moving) if line.kind != "time" else (0.0,):
-        there = moving.weight if sense == 0.0 else np.where(moving.sense == sense, moving.weight, 0.0)
+    for sense in shaft.senses(moving.weight):
+        there = np.where(shaft.sense == sense, moving.weight, 0.0)
         shapes += [there * np.cos(phase), -there * np.sin(phase)]
     return shapes
 
 
-def _senses(moving: Moving) -> list[float]:
-    return [each for each in (1.0, -1.0) if np.any(moving.sense == each)]
-
-
-def refitted(moving: Moving, lines: list[Line], floor: Floor) -> tuple[list[Line], Array]:
-    """All lines fitted together, with their amplitudes; and what is left of the series."""
+def refitted(moving: Moving, lines: Sequence[Line], floor: Floor) -> tuple[list[Line], Array]:
+    """Fit all lines together. Return them with their amplitudes, and the series without them."""
     shapes = [waves(moving, line) for line in lines]
     flat = np.stack([wave for each in shapes for wave in each], axis=1)
     values, covariance = weighed_fit(flat, moving.series * moving.weight, floor)
@@ -196,7 +267,7 @@ def refitted(moving: Moving, lines: list[Line], floor: Floor) -> tuple[list[Line
         if line.kind == "time":
             parts = [parts[0], parts[0]]
         elif len(parts) == 1:
-            parts = [*parts, complex("nan")] if _senses(moving) == [1.0] else [complex("nan"), *parts]
+            parts = [*parts, complex("nan")] if _forward_only(moving, line) else [complex("nan"), *parts]
         done.append(replace(line, forward=parts[0], backward=parts[1], sigma=float(sigma)))
         first = last
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -204,8 +275,13 @@ def refitted(moving: Moving, lines: list[Line], floor: Floor) -> tuple[list[Line
     return done, left
 
 
+def _forward_only(moving: Moving, line: Line) -> bool:
+    """True if the shaft of a line has enough motion forward alone."""
+    return _shaft(moving, line).senses(moving.weight) == [1.0]
+
+
 def weighed_fit(columns: Array, series: Array, floor: Floor) -> tuple[Array, Array]:
-    """Least squares under coloured noise: coefficients and their covariance, shapes (k,) and (k, k)."""
+    """Fit by least squares under coloured noise. Return coefficients and covariance, shapes (k,) and (k, k)."""
     white = np.stack([floor.whitened(column) for column in columns.T], axis=1)
     size = np.linalg.norm(white, axis=0)
     size[size == 0.0] = 1.0

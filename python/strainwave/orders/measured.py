@@ -1,7 +1,8 @@
-"""What a recording tells of the orders of a gear: from two encoders if it has both, from torque or current if it has one."""
+"""Orders of a gear in a recording: from two encoders if it has both, from torque or current if it has one."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,13 +21,13 @@ SPEEDS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("outpu
 
 @dataclass(frozen=True, eq=False)
 class OrdersFound(ComparedByFields):
-    """What one recording tells.
+    """Orders of one recording.
 
     Attributes:
         name: of the recording
-        transmission: from two encoders, where it has both
-        ripple: from torque or current, where it has one and an angle
-        remarks: what was not possible, and why
+        transmission: from two encoders, if it has both
+        ripple: from torque or current, if it has one and an angle
+        remarks: what is not determined, and why
     """
 
     name: str
@@ -43,20 +44,22 @@ def orders_found(
     side: Side | None = None,
     highest: float | None = None,
     rate: float | None = None,
+    other_angles: Mapping[str, str] | None = None,
 ) -> OrdersFound:
-    """The orders of a gear in a recording, by all that it holds.
+    """Return the orders of a gear in a recording, from all its columns.
 
     Args:
         recording: columns with the names of a drive log: time, input_angle, output_angle, angle, a speed instead of an angle,
             joint_torque, torque, input_torque, current
-        name: of the recording, for what is told of it
+        name: of the recording, for messages
         ratio: of the gear, if it is known
-        side: on which the angle or speed was measured, where its name does not say so
-        highest: order up to which ripple is looked for, of the shaft whose angle it is told over: the input of two
+        side: on which the angle or speed was measured, if its name does not contain it
+        highest: order up to which ripple is looked for, of the shaft whose angle is used: the input of two
         rate: samples per second of a recording without time [Hz]
+        other_angles: columns with the angles of other joints that move, by the name of the joint
 
     Raises:
-        ValueError: the recording has neither two angles nor a torque or current with an angle, or cannot tell orders
+        ValueError: the recording has neither two angles nor a torque or current with an angle, or determines no orders
 
     >>> theta = np.linspace(0.0, 400.0, 9000)
     >>> torque = 0.05 + 0.004 * np.cos(2 * theta) + np.random.default_rng(0).normal(0.0, 0.004, len(theta))
@@ -69,27 +72,37 @@ def orders_found(
     effort = next((each for each in EFFORTS if each in recording), None)
     transmission = None
     if "input_angle" in recording and "output_angle" in recording:
-        transmission = transmission_error(_for_two_encoders(recording), ratio=ratio, rate=rate)
+        transmission = transmission_error(_for_two_encoders(recording), ratio=ratio, rate=rate, ratio_option="--ratio")
         if effort is None:
             return OrdersFound(name, transmission, None)
-        size = abs(transmission.ratio.used)
+        in_joint_units = transmission.ratio.in_joint_units
+        size = ratio if in_joint_units else abs(transmission.ratio.used)
         try:
-            found = ripple(recording, effort, angle="input_angle", side="input", ratio=size, highest=highest, rate=rate)
+            found = ripple(
+                recording,
+                effort,
+                angle="input_angle",
+                side="output" if in_joint_units else "input",
+                ratio=size,
+                highest=highest,
+                rate=rate,
+                other_angles=other_angles,
+            )
             return OrdersFound(name, transmission, found)
         except ValueError as error:
-            return OrdersFound(name, transmission, None, (f"ripple in {effort} is not told: {error}",))
+            return OrdersFound(name, transmission, None, (f"ripple in {effort} is not determined: {error}",))
     if effort is None:
         raise ValueError(
             f"orders need two angles, input_angle and output_angle, or a torque or current beside one angle; there are "
             f"{listed(recording.names)}"
         )
     turning, angle, known, remarks = _turning(recording, side, rate)
-    found = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate)
+    found = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
     return OrdersFound(name, None, replace(found, remarks=(*remarks, *found.remarks)))
 
 
 def _for_two_encoders(recording: Recording) -> Recording:
-    """With the names that `transmission_error` knows."""
+    """Return the recording with the names that `transmission_error` uses."""
     names = {"input_angle": "input_angle", "output_angle": "output_angle", "time": "time"}
     names |= {"joint_torque": "torque"} if "joint_torque" in recording else {}
     names |= {"current": "current"} if "current" in recording and "joint_torque" not in recording else {}
@@ -102,7 +115,7 @@ def _for_two_encoders(recording: Recording) -> Recording:
 
 
 def _turning(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
-    """The recording with an angle, its name and side, and what was done for it."""
+    """Return the recording with an angle, its name and side, and what was done for it."""
     for name, known in ANGLES:
         if name in recording:
             return recording, name, _side(name, known, side), ()
@@ -111,21 +124,21 @@ def _turning(recording: Recording, side: Side | None, rate: float | None) -> tup
             continue
         if "time" not in recording and rate is None:
             raise ValueError(
-                f"{name} tells an angle only over time; give the samples per second with --rate, or a column of time"
+                f"{name} gives an angle only over time; give the samples per second with --rate, or a column of time"
             )
         speed = recording.values(name, "rad/s")
         if rate is not None:
             rate = arguments.number("rate", rate, "Hz", low=0.0)
         step = np.diff(recording.time) if "time" in recording else np.full(len(speed) - 1, 1.0 / float(rate or 1.0))
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
-        said = f"there is no angle: {name} is summed up over time; its errors widen the lines"
-        return recording.with_column("angle", angle, "rad"), "angle", _side(name, known, side), (said,)
+        remark = f"there is no angle: {name} is summed up over time; its errors widen the lines"
+        return recording.with_column("angle", angle, "rad"), "angle", _side(name, known, side), (remark,)
     raise ValueError(f"orders need an angle, or a speed over time; there are {listed(recording.names)}")
 
 
-def _side(name: str, known: Side | None, said: Side | None) -> Side:
-    if said is None and known is None:
+def _side(name: str, known: Side | None, given: Side | None) -> Side:
+    if given is None and known is None:
         raise ValueError(f"{name} may be that of the motor or that of the joint; say which, with --side input or --side output")
-    if said is not None and known is not None and said != known:
-        raise ValueError(f'side = "{said}" is said, but {name} is that of the {known}')
-    return said or known or "output"
+    if given is not None and known is not None and given != known:
+        raise ValueError(f'side = "{given}" is given, but {name} is that of the {known}')
+    return given or known or "output"

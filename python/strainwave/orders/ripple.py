@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import tau
 from typing import Literal
@@ -14,30 +14,32 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
-from strainwave.orders.comb import Candidate, candidates
+from strainwave.messages import listed
+from strainwave.orders.comb import MIN_LINE_ORDER, RATIOS, Candidate, candidates, conclusive, usable_lines
 from strainwave.orders.floor import Floor
-from strainwave.orders.lines import BESIDE, LOWEST, Found, Kind, Line, find_lines, waves, weighed_fit
+from strainwave.orders.lines import MERGE_PERIODS, MIN_PERIODS, Kind, Line, LineSearch, find_lines, waves, weighed_fit
 from strainwave.orders.smooth_part import Moving, moving
 from strainwave.orders.turning import Evenly, beginning, evenly, unwrapped
 
 Array = NDArray[np.float64]
 Side = Literal["input", "output"]
 
-SMALLEST_RATIO = 30.0  # of strain wave gears that makers offer
-LARGEST_RATIO = 161.0
-INPUT_HIGHEST = 20.0  # order of the input up to which is looked, if nothing is said
-OUTPUT_HIGHEST = 8.0  # times the ratio, or as much where that is not known as makes order 4 of the largest visible
+MIN_RATIO = float(RATIOS[0])  # of strain wave gears that makers offer
+TYPICAL_RATIO = 100.0
+MAX_RATIO = 161.0
+MAX_INPUT_ORDER = 20.0  # order of the input up to which is looked, without a limit given
+MAX_OUTPUT_ORDER = 40.0  # times the ratio, or 100 if it is not known: pole pairs and slots of the motor
 MAX_ORDER = 1e5  # that may be asked for: more than the teeth of any gear
-SAMPLED = 0.8  # of a half revolution of the line, that may lie between samples at a usual speed
-VARIES = 0.1  # of the speed or the load, above which ripple is told apart by it
-LEAST_ORDER = 0.5  # of the input: what repeats more slowly is not told from friction and gravity
-LONGEST = 2**19  # samples that are looked at
-PERIODS = 3.0  # of the slowest order, that a record needs
+MAX_PHASE_STEP = 0.8  # half turns of a line between two samples at the usual speed
+MIN_SPREAD = 0.1  # relative spread of speed or load [1], from which ripple is separated by it
+MIN_INPUT_ORDER = 0.5  # slower ripple is not separated from friction and gravity
+MAX_SAMPLES = 2**19  # that are looked at
+MIN_GEAR_PERIODS = 3.0  # periods of the slowest order, that a record needs
 
 
 @dataclass(frozen=True)
 class Part:
-    """A share of a line that grows with something.
+    """Part of a line that grows with something.
 
     Attributes:
         name: `constant` (cogging), `direction` (friction), `load` (kinematic error), `speed squared` (inertia)
@@ -57,9 +59,12 @@ class RippleLine:
     """A line in the spectrum over the angle.
 
     Attributes:
-        kind: `order` follows the angle, `time` the time (mains, a resonance, a beat of the sampling); `either` where the speed
-            is too constant to tell
-        order: per revolution of the shaft whose angle it is; of a time line that at the usual speed
+        kind: `order` repeats with the angle, `time` with the time (mains, a resonance, a beat of the sampling), `joint` with
+            the angle of another joint; `either` if the record does not separate the angle from another explanation
+        joint: name of the other joint of a `joint` line, else empty
+        rivals: explanations of an `either` line beside the angle: `time`, or names of joints
+        order: per revolution of the shaft whose angle it is, of a `joint` line per revolution of that joint; of a time line at
+            the usual speed
         order_sigma: its standard deviation by noise; a line whose phase changes with the speed, as near a resonance, moves by
             up to a tenth of the resolution more
         per_input: the same per revolution of the input; None where the ratio is not known
@@ -69,10 +74,12 @@ class RippleLine:
         phase: where the angle is 0 [rad], as of a cosine, in the direction with the larger amplitude
         sigma: standard deviation of the amplitude
         false_alarm: probability that noise alone makes such a line anywhere in the spectra
-        parts: what it grows with, where the record tells
+        parts: what it grows with, if the record separates it
     """
 
     kind: Kind
+    joint: str
+    rivals: tuple[str, ...]
     order: float
     order_sigma: float
     per_input: float | None
@@ -95,8 +102,9 @@ class Ripple(ComparedByFields):
         side: whose angle it is
         unit: of the amplitudes
         lines: the strongest evidence first
-        candidates: ratios that explain the lines, the most probable first; none where the ratio is known or the angle is that
-            of the input
+        candidates: ratios that explain the lines, the most probable first; none if the ratio is known, the angle is that of the
+            input, or no line is surely one of this joint
+        concluded: the ratio that the lines determine, or two neighbours: one gear with either spline fixed; else empty
         ratio: size of the ratio, if it was given
         revolutions: of the shaft, end to end
         turned: all of its motion, to and fro, in revolutions
@@ -113,6 +121,7 @@ class Ripple(ComparedByFields):
     unit: str
     lines: tuple[RippleLine, ...]
     candidates: tuple[Candidate, ...]
+    concluded: tuple[int, ...]
     ratio: float | None
     revolutions: float
     turned: float
@@ -134,11 +143,13 @@ def ripple(
     highest: float | None = None,
     rate: float | None = None,
     false_alarm: float = 0.01,
+    other_angles: Mapping[str, str] | None = None,
 ) -> Ripple:
-    """Order lines in a torque or a current over the angle of a joint or a motor.
+    """Return the order lines in a torque or a current over the angle of a joint or a motor.
 
-    Friction over speed, inertia and gravity are taken out. What is left is compared with the noise around each line, at the
-    frequencies at which it passes. Lines that follow the time, not the angle, are told apart, if the speed varies.
+    Friction over speed, inertia and gravity are taken out. The rest is compared with the noise around each line, at the
+    frequencies at which it passes. Each line is tested against the time, if the speed varies, and against the angles of other
+    joints that move.
 
     Args:
         recording: with the column, an angle, and `time` if it is known; samples at equal distances in time
@@ -146,9 +157,10 @@ def ripple(
         angle: column with the angle of the shaft, that may wrap at each revolution
         side: of the gear, on which this shaft is
         ratio: of the gear, if it is known; the sign does not matter
-        highest: order up to which is looked, at most 1e5; what the samples allow, and gears show, if not given
+        highest: order up to which lines are looked for, at most 1e5; by default that of motors, or what samples allow
         rate: samples per second of a recording without time [Hz]
         false_alarm: largest probability of a line by noise alone, over all lines tested together
+        other_angles: columns with the angles of other joints that move, by the name of the joint
 
     Raises:
         TypeError: an argument is not of its kind
@@ -169,61 +181,73 @@ def ripple(
     arguments.one_of("side", side, ("input", "output"))
     false_alarm = arguments.probability("false_alarm", false_alarm)
     size = None if ratio is None else abs(arguments.ratio("ratio", ratio))
-    record, told = _moved(recording, column, angle, rate)
-    lowest, top = _range(told, side, size, highest)
-    _check_sampled(told, record, side, size, top, angle)
-    found = find_lines(told, lowest, top, false_alarm)
-    revolutions = float(np.ptp(told.angle)) / tau
-    lines = tuple(_line(each, told, found, record, side, size, len(found.lines)) for each in found.lines)
-    guessed = candidates(found.lines, 1.0 / revolutions) if side == "output" and size is None else ()
+    record, shaft = _moved(recording, column, angle, rate, other_angles or {})
+    lowest, top = _range(shaft, side, size, highest)
+    _check_sampled(shaft, record, side, size, top, angle)
+    found = find_lines(shaft, lowest, top, false_alarm)
+    revolutions = shaft.own.revolutions
+    lines = tuple(_line(each, shaft, found, record, side, size, len(found.lines)) for each in found.lines)
+    blind = side == "output" and size is None
+    likely = candidates(found.lines, 1.0 / revolutions, top) if blind else ()
+    remarks = [*record.remarks, *_remarks(shaft, found, record, top)]
+    remarks += _ratio_remarks(found, likely, revolutions, top, shaft) if blind else []
     return Ripple(
         column=column,
         side=side,
         unit=recording.unit(column),
         lines=lines,
-        candidates=guessed,
+        candidates=likely,
+        concluded=conclusive(likely),
         ratio=size,
         revolutions=revolutions,
-        turned=float(np.abs(np.diff(told.angle)).sum()) / tau,
+        turned=float(np.abs(np.diff(shaft.own.angle)).sum()) / tau,
         resolution=1.0 / revolutions,
         lowest=lowest,
         highest=top,
         spectrum=_spectrum(found, recording.unit(column), false_alarm),
-        curves=_curves(told, found, record, recording.unit(column)),
-        remarks=(*record.remarks, *_remarks(told, found, record, guessed, revolutions)),
+        curves=_curves(shaft, found, record, recording.unit(column)),
+        remarks=tuple(remarks),
     )
 
 
-def _moved(recording: Recording, column: str, angle: str, rate: float | None) -> tuple[Evenly, Moving]:
-    """A shaft and what drives it, evenly in time, of a long record the beginning; rows that were filled in do not count."""
-    record = beginning(evenly(recording, [column, angle], rate), LONGEST)
-    turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))
-    if float(np.ptp(turned)) == 0.0:
+def _moved(
+    recording: Recording, column: str, angle: str, rate: float | None, others: Mapping[str, str]
+) -> tuple[Evenly, Moving]:
+    """Return a shaft and what drives it, evenly in time, of a long record the beginning; filled rows do not count."""
+    record = beginning(evenly(recording, [column, angle, *others.values()], rate), MAX_SAMPLES)
+    turned = {
+        name: unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in (angle, *others.values())
+    }
+    if float(np.ptp(turned[angle])) == 0.0:
         raise ValueError(f"{angle} does not change; orders need a shaft that turns")
     if float(np.ptp(record.columns[column])) == 0.0:
         raise ValueError(f"{column} does not change; there is no ripple in it")
-    told = moving(turned, record.columns[column])
-    return record, replace(told, weight=np.where(record.measured, told.weight, 0.0))
+    moved = {joint: turned[name] for joint, name in others.items() if float(np.ptp(turned[name])) > 0.0}
+    shaft = moving(turned[angle], record.columns[column], moved)
+    return record, replace(shaft, weight=np.where(record.measured, shaft.weight, 0.0))
 
 
-def _range(told: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:
-    """Orders between which is looked."""
-    revolutions = float(np.ptp(told.angle)) / tau
-    swift = np.abs(told.speed[told.weight > 0.5])
-    usual = float(np.median(swift)) if len(swift) else 0.0
-    sampled = SAMPLED * np.pi / usual if usual > 0.0 else np.inf
-    lowest = max(LOWEST / revolutions, LEAST_ORDER * (1.0 if side == "input" else size or SMALLEST_RATIO))
+def _range(shaft: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:
+    """Return the lowest and the highest order that are looked for."""
+    lowest = max(MIN_PERIODS / shaft.own.revolutions, MIN_INPUT_ORDER * (1.0 if side == "input" else size or MIN_RATIO))
     if highest is not None:
         return lowest, arguments.number("highest", highest, brackets="(]", low=lowest, high=MAX_ORDER)
     if side == "input":
-        return lowest, min(INPUT_HIGHEST, sampled)
-    return lowest, min(OUTPUT_HIGHEST * size if size else 4.5 * LARGEST_RATIO, sampled)
+        return lowest, min(MAX_INPUT_ORDER, _sampled(shaft))
+    return lowest, min(MAX_OUTPUT_ORDER * (size or TYPICAL_RATIO), _sampled(shaft))
 
 
-def _check_sampled(told: Moving, record: Evenly, side: Side, size: float | None, top: float, angle: str) -> None:
-    """Refuses a record in which no order of a gear can be seen."""
-    revolutions = float(np.ptp(told.angle)) / tau
-    gear = 2.0 if side == "input" else 2.0 * (size or SMALLEST_RATIO)
+def _sampled(shaft: Moving) -> float:
+    """Return the highest order that the samples can follow at the usual speed."""
+    swift = np.abs(shaft.own.speed[shaft.weight > 0.5])
+    usual = float(np.median(swift)) if len(swift) else 0.0
+    return MAX_PHASE_STEP * np.pi / usual if usual > 0.0 else np.inf
+
+
+def _check_sampled(shaft: Moving, record: Evenly, side: Side, size: float | None, top: float, angle: str) -> None:
+    """Raise ValueError for a record in which no order of a gear can be seen."""
+    revolutions = shaft.own.revolutions
+    gear = 2.0 if side == "input" else 2.0 * (size or MIN_RATIO)
     name = "order 2 of the wave generator" + ("" if side == "input" else f", {gear:g} per revolution of the output")
     name += "" if side == "input" or size else " in a gear of ratio 30, and higher in others"
     if top < gear:
@@ -232,20 +256,24 @@ def _check_sampled(told: Moving, record: Evenly, side: Side, size: float | None,
             f"{often} show orders up to {top:.3g} per revolution of {angle} at the speeds of this record; the main line of a "
             f"gear is {name}; record faster, or turn slower"
         )
-    if revolutions * gear < PERIODS:
+    if revolutions * gear < MIN_GEAR_PERIODS:
         raise ValueError(
             f"{angle} turns {revolutions:.3g} revolutions: {revolutions * gear:.2g} periods of {name}; lines need "
-            f"{PERIODS:g} or more; turn further"
+            f"{MIN_GEAR_PERIODS:g} or more; turn further"
         )
 
 
-def _line(line: Line, told: Moving, found: Found, record: Evenly, side: Side, size: float | None, count: int) -> RippleLine:
+def _line(
+    line: Line, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None, count: int
+) -> RippleLine:
     both = {"forward": line.forward, "backward": line.backward}
     sizes = {name: None if np.isnan(value) else abs(value) for name, value in both.items()}
     larger = max(both, key=lambda name: sizes[name] or 0.0)
-    per_input = line.order if side == "input" else None if size is None else line.order / size
+    per_input = line.order if side == "input" else None if size is None or line.joint else line.order / size
     return RippleLine(
         kind=line.kind,
+        joint=line.joint,
+        rivals=line.rivals,
         order=line.order,
         order_sigma=line.order_sigma,
         per_input=per_input,
@@ -256,29 +284,29 @@ def _line(line: Line, told: Moving, found: Found, record: Evenly, side: Side, si
         phase=float(np.angle(both[larger])),
         sigma=line.sigma,
         false_alarm=line.false_alarm,
-        parts=_parts(line, told, found.floor, found.residual, count) if line.kind == "order" else (),
+        parts=_parts(line, shaft, found.floor, found.residual, count) if line.kind == "order" else (),
     )
 
 
-def _parts(line: Line, told: Moving, floor: Floor, residual: Array, count: int) -> tuple[Part, ...]:
-    """A line regressed on what it may grow with: nothing, direction, load, speed squared (physics of the current signature)."""
-    weight = told.weight
+def _parts(line: Line, shaft: Moving, floor: Floor, residual: Array, count: int) -> tuple[Part, ...]:
+    """Regress a line on what it may grow with: nothing, direction, load, speed squared (physics of the current signature)."""
+    weight = shaft.weight
     share = weight / max(float(np.sqrt(np.mean(weight**2))), 1e-300)
     growing = {"constant": np.ones_like(weight)}
-    if np.any(told.sense > 0.0) and np.any(told.sense < 0.0):
-        growing["direction"] = told.sense
-    if float(np.std(told.load * share)) > VARIES * float(np.std(told.series * share)):
-        growing["load"] = told.load
-    squared = told.speed**2
-    if float(np.std(squared[weight > 0.5])) > VARIES * float(np.mean(squared)):
+    if len(shaft.own.senses(weight)) > 1:
+        growing["direction"] = shaft.own.sense
+    if float(np.std(shaft.load * share)) > MIN_SPREAD * float(np.std(shaft.series * share)):
+        growing["load"] = shaft.load
+    squared = shaft.own.speed**2
+    if float(np.std(squared[weight > 0.5])) > MIN_SPREAD * float(np.mean(squared)):
         growing["speed squared"] = squared
     if len(growing) == 1:
         return ()
     sizes = {name: float(np.sqrt(np.average(each**2, weights=weight**2))) for name, each in growing.items()}
-    phase = line.order * told.angle
+    phase = line.order * shaft.own.angle
     cosine, sine = weight * np.cos(phase), -weight * np.sin(phase)
     columns = np.stack([wave * each / sizes[name] for name, each in growing.items() for wave in (cosine, sine)], axis=1)
-    shape = np.stack(waves(told, line), axis=1)
+    shape = np.stack(waves(shaft, line), axis=1)
     values = [part for part in (line.forward, line.backward) if not np.isnan(part)]
     series = residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
     coefficients, covariance = weighed_fit(columns, series, floor)
@@ -291,8 +319,8 @@ def _parts(line: Line, told: Moving, floor: Floor, residual: Array, count: int) 
     return tuple(parts)
 
 
-def _spectrum(found: Found, unit: str, allowed: float) -> Recording:
-    """Amplitude over order, its floor, and the amplitude at which a line would be found."""
+def _spectrum(found: LineSearch, unit: str, allowed: float) -> Recording:
+    """Return amplitude over order, its floor, and the amplitude at which a line is found."""
     spectrum = found.orders
     needed = spectrum.evidence_of(allowed, found.tested)
     columns = {
@@ -304,39 +332,85 @@ def _spectrum(found: Found, unit: str, allowed: float) -> Recording:
     return Recording(columns, {"order": "1", "amplitude": unit, "floor": unit, "threshold": unit}, "spectrum over the angle")
 
 
-def _curves(told: Moving, found: Found, record: Evenly, unit: str) -> Recording:
-    columns = {"time": record.start + record.step * np.arange(len(record)), "angle": told.angle}
-    columns |= {"series": told.series + told.smooth, "smooth": told.smooth, "residual": found.residual, "speed": told.speed}
+def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Recording:
+    columns = {"time": record.start + record.step * np.arange(len(record)), "angle": shaft.own.angle}
+    columns |= {"series": shaft.series + shaft.smooth, "smooth": shaft.smooth, "residual": found.residual}
+    columns["speed"] = shaft.own.speed / record.step
     units = {"time": "s", "angle": "rad", "series": unit, "smooth": unit, "residual": unit, "speed": "rad/s"}
-    columns["speed"] = told.speed / record.step
     if not record.timed:
         for name in ("time", "speed"):
             del columns[name], units[name]
     return Recording(columns, units, "ripple")
 
 
-def _remarks(told: Moving, found: Found, record: Evenly, guessed: Sequence[Candidate], revolutions: float) -> list[str]:
+def _remarks(shaft: Moving, found: LineSearch, record: Evenly, top: float) -> list[str]:
     remarks = []
-    if told.outliers:
-        remarks.append(f"{told.outliers} samples lie far outside of the others and do not count")
-    if any(line.kind == "either" for line in found.lines):
+    if shaft.outliers:
+        remarks.append(f"{shaft.outliers} samples lie far outside of the others and do not count")
+    if any("time" in line.rivals for line in found.lines):
         remarks.append(
-            "the speed is too constant to tell order lines from time lines (mains, resonances); a second run at another "
+            "the speed is too constant to separate order lines from time lines (mains, resonances); a second run at another "
             "speed settles it"
         )
-    if found.beside:
+    if joints := sorted({rival for line in found.lines for rival in line.rivals if rival != "time"}):
         remarks.append(
-            f"{found.beside} weaker lines stand beside stronger ones, within {BESIDE:g} times the resolution, and are not "
-            "listed: they say that these vary with speed or load"
+            f"{_joints(joints)} moved in proportion to this one, so lines may be of either; record this joint while others rest"
+        )
+    if joints := sorted({line.joint for line in found.lines if line.kind == "joint"}):
+        remarks.append(f"lines that repeat with the angle of {_joints(joints)} are not of this gear")
+    if found.merged:
+        remarks.append(
+            f"{found.merged} weaker lines lie within {MERGE_PERIODS:g} times the resolution of stronger ones and are not "
+            "listed: the stronger ones vary with speed or load"
         )
     if not record.timed:
-        remarks.append("without time no frequency is told, and samples are taken to be at equal distances in time")
+        remarks.append("without time no frequency is known, and samples are taken to be at equal distances in time")
+    beyond = [line for line in found.lines if line.kind == "time" and line.order > top]
+    if beyond and top < _sampled(shaft):
+        limit = min(1.1 * max(line.order for line in beyond), MAX_ORDER)
+        remarks.append(
+            f"{len(beyond)} time lines pass at orders {listed(f'{line.order:.0f}' for line in beyond)}, beyond the highest "
+            f"order looked for, {top:.4g}: they may be orders of the motor; --highest {limit:.0f} looks for these"
+        )
     if not found.lines:
         remarks.append("no line stands out of the noise; a longer record, slower motion or more load would lower the threshold")
-    if guessed and guessed[0].share < 0.95:
-        others = ", ".join(str(each.ratio) for each in guessed[1:4])
+    return remarks
+
+
+def _joints(names: Sequence[str]) -> str:
+    return f"joint {names[0]}" if len(names) == 1 else f"joints {listed(names)}"
+
+
+def _ratio_remarks(found: LineSearch, likely: Sequence[Candidate], revolutions: float, top: float, shaft: Moving) -> list[str]:
+    """Return what to know of the ratio: why none is concluded, or which one beside it is possible."""
+    remarks = []
+    slow = [line for line in found.lines if line.kind in ("order", "either") and line.order < MIN_LINE_ORDER]
+    if slow:
+        hint = "" if len(shaft.shafts) > 1 else "; name the angles of other joints that move, with --column other_angles=…"
         remarks.append(
-            f"the ratio is not settled: beside {guessed[0].ratio} there is {others}; give --ratio, or turn further: orders "
-            f"are told to {1.0 / revolutions:.2g} per revolution"
+            f"lines below order {MIN_LINE_ORDER:g} do not count for the ratio: in an arm they come from gravity, inertia and "
+            f"friction of all joints that move{hint}"
+        )
+    if top < 2.0 * MAX_RATIO:
+        remarks.append(
+            f"samples follow orders up to {top:.3g} per revolution at the usual speed: order 2 of a gear with a ratio above "
+            f"{0.5 * top:.0f} lies beyond; record faster, or turn slower"
+        )
+    concluded = conclusive(likely)
+    if len(concluded) == 2:
+        remarks.append(
+            f"ratio {concluded[0]} or {concluded[1]}: one gear with the circular spline or the flexspline fixed, whose lines "
+            "this record does not separate; --ratio gives the right one"
+        )
+    elif likely and not concluded:
+        each = listed(f"{each.ratio} ({100.0 * each.share:.2g} %)" for each in likely[:3])
+        remarks.append(
+            f"no ratio is concluded: the lines fit {each}; give --ratio, or turn further: orders are determined to "
+            f"{1.0 / revolutions:.2g} per revolution"
+        )
+    elif found.lines and not usable_lines(found.lines):
+        remarks.append(
+            "no ratio is concluded: no line is surely one of this joint; record this joint alone, at speeds that vary, and "
+            "over more of a revolution"
         )
     return remarks

@@ -20,16 +20,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.orders.floor import Floor
+from strainwave.orders.smooth_part import Shaft
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-BINS = 16  # of the angle in a period of the highest order: a line loses less than 1 % of its height
-FINER = 4  # lines of the spectrum for each that is independent
-SPEEDS = 128  # bins of the speed, for the information of an order
-AROUND = 100  # independent lines whose median is the floor of one
-EFFICIENCY = 2.08  # variance of a median of exponential numbers, over that of their mean: 1 / log(2)²
-MOST_LINES = 2**23  # of a spectrum
+BINS_PER_PERIOD = 16  # of the angle in a period of the highest order: a line loses less than 1 % of its height
+LINES_PER_RESOLUTION = 4  # lines of the spectrum for each that is independent
+SPEED_BINS = 128  # bins of the speed, for the information of an order
+FLOOR_LINES = 100  # independent lines whose median is the floor of one
+MEDIAN_VARIANCE = 2.08  # variance of a median of exponential numbers, over that of their mean: 1 / log(2)²
+MAX_SPECTRUM_LINES = 2**23  # of a spectrum
 
 
 @dataclass(frozen=True)
@@ -70,28 +71,24 @@ class Spectrum:
         return self.parts * float(f.isf(false_alarm / tested, 2 * self.parts, 2.0 * self.floors))
 
 
-def order_spectrum_of(
-    weighed: Array, weight: Array, floor: Floor, angle: Array, speed: Array, sense: Array, lowest: float, highest: float
-) -> Spectrum:
-    """The spectrum over an angle.
+def order_spectrum_of(weighed: Array, weight: Array, floor: Floor, shaft: Shaft, lowest: float, highest: float) -> Spectrum:
+    """Return the spectrum over the angle of a shaft.
 
     Args:
         weighed: series over its floor, shape (n,)
         weight: by which the series was multiplied before, shape (n,)
         floor: of the series
-        angle: of the shaft [rad], shape (n,)
-        speed: of it [rad per sample], shape (n,)
-        sense: 1 forward, -1 backward, shape (n,)
+        shaft: over whose angle
         lowest, highest: order
 
     Raises:
         ValueError: the spectrum has too many lines to hold
     """
-    span = float(np.ptp(angle))
-    width = tau / (BINS * highest)
+    angle, span = shaft.angle, float(np.ptp(shaft.angle))
+    width = tau / (BINS_PER_PERIOD * highest)
     bins = int(span / width) + 2
-    length = _good(max(FINER * bins, 64))
-    if length > MOST_LINES:
+    length = _good(max(LINES_PER_RESOLUTION * bins, 64))
+    if length > MAX_SPECTRUM_LINES:
         raise ValueError(
             f"a spectrum up to order {highest:g} over {span / tau:.6g} revolutions has {length} lines; take a shorter "
             "stretch, or look for lower orders"
@@ -99,14 +96,14 @@ def order_spectrum_of(
     order: Array = (np.arange(length // 2 + 1) * (tau / (length * width))).astype(np.float64)
     kept = (order >= lowest) & (order <= highest)
     order = order[kept]
-    senses = [each for each in (1.0, -1.0) if np.any(sense == each)]
+    senses = shaft.senses(weight)
     evidence, amplitude, noise = np.zeros(len(order)), np.zeros(len(order)), np.full(len(order), np.inf)
     cells = ((angle - angle.min()) / width).astype(int)
     for each in senses:
-        there = sense == each
+        there = shaft.sense == each
         binned = np.bincount(cells[there], (weighed * weight)[there], bins)
         filtered = np.fft.rfft(binned, length)[kept]
-        information = _information(order, np.abs(speed[there]), weight[there], floor)
+        information = _information(order, np.abs(shaft.speed[there]), weight[there], floor)
         found = np.abs(filtered)
         evidence += found**2 / information
         larger = 2.0 * found / information
@@ -117,7 +114,7 @@ def order_spectrum_of(
 
 def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float) -> Spectrum:
     """The spectrum over time, of the same kind, from the lowest frequency [cycles per sample] to half the sampling rate."""
-    length = _good(FINER * len(series))
+    length = _good(LINES_PER_RESOLUTION * len(series))
     place: Array = np.fft.rfftfreq(length).astype(np.float64)
     kept = (place >= lowest) & (place < 0.5)
     place = place[kept]
@@ -133,9 +130,9 @@ def _levelled(spectrum: Spectrum) -> Spectrum:
     from scipy.ndimage import median_filter
     from scipy.stats import chi2
 
-    independent = len(spectrum.evidence) / FINER
-    around = min(AROUND, max(1.0, independent))
-    width = max(3, int(around * FINER)) | 1
+    independent = len(spectrum.evidence) / LINES_PER_RESOLUTION
+    around = min(FLOOR_LINES, max(1.0, independent))
+    width = max(3, int(around * LINES_PER_RESOLUTION)) | 1
     thinned = max(1, width // 201)
     median = median_filter(spectrum.evidence[::thinned], (width // thinned) | 1, mode="reflect")
     level = np.repeat(median, thinned)[: len(spectrum.evidence)] / (0.5 * float(chi2.ppf(0.5, 2 * spectrum.parts)))
@@ -146,16 +143,16 @@ def _levelled(spectrum: Spectrum) -> Spectrum:
         spectrum.amplitude,
         spectrum.noise * np.sqrt(level),
         spectrum.parts,
-        max(2.0, around / EFFICIENCY * spectrum.parts),
+        max(2.0, around / MEDIAN_VARIANCE * spectrum.parts),
     )
 
 
 def _information(order: Array, speed: Array, weight: Array, floor: Floor) -> Array:
     """I(n), from a histogram of the speed."""
     fastest = float(speed.max()) or 1.0
-    cells = np.minimum((speed / fastest * SPEEDS).astype(int), SPEEDS - 1)
-    counts = np.bincount(cells, weight**2, SPEEDS)
-    middles = (np.arange(SPEEDS) + 0.5) * fastest / SPEEDS
+    cells = np.minimum((speed / fastest * SPEED_BINS).astype(int), SPEED_BINS - 1)
+    counts = np.bincount(cells, weight**2, SPEED_BINS)
+    middles = (np.arange(SPEED_BINS) + 0.5) * fastest / SPEED_BINS
     used = counts > 0.0
     information = np.zeros(len(order))
     for count, middle in zip(counts[used], middles[used], strict=True):

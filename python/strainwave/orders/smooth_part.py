@@ -1,7 +1,8 @@
-"""What of a torque or current is no ripple: friction over speed, inertia, gravity over the angle."""
+"""Smooth part of a torque or current, which is no ripple: friction over speed, inertia, gravity, and what other joints add."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import tau
 
@@ -13,55 +14,108 @@ from strainwave.orders.turning import direction, reach_of, smooth_speed
 
 Array = NDArray[np.float64]
 
-STEADY = 1e-3  # of the speed: what varies by less is constant
-KNOTS = 6  # of the friction over speed, in each direction
-TREND = 4  # periods of the angle, the longest somewhat longer than the span, in the slow trend over it
-GATE = 0.05  # of a fast speed: around it a sample counts half; friction turns over at rest, where ripple is not told
-LOST = 0.98  # of the residual, that a loss under load must leave at most to be taken for one
-OUTLIER = 8.0  # robust standard deviations of the residual, beyond which a sample counts as a mistake
+CONSTANT_SPEED_SPREAD = 1e-3  # relative spread of the speed [1], below which friction over speed is not determined
+FRICTION_KNOTS = 6  # of the friction over speed, in each direction
+TREND_PERIODS = 4  # of the angle in the slow trend over it, the longest 1.2 times the span
+REST_SHARE = 0.05  # of a fast speed [1]: around it a sample counts half, since friction turns over at rest
+MAX_RESIDUAL_SHARE = 0.98  # of the residual's square [1], that remains if a loss under load is taken for one
+OUTLIER_SIGMA = 8.0  # robust standard deviations of the residual, beyond which a sample counts as a mistake
+MIN_SENSE_SHARE = 0.02  # of the squared weight [1]: a direction with less has no amplitudes of its own
+MIN_GRAVITY_SPAN = 0.5  # rad: sine and cosine of a smaller motion are the trend
+BOTH_SENSES = (1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A shaft that turns, evenly in time.
+
+    Attributes:
+        name: empty for the shaft whose gear is examined, else of another joint
+        angle: of the shaft [rad], shape (n,)
+        speed: of it [rad per sample], shape (n,)
+        sense: 1 forward, -1 backward, shape (n,)
+    """
+
+    name: str
+    angle: Array
+    speed: Array
+    sense: Array
+
+    @classmethod
+    def of(cls, name: str, angle: Array) -> Shaft:
+        """Return the shaft with this angle [rad]."""
+        speed = smooth_speed(angle, reach_of(len(angle)))
+        return cls(name, angle, speed, direction(speed))
+
+    @property
+    def revolutions(self) -> float:
+        """From end to end."""
+        return float(np.ptp(self.angle)) / tau
+
+    @property
+    def acceleration(self) -> Array:
+        """Of the shaft [rad per sample squared], shape (n,)."""
+        return smooth_speed(self.speed, reach_of(len(self.speed)))
+
+    def reverses(self) -> bool:
+        """True if it turns both ways."""
+        return all(np.any(self.sense == sense) for sense in BOTH_SENSES)
+
+    def senses(self, weight: Array) -> list[float]:
+        """Return the directions with enough weight for amplitudes of their own, the forward one first."""
+        whole = float(weight @ weight)
+        return [s for s in BOTH_SENSES if float(np.sum(weight[self.sense == s] ** 2)) > MIN_SENSE_SHARE * whole]
 
 
 @dataclass(frozen=True)
 class Moving:
-    """A shaft and what drives it, evenly in time.
+    """A shaft, what drives it, and other joints that move, evenly in time.
 
     Attributes:
-        angle: of the shaft [rad], shape (n,)
-        speed: of it [rad per sample], shape (n,)
-        sense: 1 forward, -1 backward, shape (n,)
+        shafts: the shaft itself, then those of other joints that move
         series: torque or current less its smooth part, shape (n,)
         smooth: the smooth part, shape (n,)
         load: smooth part without what turns over with the direction, shape (n,)
         weight: 0 at rest and at the ends, up to 1 elsewhere, shape (n,)
-        outliers: samples that do not count
+        outliers: number of samples that do not count
     """
 
-    angle: Array
-    speed: Array
-    sense: Array
+    shafts: tuple[Shaft, ...]
     series: Array
     smooth: Array
     load: Array
     weight: Array
     outliers: int
 
+    @property
+    def own(self) -> Shaft:
+        """The shaft whose gear is examined."""
+        return self.shafts[0]
 
-def moving(angle: Array, torque: Array) -> Moving:
-    """Takes the smooth part out of a torque, by least squares over speed, direction, acceleration and angle."""
-    reach = reach_of(len(angle))
-    speed = smooth_speed(angle, reach)
-    sense = direction(speed)
-    acceleration = smooth_speed(speed, reach)
-    fast = float(np.quantile(np.abs(speed), 0.95)) or 1.0
-    friction = _friction(speed / fast, sense)
-    rest = np.concatenate([_trend(angle), acceleration[:, None]], axis=1)
-    gate = speed**2 / (speed**2 + (GATE * fast) ** 2)
+
+def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = None) -> Moving:
+    """Return the shaft with the torque less its smooth part.
+
+    The smooth part is fitted by least squares over speed, direction, acceleration and angle. Of other joints it contains
+    gravity over their angles and over the sums with this one, and their inertia.
+
+    Args:
+        angle: of the shaft [rad], shape (n,)
+        torque: or current, shape (n,)
+        others: angles of other joints that move [rad], by name
+    """
+    own = Shaft.of("", angle)
+    shafts = (own, *(Shaft.of(name, values) for name, values in (others or {}).items()))
+    fast = float(np.quantile(np.abs(own.speed), 0.95)) or 1.0
+    friction = _friction(own.speed / fast, own)
+    rest = np.concatenate([_trend(angle), own.acceleration[:, None], *(_coupling(own, each) for each in shafts[1:])], axis=1)
+    gate = own.speed**2 / (own.speed**2 + (REST_SHARE * fast) ** 2)
     weight = gate * taper(len(angle))
     smooth, turning = _fitted(torque, friction, rest, weight)
-    if np.any(sense > 0.0) and np.any(sense < 0.0):  # a share of the load is lost, one way and the other
-        lossy = np.concatenate([friction, (sense * np.abs(smooth - turning))[:, None]], axis=1)
+    if own.reverses():  # a share of the load is lost, one way and the other
+        lossy = np.concatenate([friction, (own.sense * np.abs(smooth - turning))[:, None]], axis=1)
         other, otherwise = _fitted(torque, lossy, rest, weight)
-        if np.sum((weight * (torque - other)) ** 2) < LOST * np.sum((weight * (torque - smooth)) ** 2):
+        if np.sum((weight * (torque - other)) ** 2) < MAX_RESIDUAL_SHARE * np.sum((weight * (torque - smooth)) ** 2):
             friction, smooth, turning = lossy, other, otherwise
     left = torque - smooth
     wrong = _outliers(left, weight)
@@ -69,11 +123,11 @@ def moving(angle: Array, torque: Array) -> Moving:
         weight = np.where(wrong, 0.0, weight)
         smooth, turning = _fitted(torque, friction, rest, weight)
         left = torque - smooth
-    return Moving(angle, speed, sense, left, smooth, smooth - turning, weight, int(wrong.sum()))
+    return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()))
 
 
 def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple[Array, Array]:
-    """The smooth part, and the friction in it."""
+    """Return the smooth part, and the friction in it."""
     columns = np.concatenate([friction, rest], axis=1)
     size = np.linalg.norm(columns, axis=0)
     size[size == 0.0] = 1.0
@@ -82,35 +136,44 @@ def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple
     return columns @ found, friction @ found[:count]
 
 
-def _friction(speed: Array, sense: Array) -> Array:
-    """Piecewise linear over speed and odd in it, and a share of it that is even; a constant is left to the load."""
-    columns = [sense] if np.any(sense > 0.0) and np.any(sense < 0.0) else []
+def _friction(speed: Array, shaft: Shaft) -> Array:
+    """Return columns piecewise linear over speed, odd in it and even; a constant is left to the load."""
+    columns = [shaft.sense] if shaft.reverses() else []
     swift = np.abs(speed)
-    knots = np.unique(np.quantile(swift, np.linspace(0.0, 0.9, KNOTS)))
-    if float(np.ptp(swift)) > STEADY * float(swift.max()):
+    knots = np.unique(np.quantile(swift, np.linspace(0.0, 0.9, FRICTION_KNOTS)))
+    if float(np.ptp(swift)) > CONSTANT_SPEED_SPREAD * float(swift.max()):
         for knot in knots:
             above = np.maximum(swift - knot, 0.0)
-            columns += [sense * above, above] if columns and columns[0] is sense else [above]
+            columns += [shaft.sense * above, above] if shaft.reverses() else [above]
     return np.stack(columns, axis=1) if columns else np.zeros((len(speed), 0))
 
 
 def _trend(angle: Array) -> Array:
-    """Constant, gravity over a revolution, and what else varies slowly with the angle."""
+    """Return columns for a constant, gravity over a revolution, and what else varies slowly with the angle."""
     span = max(float(np.ptp(angle)), 1e-12)
     columns = [np.ones_like(angle)]
-    for period in (1.2 * span / np.arange(1, TREND + 1)).tolist():
+    for period in (1.2 * span / np.arange(1, TREND_PERIODS + 1)).tolist():
         columns += [np.sin(tau * (angle - angle[0]) / period), np.cos(tau * (angle - angle[0]) / period)]
-    if span > 0.5:
+    if span > MIN_GRAVITY_SPAN:
         columns += [np.sin(angle), np.cos(angle)]
     return np.stack(columns, axis=1)
 
 
+def _coupling(own: Shaft, other: Shaft) -> Array:
+    """Return columns for gravity over the angle of another joint and its sums with this one, and for its inertia."""
+    angles = (other.angle, own.angle + other.angle, own.angle - other.angle)
+    columns = [wave for angle in angles for wave in (np.sin(angle), np.cos(angle))]
+    acceleration = other.acceleration
+    inertia = [acceleration * factor for factor in (1.0, np.cos(other.angle), np.sin(other.angle))]
+    return np.stack([*columns, *inertia, other.speed**2, own.speed * other.speed], axis=1)
+
+
 def _outliers(left: Array, weight: Array) -> NDArray[np.bool_]:
-    """Samples far out of the bulk around them, compared with the median of five, so that a fast change is none."""
+    """Return samples far out of the bulk around them, compared with the median of five, so that a fast change is none."""
     from scipy.ndimage import median_filter
 
     off = left - median_filter(left, 5, mode="nearest")
     swift = weight > 0.5  # elsewhere friction turns over
     bulk = 1.4826 * float(np.median(np.abs(off[swift]))) if swift.any() else 0.0
-    found: NDArray[np.bool_] = swift & (np.abs(off) > OUTLIER * bulk) if bulk > 0.0 else np.zeros(len(left), dtype=bool)
+    found: NDArray[np.bool_] = swift & (np.abs(off) > OUTLIER_SIGMA * bulk) if bulk > 0.0 else np.zeros(len(left), dtype=bool)
     return found

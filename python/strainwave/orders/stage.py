@@ -12,8 +12,8 @@ so that the transmission error, which two encoders measure, is
 
 with omega_0 the natural frequency of the output with the input held. Slow against it, F = H = 1. An order that passes it is
 amplified, and above it the output stands still and the transmission error shows no kinematic error at all. Everything but
-omega_0 and zeta is linear, so that only these two are sought (GolubPereyra1973). Both sides are compared in the frequency
-domain, each line weighed by the noise around it, which is told from what is left; what the ends of the record add is a
+omega_0 and zeta is linear, so that only these two are searched (GolubPereyra1973). Both sides are compared in the frequency
+domain, each line weighed by the noise around it, estimated from the residual; the ends of the record add a
 transient of the stage (PintelonSchoukens2012).
 """
 
@@ -30,15 +30,15 @@ from strainwave.orders.floor import floor_of
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-HIGHEST = 0.4  # of the sampling rate, up to which lines are compared
-ROUNDS = 4  # of weights and fit
-BLOCKS = 200  # of the record, over which scores are summed for the covariance
-TRANSIENT = 4  # terms of the ends of the record
-LEAST_GAIN = 30.0  # of the logarithm of the likelihood, that makes the output stage worth its two parameters
+MAX_FREQUENCY = 0.4  # cycles per sample, up to which lines are compared
+FIT_ROUNDS = 4  # of weights and fit
+SCORE_BLOCKS = 200  # of the record, over which scores are summed for the covariance
+TRANSIENT_TERMS = 4  # of the ends of the record
+MIN_STAGE_GAIN = 30.0  # of the logarithm of the likelihood, from which the output stage is worth its two parameters
 STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
 DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
-TRIED = 2.0 * pi * HIGHEST * np.geomspace(0.004, 1.0, 12)  # natural frequencies from which it is sought [rad per sample]
-TRIED_DAMPING = 0.1
+START_FREQUENCIES = 2.0 * pi * MAX_FREQUENCY * np.geomspace(0.004, 1.0, 12)  # initial natural frequencies [rad per sample]
+START_DAMPING = 0.1  # initial damping ratio [1]
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Stage:
     damping: float
 
     def gains(self, s: Complex) -> tuple[Complex, Complex]:
-        """F and H at s = j omega [rad per sample]."""
+        """Return F and H at s = j omega [rad per sample]."""
         x = s / self.frequency
         below = 1.0 + 2.0 * self.damping * x + x**2
         return (1.0 + 2.0 * self.damping * x) / below, 1.0 / below
@@ -57,15 +57,15 @@ class Stage:
 
 @dataclass(frozen=True)
 class Regressed:
-    """What a regression found.
+    """Result of a regression.
 
     Attributes:
         values: coefficients, first of the orders, then of the loads, shape (n,)
         covariance: of them, shape (n, n)
         freedom: degrees of freedom that the covariance rests on
-        stage: the output stage, None where it was not seen
+        stage: the output stage, None if the record does not show it
         spread: standard deviations of the logarithms of its frequency and damping
-        residual: what is left below the highest line that is compared, shape (samples,)
+        residual: below the highest line that is compared, shape (samples,)
     """
 
     values: Array
@@ -93,13 +93,13 @@ class Problem:
     loads: Array
 
     def regress(self, *, dynamic: bool) -> Regressed:
-        """Fits the coefficients, and where it is seen the output stage."""
+        """Fit the coefficients, and the output stage if the record shows it."""
         lines = _Lines.of(self)
         still = lines.fitted(None)
         if not dynamic:
             return lines.result(still)
         moved = lines.fitted(lines.nearest(still.floor), still.floor)
-        return lines.result(moved if still.misfit - moved.misfit > LEAST_GAIN else still)
+        return lines.result(moved if still.misfit - moved.misfit > MIN_STAGE_GAIN else still)
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class _Lines:
     def of(cls, problem: Problem) -> _Lines:
         count = len(problem.error)
         frequency = np.fft.rfftfreq(count)
-        kept = (frequency > 0.0) & (frequency < HIGHEST)
+        kept = (frequency > 0.0) & (frequency < MAX_FREQUENCY)
 
         def lines(series: Array) -> Complex:
             found: Complex = np.fft.rfft(series, axis=0)[kept] / np.sqrt(count)
@@ -137,17 +137,17 @@ class _Lines:
         return cls(count, s, lines(problem.angle - straight), lines(error), lines(problem.orders), lines(problem.loads))
 
     def nearest(self, floor: Array) -> Stage:
-        """The best of the stages from which the search may begin."""
-        tried = [Stage(float(frequency), TRIED_DAMPING) for frequency in TRIED]
+        """Return the best initial stage."""
+        tried = [Stage(float(frequency), START_DAMPING) for frequency in START_FREQUENCIES]
         return min(tried, key=lambda each: float(np.sum(self.misses(each, floor)[1] ** 2)))
 
     def fitted(self, stage: Stage | None, floor: Array | None = None) -> _Fitted:
-        """The fit in turns with the weights, which the residual tells."""
+        """Fit in turns with the weights, which follow from the residual."""
         from scipy.optimize import least_squares
 
         floor = np.ones(len(self.s)) if floor is None else floor
         values = np.zeros(0)
-        for _ in range(ROUNDS):
+        for _ in range(FIT_ROUNDS):
             if stage is not None:
                 start = np.log([stage.frequency, stage.damping])
                 bounds = ([np.log(4.0 * pi / self.count), np.log(1e-3)], [np.log(2.0 * pi), np.log(3.0)])
@@ -163,12 +163,14 @@ class _Lines:
         return _Fitted(stage, values, floor, misfit)
 
     def design(self, stage: Stage | None) -> tuple[Complex, Complex]:
-        """The series that the error is made of, shape (lines, n), and what is compared with them, shape (lines,)."""
+        """Return the series of the error, shape (lines, n), and the error compared with them, shape (lines,)."""
         if stage is None:
             return np.concatenate([self.orders, self.loads], axis=1), self.error
         f, h = stage.gains(self.s)
         x = self.s / stage.frequency
-        ends = np.stack([h, h * x, np.ones_like(x), self.s / np.abs(self.s[-1])], axis=1)[:, :TRANSIENT] / np.sqrt(self.count)
+        ends = np.stack([h, h * x, np.ones_like(x), self.s / np.abs(self.s[-1])], axis=1)[:, :TRANSIENT_TERMS] / np.sqrt(
+            self.count
+        )
         return np.concatenate(
             [self.orders * f[:, None], self.loads * h[:, None], ends], axis=1
         ), self.error - h * x**2 * self.angle
@@ -177,7 +179,7 @@ class _Lines:
         return self.misses(_stage(logarithms), floor)[1]
 
     def misses(self, stage: Stage | None, floor: Array) -> tuple[Array, Array]:
-        """The best coefficients, and what is left, real parts over imaginary ones, each of variance 1 where it is noise."""
+        """Return the best coefficients and the residual, real over imaginary parts, each of variance 1 if it is noise."""
         from scipy.linalg import lstsq
 
         series, compared = self.design(stage)
@@ -217,7 +219,7 @@ class _Lines:
         return Regressed(found.values[:kept], covariance[:kept, :kept], freedom, found.stage, spread, residual)
 
     def _slope(self, found: _Fitted, which: int, weight: Array) -> Array:
-        """How the model changes with the logarithm of the stage's frequency or damping."""
+        """Return the slope of the model over the logarithm of the stage's frequency or damping."""
         assert found.stage is not None
         at = np.log([found.stage.frequency, found.stage.damping])
         step = np.eye(2)[which] * 1e-4
@@ -225,7 +227,7 @@ class _Lines:
         return _stacked((below - above) / 2e-4 * weight)
 
     def _considered(self, linear: Array, slopes: Array, size: Array) -> Array:
-        """What it adds that a gear is no linear spring: ripple meets another stiffness and damping than the whole motion.
+        """Return the covariance added by a gear that is no linear spring: stiffness and damping differ for ripple and motion.
 
         They are not estimated but considered, each with its spread (Schmidt's consider covariance: Jazwinski1970).
         """
@@ -234,8 +236,8 @@ class _Lines:
         return added
 
     def _scores(self, jacobian: Array, left: Array) -> Array:
-        """Sums of series times residual over blocks of time, shape (blocks, n), so that noise may come and go."""
-        edges = np.linspace(0, self.count, min(BLOCKS, self.count // 25) + 1).astype(int)[:-1]
+        """Return sums of series times residual over blocks of time, shape (blocks, n), so that noise may vary in time."""
+        edges = np.linspace(0, self.count, min(SCORE_BLOCKS, self.count // 25) + 1).astype(int)[:-1]
         rest = self._over_time(left)
         products = [np.add.reduceat(self._over_time(column) * rest, edges) for column in jacobian.T]
         return 0.5 * np.stack(products, axis=1)

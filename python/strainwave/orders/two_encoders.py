@@ -22,7 +22,7 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_remarks
-from strainwave.orders.stage import HIGHEST, Problem, Regressed
+from strainwave.orders.stage import MAX_FREQUENCY, Problem, Regressed
 from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
 
 Array = NDArray[np.float64]
@@ -31,13 +31,15 @@ Shaft = Literal["input", "mesh", "output"]
 ORDERS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the input, looked for in every record
 MESH_ORDERS = (1.0, 2.0, 4.0)  # of the wave generator seen from the spline that turns: 2 z_c / z_f and its like
 OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gravity
-LONGEST = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
-MOST_HARMONICS = 16  # of `kinematic_error.Fourier`
+MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow one or two periods of any wave
+MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
+MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
+MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A number with its standard deviation, in a unit."""
+    """Value with its standard deviation, in a unit."""
 
     value: float
     sigma: float
@@ -46,16 +48,16 @@ class Measured:
 
 @dataclass(frozen=True)
 class ErrorOrder:
-    """One order in the transmission error.
+    """Order of the transmission error.
 
     Attributes:
         order: periods per revolution of the input [1]
-        shaft: whose angle it follows: the input; the input as the spline that turns sees it (`mesh`); or the output
-        amplitude: at the output, free of what output stage and load make of it [rad]
-        phase: where the recorded input angle is 0 [rad], as of a sine
+        shaft: that it repeats with: the input; the input as the spline that turns sees it (`mesh`); or the output
+        amplitude: at the output, corrected for output stage and load [rad]
+        phase: at the recorded input angle 0 [rad], as of a sine
         amplitude_sigma, phase_sigma: standard deviations
         false_alarm: probability that noise alone gives as much anywhere among the orders looked for
-        significant: whether that is less than was allowed
+        significant: True if that is less than allowed
     """
 
     order: float
@@ -70,17 +72,17 @@ class ErrorOrder:
 
 @dataclass(frozen=True, eq=False)
 class TransmissionError(ComparedByFields):
-    """What two encoders tell of a gear.
+    """Ratio, kinematic error and lost motion of a gear from two encoders.
 
     Attributes:
         ratio: of the angles
-        orders: all that were looked for, by shaft and order
+        orders: all that the record determines, by shaft and order
         lost_motion: of the output, between forward and backward at one place: play, hysteresis, and the wind-up by friction of
-            the output; None where the shaft never turns back
-        windup: twist per torque or current, where the recording has one
-        natural_frequency: of the output with the input held [Hz]; None where the record does not show it, or has no time
+            the output; None if the shaft never turns back
+        windup: twist per torque or current, if the recording has one
+        natural_frequency: of the output with the input held [Hz]; None if the record does not show it, or has no time
         damping_ratio: of that vibration [1]; None likewise
-        noise: root mean square of what is neither order nor explained by load and direction [rad]
+        noise: root mean square of the residual of orders, load and direction [rad]
         revolutions: of the input, end to end
         curves: time, input_angle, transmission_error, kinematic_error as found, residual, as compared
         remarks: what to know of these numbers, in words
@@ -101,7 +103,7 @@ class TransmissionError(ComparedByFields):
     def law(self) -> kinematic_error.Fourier:
         """The significant orders of the input and of the mesh as a law, for the input angle as it was recorded."""
         found = [each for each in self.orders if each.significant and each.shaft != "output"]
-        found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MOST_HARMONICS], key=lambda each: each.order)
+        found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MAX_HARMONICS], key=lambda each: each.order)
         return kinematic_error.Fourier(
             order=[each.order for each in found],
             amplitude=[each.amplitude for each in found],
@@ -116,27 +118,30 @@ def transmission_error(
     orders: ArrayLike = ORDERS,
     rate: float | None = None,
     false_alarm: float = 0.01,
+    ratio_option: str = "ratio=…",
 ) -> TransmissionError:
-    """Ratio, kinematic error and lost motion of a gear from the angles of both shafts.
+    """Return ratio, kinematic error and lost motion of a gear from the angles of both shafts.
 
     Args:
         recording: with `input_angle` and `output_angle`, of any zero and sense, that may wrap at each revolution; with `time`,
-            if the motion is not slow; and with `torque` or `current`, if the wind-up is to be told
-        ratio: signed, input over output, if it is known; its sign is that of the recorded angles, or one of them is counted the
-            other way round, which is said
+            if the motion is not slow; and with `torque` or `current` for the wind-up
+        ratio: input over output, if it is known; used with all its digits. Its sign is that of the recorded angles, and a
+            remark follows if that differs. If both angles are counted in joint units, the input angle is multiplied by it
         orders: of the input to look for [1], shape (n,)
         rate: samples per second of a recording without time [Hz]
         false_alarm: largest probability that noise makes any order significant
+        ratio_option: with which a user gives the ratio, for remarks
 
     Returns:
-        The orders with standard deviations that allow for coloured noise, and for a gear that is no linear spring.
+        The orders with standard deviations that allow for coloured noise, and for a gear that is no linear spring. An order
+        needs three periods in the record, and a whole turn of the input.
 
     Raises:
         TypeError: an argument is not of its kind
         ValueError: an angle is missing or does not turn, the two do not belong together, or the ratio given is not theirs
 
     Valid where the twist is small and the output stage close to linear: each order is corrected for the vibration of the output
-    with 10 % of its stiffness and 30 % of its damping uncertain. `strainwave.twin` fits the same with the whole model.
+    with 10 % of its stiffness and 30 % of its damping uncertain.
 
     >>> import strainwave as sw
     >>> time = np.arange(0.0, 20.0, 0.002)
@@ -155,18 +160,19 @@ def transmission_error(
     false_alarm = arguments.probability("false_alarm", false_alarm)
     load = next((name for name in ("torque", "current") if name in recording), None)
     pair = _pair(recording, load, rate)
-    told = ratio_of(pair, ratio)
-    chosen, left_out = _chosen(pair, wanted, told.used)
+    pair, measured = ratio_of(pair, ratio)
+    size = measured.used
+    chosen, left_out = _chosen(pair, wanted, measured, ratio)
     shapes = [wave for order, _ in chosen for wave in _shape(pair, order)]
-    found, every = _regressed(pair, told.used, shapes, loads_of(pair, told.used), dynamic=pair.record.timed)
-    error = np.stack(shapes, axis=1) @ found.values[: len(shapes)]
-    whole = pair.input / told.used - pair.output
+    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
+    error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
+    whole = pair.input / size - pair.output
     frequency, damping = _stage_numbers(found, pair.record, every)
-    remarks = [*ratio_remarks(told, pair, ratio), *left_out, *_stage_remarks(found, pair, every, chosen)]
+    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen)]
     if not pair.reverses:
-        remarks.append("the shafts turn one way only: lost motion is not told")
+        remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
-        ratio=told,
+        ratio=measured,
         orders=tuple(_orders(chosen, found, false_alarm)),
         lost_motion=_lost_motion(found, len(shapes)) if pair.reverses else None,
         windup=_windup(pair, whole - error, load, recording),
@@ -180,81 +186,87 @@ def transmission_error(
 
 
 def _pair(recording: Recording, load: str | None, rate: float | None) -> Pair:
-    """Both shafts evenly in time, of a long record the beginning."""
+    """Return both shafts evenly in time, of a long record the beginning."""
     record = evenly(recording, ["input_angle", "output_angle", *([load] if load else [])], rate)
-    record = beginning(record, LONGEST * _averaged(record, recording))
+    record = beginning(record, MAX_COMPARED * _averaged(record, recording))
     angles = (
         unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in ("input_angle", "output_angle")
     )
     return Pair(record, *angles)
 
 
-def _chosen(pair: Pair, wanted: Array, ratio: float) -> tuple[list[tuple[float, Shaft]], list[str]]:
-    """The orders that the record can tell, and what is said of those that it cannot."""
+def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tuple[list[tuple[float, Shaft]], list[str]]:
+    """Return the orders that the record determines, and remarks on those that it does not."""
+    if ratio.in_joint_units and given is None:
+        return [], ["orders of the input are not looked for: its angle is not known without the ratio"]
     turns_in, turns_out = float(np.ptp(pair.input)) / tau, float(np.ptp(pair.output)) / tau
-    highest = HIGHEST * tau / pair.fastest if pair.fastest > 0.0 else inf
-    found: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if 1.0 / turns_in <= order < highest]
+    highest = MAX_FREQUENCY * tau / pair.fastest if pair.fastest > 0.0 else inf
+    lowest = MIN_ORDER_PERIODS / turns_in if turns_in >= MIN_INPUT_TURNS else inf
+    found: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
     remarks = []
     if missed := [f"{order:g}" for order in wanted if order >= highest]:
         remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
-    if missed := [f"{order:g}" for order in wanted if order < 1.0 / turns_in]:
-        remarks.append(f"orders {listed(missed)} need a whole period; the input turns {turns_in:.2g} revolutions")
-    if not found:
-        raise ValueError("none of the orders can be told: " + "; ".join(remarks))
-    slip = 1.0 / abs(ratio)
+    if missed := [f"{order:g}" for order in wanted if order < min(lowest, highest)]:
+        remarks.append(
+            f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
+            f"turn, and it turns {turns_in:.2g} revolutions"
+        )
+    slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS:
-            mesh = order * (1.0 - 1.0 / ratio)
-            if mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
+            mesh = order * (1.0 - 1.0 / ratio.used)
+            if lowest <= mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
                 found.append((mesh, "mesh"))
-        found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= 1.0]
-    else:
-        near = 2.0 * (1.0 - 1.0 / ratio)
+        found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= MIN_ORDER_PERIODS * (1.0 - 1e-3)]
+    elif found:
+        near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
             f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
-            "spline, are told from each other after a whole one"
+            "spline, are separated after a whole one"
         )
     return found, remarks
 
 
 def _shape(pair: Pair, order: float) -> tuple[Array, Array]:
-    """Sine and cosine of an order, over the input angle as recorded; one of the output is told over the input, too."""
+    """Return sine and cosine of an order over the input angle, of which that of the output is a fraction."""
     return np.sin(order * pair.input), np.cos(order * pair.input)
 
 
 def _regressed(
     pair: Pair, ratio: float, shapes: Sequence[Array], loads: Sequence[Array], *, dynamic: bool
 ) -> tuple[Regressed, int]:
-    """The regression, and how many samples each that is compared is the mean of."""
-    every = min(-(-len(pair.input) // LONGEST), _mean_of(pair.fastest))
+    """Return the regression, and the number of neighbours averaged in each sample that is compared."""
+    every = min(-(-len(pair.input) // MAX_COMPARED), _mean_of(pair.fastest))
     problem = Problem(
         angle=_means(pair.input / ratio, every),
         error=_means(pair.input / ratio - pair.output, every),
-        orders=np.stack([_means(each, every) for each in shapes], axis=1),
+        orders=np.stack([_means(each, every) for each in shapes], axis=1)
+        if shapes
+        else np.zeros((len(pair.input) // every, 0)),
         loads=np.stack([_means(each, every) for each in loads], axis=1),
     )
     return problem.regress(dynamic=dynamic), every
 
 
 def _means(series: Array, every: int) -> Array:
-    """Of so many neighbours each; those at the end that are fewer are left out."""
+    """Return means of so many neighbours each; the rest at the end is left out."""
     means: Array = series[: len(series) // every * every].reshape(-1, every).mean(axis=1)
     return means
 
 
 def _mean_of(fastest: float) -> int:
-    """How many neighbours may be averaged, that the highest order still is seen at the fastest speed [rad per sample]."""
-    return int(min(max(1.0, 2.0 * HIGHEST * pi / (max(ORDERS) * fastest)), 1e9)) if fastest > 0.0 else 10**9
+    """Return the number of neighbours to average that keeps the highest order at the fastest speed [rad per sample]."""
+    return int(min(max(1.0, 2.0 * MAX_FREQUENCY * pi / (max(ORDERS) * fastest)), 1e9)) if fastest > 0.0 else 10**9
 
 
 def _averaged(record: Evenly, recording: Recording) -> int:
-    """The same, of a record whose angle may still wrap."""
+    """Return the same of a record whose angle may still wrap."""
     steps = np.abs(np.diff(convert(record.columns["input_angle"], recording.unit("input_angle"), "rad")))
     return _mean_of(float(np.quantile(np.minimum(steps, np.abs(tau - steps)), 0.99)))
 
 
 def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: float) -> Iterator[ErrorOrder]:
-    """Each order with its standard deviations, and whether noise makes as much with less than the allowed probability."""
+    """Return each order with its standard deviations and its significance."""
     for place, (order, shaft) in enumerate(chosen):
         own = slice(2 * place, 2 * place + 2)
         pair, covariance = found.values[own], found.covariance[own, own]
@@ -271,12 +283,12 @@ def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: fl
 
 
 def _lost_motion(found: Regressed, place: int) -> Measured:
-    """Twice what the direction makes of the error, whose coefficient stands at this place."""
+    """Return twice the coefficient of the direction, which is at this place."""
     return Measured(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
 
 
 def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) -> Measured | None:
-    """Twist per torque or current, beside direction, speed and acceleration of the input."""
+    """Return the twist per torque or current, fitted with direction, speed and acceleration of the input."""
     if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
         return None
     reach = reach_of(len(twist))
@@ -303,7 +315,7 @@ def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[Measur
 
 def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]]) -> list[str]:
     if found.stage is not None:
-        fastest = max(order for order, _ in chosen) * pair.fastest * every
+        fastest = max((order for order, _ in chosen), default=0.0) * pair.fastest * every
         if fastest < 0.3 * found.stage.frequency:
             return []
         return [

@@ -1,4 +1,4 @@
-"""The page of the orders that recordings tell of a gear, the same in lines for a terminal, and the numbers as files."""
+"""Report of the orders in recordings: a page, lines for a terminal, and the numbers as files."""
 
 from __future__ import annotations
 
@@ -24,19 +24,18 @@ from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
 from strainwave.report.typeset import number, quantity, uncertain, uncertain_quantity
 
-LINE = 110  # letters of a line on a terminal
-STRIP = 72  # letters of a spectrum on a terminal
-BLOCKS = " ▁▂▃▄▅▆▇█"
-MICRO = 1e-6
-KINDS = {"order": "order line", "time": "time line", "either": "order or time line"}
+MAX_LINE_LETTERS = 110  # on a terminal
+STRIP_LETTERS = 72  # of a spectrum on a terminal
+STRIP_HEIGHTS = " ▁▂▃▄▅▆▇█"
+MICRORADIAN = 1e-6  # rad
 
 
 def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = None) -> str:
-    """The page, as one HTML file that needs nothing else.
+    """Return the page, as one HTML file that needs nothing else.
 
     Args:
         found: of each recording
-        provenance: how the page came to be, if that is to be shown
+        provenance: command, date and files of the page, if they are to be shown
 
     Returns:
         HTML; the same for the same arguments
@@ -67,6 +66,7 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "facts": _facts(ripple),
             "lines": [_line(each, ripple) for each in ripple.lines],
             "scaled": ripple.side == "output" and any(each.per_input is not None for each in ripple.lines),
+            "concluded": _concluded(ripple),
             "candidates": [_candidate(each.ratio, each.share, each.matched) for each in ripple.candidates],
             "spectrum": Markup(plots.spectrum_figure(ripple, f"spectrum-{place}")),
             "map": Markup(drawn) if (drawn := plots.map_figure(ripple, f"map-{place}")) else "",
@@ -91,10 +91,10 @@ def _error(error: TransmissionError, name: str) -> dict[str, Any]:
             {
                 "order": number(each.order),
                 "shaft": each.shaft,
-                "amplitude": uncertain(each.amplitude / MICRO, each.amplitude_sigma / MICRO),
+                "amplitude": uncertain(each.amplitude / MICRORADIAN, each.amplitude_sigma / MICRORADIAN),
                 "phase": uncertain(each.phase, each.phase_sigma),
                 "alarm": _chance(each.false_alarm),
-                "state": "significant" if each.significant else "not told from noise",
+                "state": "significant" if each.significant else "within noise",
             }
             for each in error.orders
         ],
@@ -123,9 +123,9 @@ def _facts(ripple: Ripple) -> dict[str, str]:
 
 
 def _line(line: RippleLine, ripple: Ripple) -> dict[str, str]:
-    order = uncertain(line.order, line.order_sigma) if line.kind != "time" else ""
+    order = uncertain(line.order, line.order_sigma) if line.kind in ("order", "either") else ""
     return {
-        "kind": KINDS[line.kind],
+        "kind": _kind(line),
         "order": order,
         "per_input": number(line.per_input, 5) if line.per_input is not None and ripple.side == "output" and order else "",
         "frequency": "" if line.frequency is None else f"{number(line.frequency, 4)} Hz",
@@ -137,8 +137,16 @@ def _line(line: RippleLine, ripple: Ripple) -> dict[str, str]:
     }
 
 
+def _kind(line: RippleLine) -> str:
+    """Return what a line repeats with, in words."""
+    others = ["time" if name == "time" else f"joint {name}" for name in line.rivals]
+    if line.kind == "joint":
+        return f"order {number(line.order, 5)} of joint {line.joint}"
+    return f"{' or '.join(['order', *others] if line.kind == 'either' else [line.kind])} line"
+
+
 def _parts(line: RippleLine, of: str) -> Iterator[str]:
-    """The parts of a line, by what they change with, the largest first; what noise explains is left out."""
+    """Return the parts of a line, the largest first; parts that noise explains are left out."""
     words = {"constant": "constant", "direction": "with the direction", "load": "with the load"}
     for part in sorted(line.parts, key=lambda each: -each.amplitude):
         if part.false_alarm < 0.01:
@@ -161,14 +169,16 @@ def _remarks(found: OrdersFound) -> list[str]:
 
 
 def orders_summary(found: Sequence[OrdersFound]) -> str:
-    """What was found, as lines of text."""
+    """Return the results as lines of text."""
     lines: list[str] = []
     for each in found:
         lines += ["", each.name] if lines else [each.name]
         lines += [] if each.transmission is None else _error_lines(each.transmission)
         lines += [] if each.ripple is None else _ripple_lines(each.ripple)
         lines += [
-            line for remark in _remarks(each) for line in textwrap.wrap(f"  note: {remark}", LINE, subsequent_indent="    ")
+            line
+            for remark in _remarks(each)
+            for line in textwrap.wrap(f"  note: {remark}", MAX_LINE_LETTERS, subsequent_indent="    ")
         ]
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
 
@@ -178,10 +188,10 @@ def _error_lines(error: TransmissionError) -> Iterator[str]:
     yield f"  kinematic error, over {number(error.revolutions, 4)} revolutions of the input:"
     for each in error.orders:
         if each.significant:
-            amplitude = uncertain(each.amplitude / MICRO, each.amplitude_sigma / MICRO)
+            amplitude = uncertain(each.amplitude / MICRORADIAN, each.amplitude_sigma / MICRORADIAN)
             yield f"    {_order_words(each)}: {amplitude} µrad, phase {uncertain(each.phase, each.phase_sigma)} rad"
     if missing := [number(each.order, 5) for each in error.orders if not each.significant]:
-        yield f"    not told from noise: orders {', '.join(missing)}"
+        yield f"    within noise: orders {', '.join(missing)}"
     if error.lost_motion is not None:
         yield f"  lost motion, backward against forward: {_quantity(error.lost_motion)}"
     if error.windup is not None:
@@ -198,44 +208,54 @@ def _ripple_lines(ripple: Ripple) -> Iterator[str]:
     per = "revolution" + (" of the input" if ripple.side == "input" else " of the output")
     yield f"  ripple in {ripple.column.replace('_', ' ')}, orders per {per}:"
     yield f"    {_strip(ripple)}"
-    yield f"    {number(ripple.lowest, 3):<{STRIP // 2}}{number(ripple.highest, 4):>{STRIP - STRIP // 2}}"
+    low, high = number(ripple.lowest, 3), number(ripple.highest, 4)
+    yield f"    {low}{high:>{STRIP_LETTERS - len(low)}}"
     for line in ripple.lines:
         place = _place(line)
-        text = f"    {KINDS[line.kind]} {place}: {uncertain_quantity(line.amplitude, line.sigma, ripple.unit)}"
+        text = f"    {_kind(line)}{place}: {uncertain_quantity(line.amplitude, line.sigma, ripple.unit)}"
         if line.forward is not None and line.backward is not None and line.kind != "time":
             text += f"; forward {quantity(line.forward, ripple.unit)}, backward {quantity(line.backward, ripple.unit)}"
         if parts := list(_parts(line, ripple.unit)):
             text += f"; parts: {', '.join(parts)}"
-        yield from textwrap.wrap(text, LINE, subsequent_indent="      ")
+        yield from textwrap.wrap(text, MAX_LINE_LETTERS, subsequent_indent="      ")
     if not ripple.lines:
         yield "    no line stands out of the noise"
-    if ripple.candidates:
-        words = ", ".join(f"{each.ratio} ({number(100.0 * each.share, 2)} %)" for each in ripple.candidates[:3])
-        yield f"  ratio from these lines: {words}"
+    if ripple.concluded:
+        yield f"  ratio from these lines: {_concluded(ripple)}"
+    elif ripple.side == "output" and ripple.ratio is None:
+        yield "  ratio from these lines: none concluded"
+
+
+def _concluded(ripple: Ripple) -> str:
+    """Return the ratio that the lines determine, with its probability; empty without one."""
+    share = sum(each.share for each in ripple.candidates if each.ratio in ripple.concluded)
+    return f"{' or '.join(map(str, ripple.concluded))} ({number(100.0 * share, 3)} %)" if ripple.concluded else ""
 
 
 def _place(line: RippleLine) -> str:
-    """Where a line stands: its order, its frequency, or both where they cannot be told apart."""
+    """Return the order of a line, its frequency, or both if the record does not separate them; of another joint nothing."""
     order, frequency = uncertain(line.order, line.order_sigma), f"{number(line.frequency or 0.0, 4)} Hz"
+    if line.kind == "joint":
+        return ""
     if line.kind == "time" and line.frequency is not None:
-        return frequency
-    return f"{order} or {frequency}" if line.kind == "either" and line.frequency is not None else order
+        return f" {frequency}"
+    return f" {order} or {frequency}" if "time" in line.rivals and line.frequency is not None else f" {order}"
 
 
 def _strip(ripple: Ripple) -> str:
-    """The spectrum in one row of blocks: full where an amplitude is ten times that which a line needs, and more."""
+    """Return the spectrum as one row of blocks, which are full from ten times the amplitude that a line needs."""
     over = ripple.spectrum["amplitude"] / ripple.spectrum["threshold"]
-    places = np.linspace(0, len(over), STRIP + 1).astype(int)
+    places = np.linspace(0, len(over), STRIP_LETTERS + 1).astype(int)
     peaks = [float(over[low : max(high, low + 1)].max()) for low, high in pairwise(places.tolist())]
     heights = [0 if peak < 1.0 else 1 + min(int(7.0 * np.log10(peak)), 7) for peak in peaks]
-    return "".join(BLOCKS[height] if height else "·" for height in heights)
+    return "".join(STRIP_HEIGHTS[height] if height else "·" for height in heights)
 
 
 # ---- As files --------------------------------------------------------------------------------------------------------
 
 
 def orders_files(found: Sequence[OrdersFound]) -> dict[str, str | bytes]:
-    """Numbers as JSON; spectra and curves as CSV."""
+    """Return the numbers as JSON, spectra and curves as CSV, by file name."""
     files: dict[str, str | bytes] = {"results.json": results_json({"recordings": [_results(each) for each in found]})}
     stems = [Path(each.name).stem for each in found]
     for place, (each, stem) in enumerate(zip(found, stems, strict=True)):
@@ -248,7 +268,7 @@ def orders_files(found: Sequence[OrdersFound]) -> dict[str, str | bytes]:
 
 
 def _results(found: OrdersFound) -> dict[str, Any]:
-    def told(value: Any) -> dict[str, Any] | None:
+    def members_of(value: Any) -> dict[str, Any] | None:
         if value is None:
             return None
         members = {each.name: getattr(value, each.name) for each in fields(value)}
@@ -258,9 +278,9 @@ def _results(found: OrdersFound) -> dict[str, Any]:
     return {
         "made_by": f"strainwave {metadata.version('strainwave')}",
         "name": found.name,
-        "two_encoders": told(found.transmission),
+        "two_encoders": members_of(found.transmission),
         "law": None if law is None else {name: list(getattr(law, name)) for name in ("order", "amplitude", "phase")},
-        "ripple": told(found.ripple),
+        "ripple": members_of(found.ripple),
         "remarks": _remarks(found),
     }
 

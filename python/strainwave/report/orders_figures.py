@@ -53,7 +53,8 @@ def map_figure(ripple: Ripple, name: str) -> str:
     speed = np.abs(curves["speed"])
     if float(np.std(speed)) < VARIES * float(np.mean(speed)):
         return ""
-    highest = min(ripple.highest, 1.3 * max(line.order for line in ripple.lines if line.order <= ripple.highest * 1.01))
+    drawn = [line.order for line in ripple.lines if line.kind != "joint" and line.order <= ripple.highest * 1.01]
+    highest = min(ripple.highest, 1.3 * max(drawn, default=ripple.highest))
     order = np.linspace(ripple.lowest, highest, CELLS)
     wave = curves["series"] - curves["smooth"]
     edges = np.linspace(0, len(wave), BLOCKS + 1).astype(int)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,8 +41,9 @@ def rippled(columns: dict[str, Array], order: float, amplitude: float, phase: fl
     return {**columns, "torque": columns["torque"] + amplitude * np.cos(order * columns["output_angle"] + phase)}
 
 
-def found(columns: dict[str, Array], **options: float) -> sw.Ripple:
-    return sw.ripple(sw.Recording(columns, {name: UNITS[name] for name in columns}), "torque", **options)
+def found(columns: dict[str, Array], **options: Any) -> sw.Ripple:
+    units = {name: UNITS.get(name, "rad") for name in columns}
+    return sw.ripple(sw.Recording(columns, units), "torque", **options)
 
 
 @pytest.mark.parametrize("motion", ["to and fro", "run-up", "two speeds"])
@@ -167,3 +169,83 @@ def test_the_ratio_of_a_joint_whose_clock_is_not_even() -> None:
     told = found(arm(1, 80.0, {2.0: 0.006, 4.0: 0.002}, jitter=1.6e-3))
     assert "its clock is not even: rows are put on one of " in told.remarks[0]
     assert told.candidates[0].ratio == 80
+
+
+def beside(columns: dict[str, Array], other: Array, order: float, amplitude: float) -> dict[str, Array]:
+    """The joint beside another one, over whose angle [rad] its torque has a line."""
+    return {**columns, "other": other, "torque": columns["torque"] + amplitude * np.cos(order * other + 0.3)}
+
+
+def test_a_line_of_another_joint_is_attributed_to_it_and_gives_no_ratio() -> None:
+    columns = joint("to and fro")
+    q, time = columns["output_angle"], columns["time"]
+    columns = beside(columns, 4.0 * q + 0.4 * np.sin(0.9 * time), 50.0, 0.8)
+    result = found(columns, other_angles={"2": "other"})
+    line = result.lines[0]
+    assert (line.kind, line.joint) == ("joint", "2")
+    assert line.order == pytest.approx(50.0, abs=0.3)
+    assert all(each.kind != "order" for each in result.lines)
+    assert (result.candidates, result.concluded) == ((), ())
+    assert any("joint 2" in each and "not of this gear" in each for each in result.remarks)
+
+
+def test_own_lines_remain_beside_those_of_another_joint() -> None:
+    columns = rippled(joint("to and fro"), 160.0, 0.4)
+    columns = beside(columns, 1.1 * np.sin(0.7 * columns["time"] + 1.0), 200.0, 0.4)
+    result = found(columns, other_angles={"2": "other"})
+    assert {(each.kind, each.joint, round(each.order)) for each in result.lines} >= {("order", "", 160), ("joint", "2", 200)}
+    assert set(result.concluded) <= {80, 81}
+    assert result.concluded
+
+
+def test_a_line_that_may_be_of_a_joint_in_proportion_gives_no_ratio() -> None:
+    columns = rippled(joint("to and fro"), 160.0, 0.5)
+    result = found({**columns, "other": 1.25 * columns["output_angle"]}, other_angles={"3": "other"})
+    assert [(each.kind, each.rivals, round(each.order)) for each in result.lines] == [("either", ("3",), 160)]
+    assert result.concluded == ()
+    assert any("moved in proportion" in each for each in result.remarks)
+
+
+@pytest.mark.parametrize("order", [29.0, 35.0, 50.0])
+def test_slow_lines_alone_give_no_ratio(order: float) -> None:
+    result = found(rippled(joint("to and fro"), order, 0.5))
+    assert result.lines[0].order == pytest.approx(order, abs=0.5)
+    assert result.concluded == ()
+    assert any("below order 60" in each and "other_angles" in each for each in result.remarks)
+
+
+def test_a_single_line_of_no_usual_gear_gives_no_ratio() -> None:
+    result = found(rippled(joint("to and fro"), 463.0, 0.3))
+    assert result.concluded == ()
+    assert any("no ratio is concluded" in each for each in result.remarks)
+
+
+def test_orders_of_the_motor_determine_which_spline_is_fixed() -> None:
+    """Cogging of a motor with 7 pole pairs and 12 slots, as in recordings of commercial joints, without wave orders."""
+    for ratio in (100, 101):
+        columns = joint("to and fro", noise=0.2, step=0.001)
+        for order in (12.0, 14.0, 24.0):
+            columns = rippled(columns, order * ratio, 0.05)
+        result = found(columns)
+        assert result.concluded == (ratio,)
+        assert all(each.kind == "order" for each in result.lines)
+
+
+def test_either_spline_makes_the_line_of_a_gear() -> None:
+    """A gear of 101 with the flexspline fixed has lines at 202, and at 200 as the circular spline sees the wave generator."""
+    for order in (200.0, 202.0):
+        assert found(rippled(joint("to and fro"), order, 0.4)).concluded == (100, 101)
+
+
+def test_a_direction_with_hardly_any_motion_has_no_amplitude() -> None:
+    time = np.arange(0.0, 20.0, 0.004)
+    q = 0.7 * time - 0.02 * np.maximum(time - 19.8, 0.0) * 40.0
+    rough = np.random.default_rng(0).normal(0.0, 0.3, len(time))
+    result = found({"time": time, "output_angle": q, "torque": 5.0 + 0.3 * np.cos(200.0 * q) + rough})
+    assert result.lines[0].backward is None
+    assert result.lines[0].amplitude == pytest.approx(0.3, abs=0.1)
+
+
+def test_samples_that_follow_no_gear_of_a_large_ratio_are_named() -> None:
+    result = found(rippled(joint("to and fro", step=0.02), 100.0, 0.4))
+    assert any("lies beyond; record faster" in each for each in result.remarks)

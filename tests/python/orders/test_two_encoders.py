@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import tau
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ def slow(ratio: float, *, swing: float = 40.0, play: float = 0.0, noise: float =
     return {"time": time, "input_angle": theta, "output_angle": theta / ratio - error - 0.5 * play * sense + scatter}
 
 
-def told(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: float) -> sw.TransmissionError:
+def told(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: Any) -> sw.TransmissionError:
     return sw.transmission_error(sw.Recording(columns, units), **options)
 
 
@@ -140,3 +141,67 @@ def test_of_a_long_record_the_beginning_is_used_and_that_is_said() -> None:
     found = told({"time": time, "input_angle": theta, "output_angle": theta / 50.0 - 1e-4 * np.sin(2 * theta) + scatter})
     assert any("samples are used" in each for each in found.remarks)
     assert abs(order(found, 2.0).amplitude - 1e-4) < 4.0 * order(found, 2.0).amplitude_sigma
+
+
+REDUCER = 1798.0 / 7.0  # of a robot's first axis, an RV gear
+
+
+def test_a_ratio_that_is_not_whole_is_obeyed_to_its_digits() -> None:
+    found = told(slow(REDUCER, swing=100.0, noise=1e-6), ratio=REDUCER)
+    assert found.ratio.used == REDUCER
+    assert not found.ratio.whole
+    assert not any("teeth" in each or "257" in each for each in found.remarks)
+    blind = told(slow(REDUCER, swing=100.0, noise=1e-6))
+    assert abs(blind.ratio.value - REDUCER) < 3.0 * blind.ratio.sigma
+    assert not any("teeth" in each for each in blind.remarks)
+
+
+def test_a_ratio_that_the_angles_contradict_is_shown_beside_theirs() -> None:
+    columns = slow(-100.0, swing=400.0, noise=1e-6)
+    found = told(columns, ratio=100.5)
+    assert found.ratio.used == -100.5
+    assert found.ratio.sigma < 0.15
+    remark = next(each for each in found.remarks if "is used as given" in each)
+    assert "ratio 100.5" in remark
+    assert "the angles give 100" in remark
+    assert "±" in remark
+
+
+def test_a_motor_angle_already_divided_by_the_ratio_is_recognised() -> None:
+    """As robot controllers export them: both angles in joint units."""
+    columns = slow(REDUCER, swing=100.0, noise=1e-7)
+    exported = {**columns, "input_angle": columns["input_angle"] / REDUCER}
+    given = told(exported, ratio=REDUCER)
+    assert (given.ratio.used, given.ratio.in_joint_units) == (REDUCER, True)
+    assert any("both are counted in joint units" in each for each in given.remarks)
+    assert {each.order for each in given.orders if each.significant and each.shaft == "input"} == {2.0, 4.0}
+    assert order(given, 2.0).amplitude == pytest.approx(2e-4, rel=0.02)
+    blind = told(exported, ratio_option="--constant ratio=…")
+    assert blind.ratio.in_joint_units
+    assert blind.orders == ()
+    assert any("joint units" in each and "--constant ratio=…" in each for each in blind.remarks)
+
+
+@pytest.mark.parametrize("option", ["--ratio", "--constant ratio=…"])
+def test_advice_names_the_option_of_the_command(option: str) -> None:
+    found = told(slow(-80.0, swing=2.5), ratio_option=option)
+    assert any(f"with {option}" in each for each in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("turns", "orders"), [(0.13, set()), (0.9, set()), (1.6, {2.0, 3.0, 4.0, 6.0, 8.0}), (3.2, {1.0, 2.0})]
+)
+def test_an_order_needs_three_periods_and_a_whole_turn(turns: float, orders: set[float]) -> None:
+    swing = np.pi * turns
+    columns = slow(-80.0)
+    time = columns["time"]
+    theta = swing * np.sin(0.4 * time)
+    noise = np.random.default_rng(0).normal(0.0, 1e-6, len(time))
+    columns |= {"input_angle": theta, "output_angle": theta / -80.0 - 2e-4 * np.sin(2 * theta) + noise}
+    found = told(columns, ratio=80.0)
+    reported = {each.order for each in found.orders if each.shaft == "input"}
+    assert reported >= orders
+    assert bool(reported) == bool(orders)
+    assert (1.0 in reported) == (turns >= 3.0)
+    if turns < 3.0:
+        assert any("needs 3 periods" in each for each in found.remarks)
