@@ -56,7 +56,9 @@ S needed_torque(const Drive& drive, typename Drive::State& x, const Motion& now,
         x.continuous.friction_output = under(gear.friction_output, before.friction_output, at.output, per_shaft * mean, now.step);
         return at;
     };
-    for (int i = 0; i < rounds; ++i) {
+    S last(0.0);
+    for (int i = 0; i < rounds && (i == 0 || !all(at_input == last)); ++i) {
+        last = at_input;
         const Contacts<S> at = contacts_under_load();
         transmitted = carried + friction::torque(gear.friction_output, x.continuous.friction_output, at.output.steady());
         at_input =
