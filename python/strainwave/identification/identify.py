@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
@@ -35,7 +36,7 @@ Mapped = Callable[[Path], FileMapping] | FileMapping | None
 
 
 @dataclass(frozen=True, eq=False)
-class Identified:
+class Identified(ComparedByFields):
     """Result of `identify`: the estimates of each file, their combination, and the checks of both.
 
     Attributes:
@@ -97,8 +98,7 @@ def identify(
 
     Raises:
         TypeError: `files` are no paths, or `mapping` is no mapping
-        ValueError: no file, or none of which anything can be determined; a file that cannot be used alone is refused in its
-            result
+        ValueError: no file, or none that can be used; a file that cannot be used beside others is refused in its result
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -126,9 +126,11 @@ def identify(
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
     parameters = combine(results, accept=accept)
     checks = [check for each in results for check in each.checks]
-    checks += [*with_start_set(start, parameters), *between_files(parameters)]
-    if not parameters and not any(check.failed for check in checks):
-        raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, results))}")
+    if not any(each.estimates or each.failed for each in results):
+        raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
+    checks += _nothing_determined(results)
+    failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
+    checks += [*with_start_set(start, parameters, failed), *between_files(parameters, failed)]
     return Identified(start, results, parameters, with_means(fits.known, parameters), tuple(checks))
 
 
@@ -149,13 +151,27 @@ def check_arguments(files: object, mapping: object) -> None:
         raise ValueError("identify needs at least one file of measurements")
 
 
+def _nothing_determined(results: Sequence[FileResult]) -> list[Check]:
+    """Return the check that files determine a parameter, if none does and no check of a file says why."""
+    estimates = [estimate for each in results for estimate in each.estimates]
+    if any(estimate.state != "not identified" for estimate in estimates) or any(each.failed for each in results):
+        return []
+    return [
+        Check(
+            "parameters determined", listed(each.name for each in results), 1.0, 0.0, "1", True,
+            f"no file determines a parameter of the gear: {'; '.join(map(_why_nothing, results))}",
+            "see whether columns, units and sides are what they are taken for, and whether the motion excites the gear",
+        )
+    ]  # fmt: skip
+
+
 def _why_nothing(result: FileResult) -> str:
     """Return why a file determines no parameter."""
     if result.refused or result.part_of:
         return f"{result.name}: {result.refused or f'a part of the {result.part_of}'}"
     whys = dict.fromkeys(estimate.why for estimate in result.estimates if estimate.why)
     fitted = f"{result.model} was fitted, but {'; '.join(whys)}" if whys else "nothing was fitted"
-    return f"{result.name}: {fitted}; see whether columns, units and sides are what they are taken for"
+    return f"{result.name}: {fitted}"
 
 
 class _Fits:

@@ -77,10 +77,6 @@ def folder_of(*, empty: bool) -> Make:
     return make
 
 
-def one_way() -> np.ndarray:
-    return np.cumsum(np.abs(np.gradient(ANGLE)))
-
-
 def with_texts() -> str:
     rows = [
         f"{speed}{' 1/min' if place % 2 else ''},{torque}"
@@ -102,15 +98,14 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "torque alone": (text("torque.csv", "time [s],torque [N.m]\n" + "0,1\n1,2\n2,1\n" * 20), "--constant speed="),
     "a constant current": (log(current=np.full(len(CURRENT), 1.0)), "current never changes: a set value, a limit"),
     "a shaft that stands": (log(input_angle=np.full(len(ANGLE), 1.0)), "the angle never changes"),
-    "a log one way": (log(input_angle=one_way()), "record motion both ways"),
-    "degrees called radians": (log(input_angle=np.degrees(ANGLE)), "see whether columns, units and sides"),
-    "swapped columns of a log": (log(input_angle=CURRENT, current=ANGLE), "log.csv: .*(both ways|units)"),
-    "swapped columns of a table": (friction(TORQUE, SPEED), "the gear it starts from has.*units of both columns"),
+    "degrees called radians": (log(input_angle=np.degrees(ANGLE)), "whether (columns, )?units"),
+    "swapped columns of a log": (log(input_angle=CURRENT, current=ANGLE), "log.csv.*(both ways|units|unknowns)"),
+    "swapped columns of a table": (friction(TORQUE, SPEED), "that of the start set.*units of both columns"),
     "a table of mN.m called N.m": (friction(SPEED, 1e3 * TORQUE), "perhaps the torque is in mN.m, not in N.m"),
     "a table of 1/min called rad/s": (friction(30.0 / np.pi * SPEED, TORQUE), "speeds may be in 1/min"),
     "a reversed torque of a table": (friction(SPEED, -TORQUE), "the torque drives the motion.*give it the sign of the speed"),
     "rest in a table": (friction([*SPEED, 0.0], [*TORQUE, 0.0]), "sample 12 has speed 0.*leave it out"),
-    "two speeds only": (friction([10.0, 100.0] * 3, [0.053, 0.08] * 3), "at least 4|different speeds"),
+    "two speeds only": (friction([10.0, 100.0] * 3, [0.053, 0.08] * 3), "one number shows no scatter"),
     "a loop in degrees": (twisted(twist_factor=180.0 / np.pi), "perhaps the angle is in deg, not in rad"),
     "a loop reversed": (twisted(torque_factor=-1.0), "reverse the sign of one of the two columns"),
     "a clipped loop": (twisted(limit=15.0), "torque stays at 15 N.m for .* samples while twist goes on"),
@@ -119,9 +114,16 @@ REFUSED: dict[str, tuple[Make, str]] = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_used_is_refused_with_reason_and_remedy(tmp_path: Path, name: str) -> None:
-    make, told = REFUSED[name]
-    with pytest.raises(ValueError, match=f"(?s)no file tells anything of the gear: .*{told}"):
-        identify(START, [make(tmp_path)])
+    make, reason = REFUSED[name]
+    try:
+        found = identify(START, [make(tmp_path)])
+    except ValueError as error:
+        said = str(error)
+        assert said.startswith("no file can be used: ")
+    else:
+        said = "; ".join(f"{check.source}: {check.message}: {check.remedy}" for check in found.failed)
+        assert said, "neither refused nor failed"
+    assert re.search(f"(?s){reason}", said), said
 
 
 def outlying() -> np.ndarray:
@@ -148,10 +150,10 @@ def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: st
     assert number.value == pytest.approx(TRUTH["inertia"], abs=max(4.0 * number.sigma, 0.02 * TRUTH["inertia"]))
 
 
-def test_milliamperes_called_amperes_are_doubted(tmp_path: Path) -> None:
+def test_milliamperes_called_amperes_fail_a_check(tmp_path: Path) -> None:
     found = identify(START, [log(current=1e3 * CURRENT)(tmp_path)])
-    (doubt,) = found.files[0].doubts
-    assert "a factor of 1000 lies between mA and A" in doubt
+    (check,) = found.failed
+    assert "a factor of 1000 lies between mA and A" in check.remedy
 
 
 @pytest.mark.parametrize(
@@ -199,13 +201,17 @@ def test_of_files_of_one_run_the_one_with_most_channels_counts(tmp_path: Path) -
     assert same_as(read) == {str(tmp_path / name): str(tmp_path / "rich.csv") for name in ("poor.csv", "again.csv")}
 
 
-def test_a_doubted_table_is_used_if_it_is_accepted(tmp_path: Path) -> None:
+def test_a_table_with_a_failed_check_is_used_if_it_is_accepted(tmp_path: Path) -> None:
     path = friction(SPEED, 1e3 * TORQUE)(tmp_path)
-    found = identify(START, [path], accept=True)
-    assert "867 times" in found.files[0].doubts[0]
+    found, refused = identify(START, [path], accept=True), identify(START, [path])
+    assert [check.name for check in found.failed] == ["friction of the start set"]
+    assert "867 times" in found.failed[0].message
+    assert found.gear_set.gear.friction_input.coulomb == pytest.approx(50.0)
+    assert "867 times" in found.accepted.note
+    assert refused.gear_set.gear == START.gear
     assert next(each.estimate.value for each in found.parameters if "coulomb" in each.estimate.path) == pytest.approx(50.0)
     said = identify(START, [path], mapping=lambda _: FileMapping(side="input"))
-    assert not said.files[0].doubts
+    assert not said.failed
 
 
 def test_a_folder_stands_for_the_measurements_in_it(tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(f
 
 def test_nothing_at_all_is_refused_with_the_reasons(tmp_path: Path) -> None:
     (tmp_path / "text.csv").write_text("a,b\nx,y\n")
-    with pytest.raises(ValueError, match=r"no file tells anything of the gear: text\.csv: "):
+    with pytest.raises(ValueError, match=r"no file can be used: text\.csv: "):
         identify("hfuc-20-80", [tmp_path / "text.csv"])
     with pytest.raises(ValueError, match="at least one file"):
         identify("hfuc-20-80", [])
@@ -109,7 +109,7 @@ def test_links_in_a_folder_are_named_and_not_read(tmp_path: Path) -> None:
     table(tmp_path / "elsewhere.csv", 0.07, 2e-4, 2)
     link = tmp_path / "folder" / "link.csv"
     link.symlink_to("../elsewhere.csv")
-    with pytest.raises(ValueError, match=r"no file tells anything of the gear: link\.csv: it is a symbolic link in a folder, "):
+    with pytest.raises(ValueError, match=r"no file can be used: link\.csv: it is a symbolic link in a folder, "):
         identify("hfuc-20-80", [tmp_path / "folder"])
     table(tmp_path / "folder" / "own.csv", 0.05, 2e-4, 1)
     found = identify("hfuc-20-80", [tmp_path / "folder"])

@@ -48,7 +48,7 @@ def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Pa
         assert {row["path"]: float(row["value"]) for row in rows if row["joint"] == joint} == told
         assert told["gear.friction_input.coulomb"] == pytest.approx(JOINT.coulomb, rel=0.05)
         results = json.loads((tmp_path / "out" / f"joint-{joint}" / "results.json").read_text())
-        assert {each["path"]: each["value"] for each in results["numbers"]} == told
+        assert {each["path"]: each["value"] for each in results["parameters"]} == told
         assert f'<a href="joint-{joint}/report.html">' in page
         assert f"joint {joint}: log.csv " in done.stdout
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 
@@ -46,15 +46,15 @@ class _Compared:
         return f"{value} against {self.before:.4g} ± {100.0 * self.spread:.2g} % ({self.off / self.sigma:+.1f} σ)"
 
 
-def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[Check]:
-    """Yield the check that friction and stiffness are those of the start set, by the logarithms of all their numbers together.
+def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
+    """Yield the check that friction and stiffness are those of the start set, by the logarithms of all numbers together.
 
-    Assumed numbers of the set take no part. Logarithms are compared, since a number with a spread of 30 % may be two thirds or
+    Assumed numbers of the set, and files with a failed check, take no part. Logarithms are compared, since a number with a spread of 30 % may be two thirds or
     one and a half of the one stated, but never less than nothing.
     """
     from scipy.stats import chi2
 
-    compared = list(_compared(start, parameters))
+    compared = list(_compared(start, [each for each in parameters if each.source not in failed]))
     if not compared:
         return
     squares = sum((each.off / each.sigma) ** 2 for each in compared)
@@ -103,8 +103,8 @@ def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
     return path, value
 
 
-def between_files(parameters: Sequence[CombinedParameter]) -> Iterator[Check]:
-    """Yield a check for each two files that contradict each other.
+def between_files(parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
+    """Yield a check for each two files that contradict each other, of those without a failed check.
 
     Friction and hysteresis differ from run to run by more than their standard deviations, by temperature and wear. A check
     fails if two files are further apart than that explains, too.
@@ -112,6 +112,8 @@ def between_files(parameters: Sequence[CombinedParameter]) -> Iterator[Check]:
     for each in parameters:
         best = each.of_file(each.source)
         for name in each.contradicts:
+            if name in failed or each.source in failed:
+                continue
             other = each.others[name]
             part = each.estimate.path.removeprefix("gear.").partition(".")[0]
             repeatability = REPEATABILITY.get(part, REPEATABILITY_OF_OTHERS) * abs(best.value)

@@ -77,13 +77,12 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         known: before it
     """
     name, gear = file.path.name, known.gear_set.gear
-    speed = table.values("speed", "rad/s")
+    side = "output" if file.side == "output" else known.side  # a side that was only assumed is checked by the size
+    experiment, speed = _table_of(table, side, gear), table.values("speed", "rad/s")
     if "load" not in table and different_speeds(speed) < MIN_SPEEDS:
         at_speeds, few = friction_at_speeds(speed, table.values("torque", "N.m"), side=file.side or "input")
         at_speeds = tuple(each.resting_on(uncertain) for each in at_speeds)
         return FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few)), known
-    side = "output" if file.side == "output" else known.side  # a side that was only assumed is checked by the size
-    experiment = _table_of(table, side, gear)
     best, *others = fit_friction(experiment, gear)
     speed_check = input_speed(experiment.speed, name)
     checks = [speed_check, *friction_of_table(table, best.fit, known.initial.gear, side, name)]

@@ -1,4 +1,4 @@
-"""Measurements that are not what they are taken for: doubted, with what to do, and not refused."""
+"""Measurements that are not what they are taken for: a check of them fails, with what to do."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
+from strainwave.identification.identify import Identified
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Side
 
 RATIO = 80.0
 LAW = sw.friction.Stribeck(coulomb=0.047, breakaway=0.062, stribeck_speed=3.0, viscous=2.9e-4)
@@ -25,47 +28,47 @@ def table(speed: np.ndarray, torque: np.ndarray, unit: str = "N.m") -> sw.Record
     return sw.Recording({"speed": speed, "torque": torque * noise}, {"speed": "rad/s", "torque": unit})
 
 
+def of_friction(measured: sw.Recording, side: Side | None = None) -> Identified:
+    return sw.identify(start(), {"friction": measured}, mapping=FileMapping(side=side))
+
+
 def at_the_joint() -> sw.Recording:
     return table(SPEED / RATIO, RATIO * LAW.steady(SPEED))
 
 
-def test_a_table_from_the_input_is_not_doubted() -> None:
-    assert sw.twin(start(), friction=table(SPEED, LAW.steady(SPEED))).doubts == ()
+def test_a_table_from_the_input_fails_no_check() -> None:
+    assert of_friction(table(SPEED, LAW.steady(SPEED))).failed == ()
 
 
 def test_a_table_from_the_joint_is_asked_about_and_taken_as_said() -> None:
-    (doubt,) = sw.twin(start(), friction=at_the_joint()).doubts
-    assert "--side output" in doubt.remedy
-    found = sw.twin(start(), friction=at_the_joint(), side="output")
-    assert found.doubts == ()
+    (check,) = of_friction(at_the_joint()).failed
+    assert "--side output" in check.remedy
+    found = of_friction(at_the_joint(), "output")
+    assert found.failed == ()
     assert found.gear_set.gear.friction_input.coulomb == pytest.approx(LAW.coulomb, rel=0.05)
     assert found.gear_set.gear.friction_input.viscous == pytest.approx(LAW.viscous, rel=0.05)
-    confirmed = sw.twin(start(), friction=at_the_joint(), side="input")
-    assert confirmed.doubts == ()
+    confirmed = of_friction(at_the_joint(), "input")
+    assert confirmed.failed == ()
     assert confirmed.gear_set.gear.friction_input.coulomb == pytest.approx(RATIO * LAW.coulomb, rel=0.05)
 
 
 def test_a_table_from_the_input_called_one_from_the_joint_is_asked_about() -> None:
-    (doubt,) = sw.twin(start(), friction=table(SPEED, LAW.steady(SPEED)), side="output").doubts
-    assert doubt.remedy.startswith("if it was measured at the input, leave --side output out; ")
-
-
-def test_a_side_that_is_none_is_refused() -> None:
-    with pytest.raises(ValueError, match=r'^side = "joint" must be one of input, output$'):
-        sw.twin(start(), friction=at_the_joint(), side="joint")  # type: ignore[arg-type]
+    check = of_friction(table(SPEED, LAW.steady(SPEED)), "output").failed[-1]
+    assert check.remedy.startswith("if it was measured at the input, leave --side output out; ")
 
 
 def test_millinewton_metres_called_newton_metres_are_named() -> None:
-    (doubt,) = sw.twin(start(), friction=table(SPEED, 1e3 * LAW.steady(SPEED))).doubts
-    assert "perhaps the torque is in mN.m, not in N.m" in doubt.remedy
+    (check,) = of_friction(table(SPEED, 1e3 * LAW.steady(SPEED))).failed
+    assert "perhaps the torque is in mN.m, not in N.m" in check.remedy
+    assert check.value == pytest.approx(1e3, rel=0.3)
 
 
 def test_a_log_of_a_moving_drive_is_no_table() -> None:
     time = np.linspace(0.0, 10.0, 500)
     speed = 100.0 * np.sin(2.0 * np.pi * time) + 120.0 * np.sin(1.3 * time) + 1.7
     torque = LAW.steady(speed) + 2e-4 * np.gradient(speed, time)
-    (doubt,) = sw.twin(start(), friction=table(speed, torque)).doubts
-    assert "this is a log of a moving drive" in doubt.what
+    (check,) = of_friction(table(speed, torque)).failed
+    assert "this is a log of a moving drive" in check.message
 
 
 @pytest.mark.parametrize("order", ["sorted", "shuffled"])
@@ -73,7 +76,7 @@ def test_a_long_table_is_none_though_its_speeds_follow_each_other(order: str) ->
     speed = np.concatenate((-np.geomspace(0.5, 300.0, 200)[::-1], np.geomspace(0.5, 300.0, 200)))
     if order == "shuffled":
         speed = np.random.default_rng(1).permutation(speed)
-    assert sw.twin(start(), friction=table(speed, LAW.steady(speed))).doubts == ()
+    assert of_friction(table(speed, LAW.steady(speed))).failed == ()
 
 
 def loop(stiffness: float, breakaway: float, amplitude: float) -> sw.Recording:
@@ -94,8 +97,8 @@ def from_the_input(ratio: float) -> sw.Recording:
 
 @pytest.mark.parametrize(("ratio", "told"), [(RATIO, False), (0.8 * RATIO, True), (1.25 * RATIO, True)])
 def test_a_loop_from_the_input_through_another_ratio_says_which_ratio_would_fit(ratio: float, told: bool) -> None:
-    (evidence,) = sw.twin(start(), torsion=from_the_input(ratio)).evidence
-    hints = [remark for remark in evidence.remarks if "square of the ratio" in remark]
+    (result,) = sw.identify(start(), {"torsion": from_the_input(ratio)}).files
+    hints = [remark for remark in result.remarks if "square of the ratio" in remark]
     assert len(hints) == told
     if told:
         fits = float(re.search(r"with a ratio of (\d+)", hints[0])[1])
@@ -103,8 +106,8 @@ def test_a_loop_from_the_input_through_another_ratio_says_which_ratio_would_fit(
 
 
 def test_friction_over_an_angle_is_no_torsion_loop() -> None:
-    (doubt,) = sw.twin(start(), torsion=loop(stiffness=1.0, breakaway=5.0, amplitude=1.0)).doubts
-    assert "a shaft behaves that turns against friction" in doubt.what
+    (check,) = sw.identify(start(), {"torsion": loop(stiffness=1.0, breakaway=5.0, amplitude=1.0)}).failed
+    assert "a shaft behaves that turns against friction" in check.message
 
 
 @pytest.mark.parametrize(
@@ -116,12 +119,12 @@ def test_friction_over_an_angle_is_no_torsion_loop() -> None:
         (1.0 / RATIO**2, "were measured at the input"),
     ],
 )
-def test_a_stiffness_that_no_gear_of_its_kind_has_is_doubted_with_the_likely_mistake(scale: float, named: str) -> None:
+def test_a_stiffness_that_no_gear_of_its_kind_has_fails_a_check_with_the_likely_mistake(scale: float, named: str) -> None:
     """A scale below one makes the twist too large, as degrees read as radians do; one above the torque."""
     larger = max(scale, 1.0)
     recording = loop(stiffness=2e4 * scale, breakaway=0.5 * larger, amplitude=2e-3 * larger / scale)
-    found = sw.twin(start(), torsion=recording)
+    found = sw.identify(start(), {"torsion": recording})
     if not named:
-        assert found.doubts == ()
+        assert found.failed == ()
     else:
-        assert named in " ".join(doubt.remedy for doubt in found.doubts)
+        assert named in " ".join(check.remedy for check in found.failed)

@@ -9,7 +9,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.evidence.explain import causes, left
+from strainwave.identification.checks.unexplained import causes, left
 
 TEETH = {"flexspline_teeth": 100, "circular_spline_teeth": 102}
 GEAR = sw.Gear(
@@ -71,17 +71,17 @@ MISTAKES = {
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_is_named_and_nothing_identified(mistake: str) -> None:
     recording, changes, cause = MISTAKES[mistake]
-    found = sw.twin(start(**changes), log=recording())
+    found = sw.identify(start(**changes), {"run": recording()})
     if not cause:
-        assert found.doubts == ()
-        assert found.evidence[0].unexplained == {}
+        assert found.failed == ()
         return
-    (doubt,) = found.doubts
-    assert cause[1:] in doubt.what
-    assert doubt.what.startswith("the model does not explain it")
-    assert doubt.remedy
-    assert not [verdict for verdict in found.verdicts if verdict.state.startswith("identified")]
-    assert found.contradictions == ()
+    (check,) = found.failed
+    assert cause[1:] in check.message
+    assert check.message.startswith("the model does not explain it")
+    assert check.remedy
+    assert check.value > check.limit
+    assert not [state for state in found.states if state.state.startswith("identified")]
+    assert found.parameters == ()
 
 
 def test_the_cause_that_comes_nearest_comes_first() -> None:
@@ -100,15 +100,15 @@ def test_noise_explains_itself() -> None:
     assert left(np.ones((1, 9)), np.ones((1, 9)))[0] == 0.0
 
 
-def test_a_kept_parameter_that_the_log_speaks_against_is_named() -> None:
+def test_a_kept_parameter_that_the_run_contradicts_is_named() -> None:
     """A load a third too heavy; everything else is well known."""
     wrong = drive(GEAR.replace(stiffness=sw.stiffness.Linear(k=1e4)), inertia=0.4)
     gear_set = GearSet.of(wrong, name="start", source="assumed")
     known = {path: Entry("measured", spread=1e-3) for path in gear_set.sources if path.startswith(("motor.", "load."))}
     known["load.inertia"] = Entry("weighed", spread=0.05)
     gear_set = gear_set.replace(sources={**gear_set.sources, **known})
-    found = sw.twin(gear_set, log=log())
-    (remark,) = (remark for remark in found.evidence[0].remarks if "speaks against" in remark)
+    found = sw.identify(gear_set, {"run": log()})
+    (remark,) = (remark for remark in found.files[0].remarks if "contradicts what was kept" in remark)
     assert "load.inertia = 0.4 kg.m2" in remark
-    stiffness = next(verdict for verdict in found.verdicts if verdict.path == "gear.stiffness.k")
+    stiffness = next(estimate for estimate in found.files[0].estimates if estimate.path == "gear.stiffness.k")
     assert abs(stiffness.value / 1.2e4 - 1.0) < 0.1 or stiffness.state == "not identified"

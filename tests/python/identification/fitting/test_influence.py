@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
-from strainwave.identification.evidence.influence import Influence, influence, uncertainty
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import fit
+from strainwave.identification.fitting.influence import Influence, influence, uncertainty
 from strainwave.parameters import Parameter
 
 ELEMENTS = sw.hysteresis.MaxwellSlip(stiffness=[8e3, 4e3], breakaway=[0.8, 1.2])
@@ -39,8 +39,8 @@ def test_estimates_move_as_a_fit_with_another_kept_value_finds() -> None:
 def test_a_wrong_kept_value_is_pulled_to_the_true_one() -> None:
     found = influence(fit(kept(1.6), loop(), FREE))
     place = [each.path for each in found.kept].index("hysteresis.breakaway[1]")
-    assert 1.6 + found.pulls[place] == pytest.approx(1.2, abs=0.1)
-    assert found.gains[place] > 0.8
+    assert 1.6 + found.shift_if_free[place] == pytest.approx(1.2, abs=0.1)
+    assert found.explained_share[place] > 0.8
     assert place in found.suspects({"hysteresis.breakaway[1]": Entry("guessed", uncertainty=0.1)})
     assert found.suspects({each.path: Entry("guessed", spread=1.0) for each in found.kept}) == []
 
@@ -60,19 +60,19 @@ def test_right_kept_values_are_suspected_of_nothing() -> None:
     found = influence(fit(kept(1.2), loop(), FREE))
     assert found.suspects({}) == []
     assert Influence.none(2).suspects({}) == []
-    assert Influence.none(2).doubt(0, {}) == {}
+    assert Influence.none(2).shifts(0, {}) == {}
 
 
-def test_what_the_measurement_tells_of_a_kept_parameter_bounds_the_doubt() -> None:
+def test_the_measurement_bounds_the_shift_by_a_kept_parameter() -> None:
     found = influence(fit(kept(1.2), loop(), FREE))
     place = [each.path for each in found.kept].index("hysteresis.breakaway[1]")
-    loose = found.doubt(0, {"hysteresis.breakaway[1]": Entry("guessed", uncertainty=1e6)})["hysteresis.breakaway[1]"]
+    loose = found.shifts(0, {"hysteresis.breakaway[1]": Entry("guessed", uncertainty=1e6)})["hysteresis.breakaway[1]"]
     assert loose == pytest.approx(abs(found.slopes[0, place]) * found.bounds[place], rel=1e-6)
-    exact = found.doubt(0, {"hysteresis.breakaway[1]": Entry("measured", uncertainty=0.0)})["hysteresis.breakaway[1]"]
+    exact = found.shifts(0, {"hysteresis.breakaway[1]": Entry("measured", uncertainty=0.0)})["hysteresis.breakaway[1]"]
     assert exact == 0.0
 
 
-def test_of_a_kept_value_without_uncertainty_a_tenth_is_doubted_and_half_of_an_assumed_one() -> None:
+def test_a_kept_value_without_uncertainty_is_known_to_10_percent_and_an_assumed_one_to_50() -> None:
     assert uncertainty(-5.0, None) == uncertainty(-5.0, Entry("somebody")) == 0.5
     assert uncertainty(-5.0, Entry("assumed: a guess")) == 2.5
     assert uncertainty(5.0, Entry("catalogue", spread=0.3, uncertainty=2.0)) == pytest.approx(2.5)

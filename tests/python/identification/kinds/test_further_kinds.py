@@ -253,13 +253,15 @@ def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> No
     assert "load.inertia" in {each.estimate.path for each in free.parameters}
     assert "load.inertia" not in {each.estimate.path for each in held.parameters}
     assert told(held, "viscous")[1] <= 1.05 * told(free, "viscous")[1]
-    assert not held.files[0].doubts
-    assert "see whether load_inertia" in wrong.files[0].doubts[0]
+    assert not held.failed
+    assert [check.name for check in wrong.failed] == ["given inertia of the load"]
 
 
-def test_a_table_and_a_loop_tell_the_same_as_in_a_twin(tmp_path: Path) -> None:
+def test_a_recording_by_its_kind_determines_what_its_file_does(tmp_path: Path) -> None:
     path = table(tmp_path / "table.csv")
-    assert identify(START, [path]).gear_set.gear == sw.twin(START, friction=path).gear_set.gear
+    alone = identify(START, [path]).gear_set.gear
+    assert identify(START, {"friction": path}).gear_set.gear == alone
+    assert identify(START, {"friction": sw.Recording.read(path)}).gear_set.gear == alone
 
 
 def test_records_with_an_angle_are_averaged_over_whole_turns(tmp_path: Path) -> None:
