@@ -1,4 +1,4 @@
-"""Friction tables: the law at the input from torques at constant speeds."""
+"""Friction tables: the law of friction from torques at constant speeds."""
 
 from __future__ import annotations
 
@@ -29,17 +29,22 @@ from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
 
-FOLDS = 10  # a table is cut into at most so many parts, each predicted once from the others
-STEPS = 2_000  # of a law, timed
-FAR = 6.0  # standard deviations: noise does not come so far
-ENOUGH = 12  # rows, to tell an outlier
-FEW = 0.1  # of the rows may be outliers
-LESS = 0.5  # of the error that is left without them
-PASSES = 3  # in which outliers hide behind larger ones
-SAME = 1e-7  # of the largest torque: errors below are those of rounding and of where a fit ends
-BY_CHANCE = 0.01  # what explains more with this probability by chance does not count
-TOLD = 0.5  # of a number: with a larger standard deviation a law does not tell it
-STEADY = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # what bristles have in common with a law of steady friction
+MAX_FOLDS = 10  # parts of a table, each predicted from the others
+TIMED_STEPS = 2_000  # of a law
+OUTLIER_SIGMA = 6.0  # noise does not reach so far
+MIN_ROWS_FOR_OUTLIERS = 12
+MAX_OUTLIER_SHARE = 0.1  # of the rows
+MAX_ERROR_LEFT = 0.5  # of the error, without the outliers
+MAX_PASSES = 3  # as outliers hide behind larger ones
+ROUNDING = 1e-7  # of the largest torque: smaller errors are those of rounding and of where a fit ends
+MAX_CHANCE = 0.01  # probability that chance explains as much as more numbers do
+MAX_RELATIVE_SIGMA = 0.5  # of a number that a law determines
+STEADY_NUMBERS = (
+    "coulomb",
+    "breakaway",
+    "stribeck_speed",
+    "viscous",
+)  # what bristles have in common with a law of steady friction
 
 Plain = (
     friction.Viscous
@@ -50,7 +55,7 @@ Plain = (
     | friction.CurvedViscous
     | friction.MixedLubrication
     | friction.AngleSpeedMap
-)  # what a table of torque over speed can tell
+)  # what a table of torque over speed determines
 Modulated = friction.Asymmetric | friction.Thermal | friction.Cyclic
 
 
@@ -144,11 +149,11 @@ class Rank:
 
 
 def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
-    """Fits the input friction of a gear to a table by every law that it can tell, and ranks them.
+    """Fit the friction of a gear to a table by every law that it can determine; return them by rank.
 
     Tried are Coulomb and viscous friction, a fall from breakaway, a curved viscous part, both, and each of them asymmetric
     where both directions were measured. Around the best of them what varies with the temperature, the load and the angle is
-    tried, where the table has these columns. Bristles of the gear (LuGre, Maxwell slip) are kept, for a table says nothing of
+    tried, where the table has these columns. Bristles of the gear (LuGre, Maxwell slip) are kept, as a table does not show
     them, and damped so little that they dissipate; a curved viscous part leaves them out. Of Coulomb's law, whose steady torque
     does not depend on breakaway, the ratio of breakaway to Coulomb torque is kept.
 
@@ -163,7 +168,7 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
         from its numbers
 
     Raises:
-        ValueError: fewer than four speeds, or a law of the gear that a table cannot tell
+        ValueError: fewer than four speeds, or a law of the gear that a table does not determine
 
     Warns:
         RuntimeWarning: rows that lie so far from all others that the fits leave them out, which halves the error or more; they
@@ -187,12 +192,12 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
     if not trusted.all():
         _warn(table, trusted, best)
         found = [_on_all(each, table, trusted) for each in found]
-    found[0] = _less_sure(*found)
+    found[0] = _widened_by_choice(*found)
     return [replace(each, fit=_written(each, gear, known)) for each in found]
 
 
 def ranking(candidates: Sequence[FrictionCandidate]) -> list[Rank]:
-    """The candidates as lines of a table, in their order, each with what its law costs in a simulation."""
+    """Return the candidates as lines of a table, in their order, each with the time of a step of its law."""
     return [
         Rank(
             each.name, _called(each.law), each.parameters, each.error, each.error_sigma, each.whiteness, each.information,
@@ -203,23 +208,23 @@ def ranking(candidates: Sequence[FrictionCandidate]) -> list[Rank]:
 
 
 def innermost(law: Any) -> Any:
-    """The law that others modulate."""
+    """Return the law that others modulate."""
     return innermost(law.law) if isinstance(law, Modulated) else law
 
 
 def cost_of(law: Any) -> float:
-    """Time of one step of a law on this machine [µs], the least of five tries."""
-    time, speed = np.linspace(0.0, 1.0, STEPS), np.linspace(-1.0, 1.0, STEPS)
+    """Return the time of one step of a law on this machine [µs], the least of five tries."""
+    time, speed = np.linspace(0.0, 1.0, TIMED_STEPS), np.linspace(-1.0, 1.0, TIMED_STEPS)
     tries = []
     for _ in range(5):
         begun = perf_counter()
         law.trace(time, speed)
         tries.append(perf_counter() - begun)
-    return 1e6 * min(tries) / STEPS
+    return 1e6 * min(tries) / TIMED_STEPS
 
 
 def dissipating(law: Any) -> Any:
-    """The law, with bristles damped half as much as dissipates in every motion, where they were damped more than that."""
+    """Return the law, with bristles damped half as much as dissipates in every motion, if they were damped more."""
     if not isinstance(law, friction.LuGre) or law.breakaway <= law.coulomb or law.damping_fading > 0.0:
         return law
     most = law.viscous * law.coulomb / (law.breakaway - law.coulomb)
@@ -227,11 +232,11 @@ def dissipating(law: Any) -> Any:
 
 
 def _known(law: Any, table: FrictionTable) -> Any:
-    """The law that others modulate, as far as the table tells what modulates it."""
-    told = isinstance(law, friction.Asymmetric)
-    told |= isinstance(law, friction.Thermal) and table.temperature is not None
-    told |= isinstance(law, friction.Cyclic) and table.angle is not None
-    return _known(law.law, table) if told else law
+    """Return the law that others modulate, as far as the table has what modulates it."""
+    shown = isinstance(law, friction.Asymmetric)
+    shown |= isinstance(law, friction.Thermal) and table.temperature is not None
+    shown |= isinstance(law, friction.Cyclic) and table.angle is not None
+    return _known(law.law, table) if shown else law
 
 
 def _called(law: Any) -> str:
@@ -239,19 +244,23 @@ def _called(law: Any) -> str:
 
 
 def outliers(off: Array) -> NDArray[np.bool_]:
-    """Which of the errors of predictions are no noise: far more standard deviations off than any, and few.
+    """Return which of the errors of predictions are outliers: few, and more standard deviations off than noise reaches.
 
     >>> outliers(np.array([0.1, -0.2, 0.1, 0.0, 0.2, -0.1, 5.0, 0.1, -0.1, 0.2, -0.2, 0.1])).nonzero()[0].tolist()
     [6]
     """
     size = np.abs(off)
     sigma = float(np.median(size)) / 0.6745  # of a normal distribution
-    far = size > FAR * sigma
-    return far if len(off) >= ENOUGH and sigma > 0.0 and far.mean() <= FEW else np.zeros(len(off), bool)
+    far = size > OUTLIER_SIGMA * sigma
+    return (
+        far
+        if len(off) >= MIN_ROWS_FOR_OUTLIERS and sigma > 0.0 and far.mean() <= MAX_OUTLIER_SHARE
+        else np.zeros(len(off), bool)
+    )
 
 
 def _tried(table: FrictionTable, gear: Gear) -> list[tuple[Shape, FrictionCandidate]]:
-    """Every law that the table may tell, those over the speed alone first, the simplest of all at the beginning."""
+    """Return every law that the table may determine, those over the speed first, the simplest of all at the beginning."""
     shapes = [*over_speed(table), *(under_load(table, gear.kinematics.ratio) if is_loaded(table) else ())]
     tried = [(shape, found) for shape in shapes if _falls(found := _candidate(shape, table, gear))]
     shape, best = _chosen(tried)
@@ -261,18 +270,18 @@ def _tried(table: FrictionTable, gear: Gear) -> list[tuple[Shape, FrictionCandid
 
 
 def _without_outliers(table: FrictionTable, gear: Gear) -> tuple[list[tuple[Shape, FrictionCandidate]], NDArray[np.bool_]]:
-    """Every law fitted to the rows that are no outliers, and which these are; to all where that does not halve the error."""
+    """Return every law fitted to the rows without outliers, and these rows; to all if that does not halve the error."""
     whole = tried = _tried(table, gear)
     everything = trusted = np.ones(len(table.speed), bool)
-    for _ in range(PASSES):
+    for _ in range(MAX_PASSES):
         _, best = _chosen(tried)
         kept = trusted.copy()
         kept[np.flatnonzero(trusted)[outliers(table.torque[trusted] - best.held_out)]] = False
         if np.array_equal(kept, trusted) or len(np.unique(table.speed[kept])) < 4:
             break
         tried, trusted = _tried(_rows(table, kept), gear), kept
-    few = np.mean(~trusted) <= FEW
-    better = _chosen(tried)[1].error <= LESS * _chosen(whole)[1].error
+    few = np.mean(~trusted) <= MAX_OUTLIER_SHARE
+    better = _chosen(tried)[1].error <= MAX_ERROR_LEFT * _chosen(whole)[1].error
     return (tried, trusted) if few and better else (whole, everything)
 
 
@@ -283,7 +292,7 @@ def _rows(table: FrictionTable, kept: NDArray[np.bool_]) -> FrictionTable:
 
 
 def _on_all(candidate: FrictionCandidate, table: FrictionTable, trusted: NDArray[np.bool_]) -> FrictionCandidate:
-    """The same with the whole table beside it, what was left out too."""
+    """Return the candidate with the whole table, outliers included."""
     unknowns, ties = candidate.fit.plan.unknowns, candidate.ties
     whole = fit(candidate.fit.gear, table, [each.path for each in unknowns], ties=ties, training=trusted)
     held_out = whole.predicted[0].copy()
@@ -296,8 +305,8 @@ def _warn(table: FrictionTable, trusted: NDArray[np.bool_], best: FrictionCandid
     named = "; ".join(f"row {row}, {table.torque[row]:.4g} N·m at {table.speed[row]:.4g} rad/s" for row in rows[:5])
     more = f"; and {len(rows) - 5} more" if len(rows) > 5 else ""
     warnings.warn(
-        f"{len(rows)} of {len(trusted)} rows of the friction table lie more than {FAR:g} standard deviations off what the "
-        f"others tell, and were left out: {named}{more}. Without them the error of predictions is {best.error:.3g} N·m. "
+        f"{len(rows)} of {len(trusted)} rows of the friction table lie more than {OUTLIER_SIGMA:g} standard deviations off "
+        f"what the others predict, and were left out: {named}{more}. Without them the error of predictions is {best.error:.3g} N·m. "
         "Measure them again, or take them out of the table",
         RuntimeWarning,
         stacklevel=3,
@@ -305,32 +314,32 @@ def _warn(table: FrictionTable, trusted: NDArray[np.bool_], best: FrictionCandid
 
 
 def _falls(candidate: FrictionCandidate) -> bool:
-    """False where a fall was tried but the torque rises from rest on: a law without one says as much."""
+    """False if a fall was tried but the torque rises from rest on, as by a law without one."""
     law = innermost(candidate.law)
     return "fall" not in candidate.name or bool(law.breakaway > law.coulomb)
 
 
 def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, FrictionCandidate]:
-    """The simplest within one standard error of the best (Breiman1984), compared sample by sample.
+    """Return the simplest within one standard error of the best (Breiman1984), compared sample by sample.
 
     Also one that chance may have made worse than the best (F test): of many laws tried some look better than they are.
     """
     best = min((candidate for _, candidate in tried), key=lambda candidate: candidate.error)
-    squares, rounding = _squares(best), (SAME * float(np.abs(best.fit.experiment.measured).max())) ** 2
+    squares, rounding = _squares(best), (ROUNDING * float(np.abs(best.fit.experiment.measured).max())) ** 2
 
     def as_good(candidate: FrictionCandidate) -> bool:
         worse = _squares(candidate) - squares
         within = bool(np.mean(worse) <= max(np.std(worse, ddof=1) / np.sqrt(len(worse)), rounding))
-        return within or (candidate.parameters < best.parameters and _chance(candidate, best) > BY_CHANCE)
+        return within or (candidate.parameters < best.parameters and _chance(candidate, best) > MAX_CHANCE)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
 
 
-def _less_sure(best: FrictionCandidate, *others: FrictionCandidate) -> FrictionCandidate:
-    """The best law, its numbers as uncertain as the choice among laws makes them (Buckland1997, eq. 9).
+def _widened_by_choice(best: FrictionCandidate, *others: FrictionCandidate) -> FrictionCandidate:
+    """Return the best law, its numbers as uncertain as the choice among laws makes them (Buckland1997, eq. 9).
 
-    Numbers that laws have in common stray by law more than within one. Laws that tell a number count, by Akaike's weights; none
-    becomes surer.
+    Numbers that laws have in common differ between laws more than within one. Laws that determine a number count, by Akaike's
+    weights; no standard deviation becomes smaller.
     """
     least = min(each.information for each in (best, *others))
     if not np.isfinite(least):
@@ -338,13 +347,16 @@ def _less_sure(best: FrictionCandidate, *others: FrictionCandidate) -> FrictionC
 
     def sigma(estimate: Estimate) -> float:
         found = [(each.information, other) for each in others if (other := each.estimate(estimate)) is not None]
-        said = [(best.information, estimate), *((i, other) for i, other in found if other.sigma < TOLD * abs(other.value))]
-        weights = np.exp([0.5 * (least - information) for information, _ in said])
-        strays = [float(np.hypot(other.sigma, other.value - estimate.value)) for _, other in said]
+        counted = [
+            (best.information, estimate),
+            *((i, other) for i, other in found if other.sigma < MAX_RELATIVE_SIGMA * abs(other.value)),
+        ]
+        weights = np.exp([0.5 * (least - information) for information, _ in counted])
+        strays = [float(np.hypot(other.sigma, other.value - estimate.value)) for _, other in counted]
         return max(estimate.sigma, float(weights @ strays / weights.sum())) if np.any(weights) else estimate.sigma
 
-    told = tuple(replace(each, sigma=sigma(each)) for each in best.fit.estimates)
-    return replace(best, fit=replace(best.fit, estimates=told))
+    estimates = tuple(replace(each, sigma=sigma(each)) for each in best.fit.estimates)
+    return replace(best, fit=replace(best.fit, estimates=estimates))
 
 
 def _squares(candidate: FrictionCandidate) -> Array:
@@ -358,7 +370,7 @@ def _chance(simplest: FrictionCandidate, candidate: FrictionCandidate) -> float:
 
 
 def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
-    """Probability that `more` unknowns shrink white residuals as much by chance (F test), of `unknowns` in all."""
+    """Return the probability that `more` unknowns shrink white residuals as much by chance (F test), of `unknowns` in all."""
     from scipy.stats import f as fisher
 
     freedom, rest, gain = len(left) - unknowns, float(np.sum(left**2)), float(np.sum(before**2) - np.sum(left**2))
@@ -368,7 +380,7 @@ def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
 
 
 def _written(candidate: FrictionCandidate, gear: Gear, known: Plain) -> Fit:
-    """The fit with the law as the gear shall have it."""
+    """Return the fit with the law as the gear shall have it."""
     fell = any(estimate.path.endswith("breakaway") for estimate in candidate.fit.estimates)
     with warnings.catch_warnings(action="ignore", category=PassivityWarning):
         law, mesh = _kept(candidate.law, known, fell), _completed(candidate.fit)
@@ -384,21 +396,21 @@ def _completed(found: Fit) -> Any:
 
 
 def _kept(found: Any, known: Plain, fell: bool) -> Any:
-    """The law found, by the bristles of the gear where it has such; without a fall, with the gear's ratio of breakaway."""
+    """Return the law found, with the bristles of the gear if it has such; without a fall, with its ratio of breakaway."""
     if isinstance(found, Modulated):
         return found.replace(law=_kept(found.law, known, fell))
     ratio = known.breakaway / known.coulomb if isinstance(known, friction.Coulomb) and known.coulomb > 0.0 else 1.0
     law = found if fell or isinstance(found, friction.AngleSpeedMap) else found.replace(breakaway=ratio * found.coulomb)
     kinds = friction.Stribeck | friction.LuGre | friction.MaxwellSlipFriction | friction.MixedLubrication
     if isinstance(law, friction.Coulomb | friction.Stribeck) and isinstance(known, kinds):
-        return dissipating(known.replace(**{name: getattr(law, name) for name in STEADY if hasattr(law, name)}))
+        return dissipating(known.replace(**{name: getattr(law, name) for name in STEADY_NUMBERS if hasattr(law, name)}))
     return law
 
 
 def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandidate:
     start = gear.replace(friction_input=shape.law, friction_mesh=shape.mesh or gear.friction_mesh)
     whole = fit(start, table, shape.paths, ties=shape.followers)
-    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(FOLDS, len(table.speed))
+    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(MAX_FOLDS, len(table.speed))
     held_out = np.empty(len(table.speed))
     for part in np.unique(fold):
         left_out = fold == part
@@ -415,7 +427,7 @@ def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandid
 
 
 def whiteness(residual: Array) -> float:
-    """Probability that white noise has autocorrelations as large as these (LjungBox1978), over up to ten lags.
+    """Return the probability that white noise has autocorrelations as large as these (LjungBox1978), over up to ten lags.
 
     >>> whiteness(np.random.default_rng(1).normal(size=200)) > 0.01, whiteness(np.sin(np.arange(200.0) / 9.0)) < 1e-9
     (True, True)
@@ -432,7 +444,7 @@ def whiteness(residual: Array) -> float:
 
 
 def information(residual: Array, parameters: int) -> float:
-    """Akaike's criterion of residuals of equal variance, corrected for few samples; infinite where there are too few."""
+    """Return Akaike's criterion of residuals of equal variance, corrected for few samples; infinite where there are too few."""
     n, unknowns = len(residual), parameters + 1
     if n <= unknowns + 1:
         return np.inf

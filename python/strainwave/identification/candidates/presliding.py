@@ -1,4 +1,4 @@
-"""Presliding loops: bristle or Maxwell elements from torque over small motion; and breakaway from ramps of torque."""
+"""Bristle or Maxwell elements from presliding loops, and breakaway torque from ramps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from strainwave import friction, hysteresis
 from strainwave._core import PassivityWarning
 from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.friction import BY_CHANCE, by_chance, dissipating
+from strainwave.identification.candidates.friction import MAX_CHANCE, by_chance, dissipating
 from strainwave.identification.experiments.presliding import Breakaway, PreslidingLoop
 from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
@@ -54,7 +54,7 @@ class PreslidingCandidate(ComparedByFields):
 
     @property
     def stiffness(self) -> float:
-        """Torque per angle just behind a reversal [N.m/rad]."""
+        """Torque per angle behind a reversal [N.m/rad]."""
         return sum(each.value for each in self.estimates if "stiffness" in each.path)
 
     @property
@@ -124,7 +124,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[P
     branch = np.searchsorted(loop.turns, np.arange(len(loop.angle)), "right")
     if begun.sum() <= 2 * elements + 1:
         raise ValueError(
-            f"{begun.sum()} samples behind the first reversal cannot tell a presliding loop; record it more densely"
+            f"{begun.sum()} samples behind the first reversal do not determine a presliding loop; record it more densely"
         )
     tried = [_candidate("bristle", _bristle(loop), _bristle_start(loop), loop, begun, branch)]
     for count in range(1, elements + 1):
@@ -142,7 +142,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[P
         if candidate is best or within or more <= 0:
             return candidate is best or within
         before, left = ((loop.torque - each.predicted)[begun] for each in (candidate, best))
-        return by_chance(before, left, more, len(best.estimates) + 1) > BY_CHANCE
+        return by_chance(before, left, more, len(best.estimates) + 1) > MAX_CHANCE
 
     first = min((each for each in tried if as_good(each)), key=lambda each: (len(each.estimates), each.error))
     return [first, *sorted((each for each in tried if each is not first), key=lambda each: each.error)]
@@ -223,7 +223,7 @@ def _elements(loop: PreslidingLoop) -> Predict:
 
 
 def _elements_start(loop: PreslidingLoop, begun: NDArray[np.bool_], count: int) -> Array:
-    """Elements of a grid of reaches with the torques that explain most (non-negative least squares), merged to so many."""
+    """Return elements of a grid of reaches with torques by non-negative least squares, merged to `count`."""
     from scipy.optimize import nnls
 
     largest = 0.5 * float(np.max(np.abs(np.diff(loop.angle[[0, *loop.turns, -1]]))))
@@ -302,7 +302,7 @@ def _solved(predict: Predict, start: Array, torque: Array, chosen: NDArray[np.bo
 
 
 def _slopes(predict: Predict, x: Array) -> Array:
-    """Derivatives by central differences, shape (n, len(x)): the laws have kinks, but are linear between them."""
+    """Return derivatives by central differences, shape (n, len(x)): the laws have kinks, but are linear between them."""
     columns = []
     for i, value in enumerate(x):
         step = np.zeros_like(x)

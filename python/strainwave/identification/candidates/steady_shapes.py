@@ -1,4 +1,4 @@
-"""Shapes that steady friction may have over the speed, and over what else was measured: what a table is fitted to."""
+"""Shapes of steady friction over the speed, the load, the temperature and the angle, to which a table is fitted."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 
 Array = NDArray[np.float64]
 
-STRIBECK_SPEEDS = 16  # tried between the slowest and the fastest measured
-EXPONENTS = (0.3, 0.5, 0.7, 1.4, 2.0)  # of a curved viscous part, tried
-SPEEDS_EACH_WAY = 3  # that tell a direction
-SPAN = 3.0  # of the speeds: within less a curve looks straight
-WARMER = 2.0  # K: a smaller spread of temperature tells nothing
-ORDERS = 8  # of the turn, looked for
-SURE = 1e-3  # probability that chance alone gives a harmonic, over all looked for
-WAVES = 4  # harmonics taken at most
-NEAR = 0.02  # of a speed: speeds that differ by less are one
-MAP_SPEEDS, LEVELS = 8, 128  # that a map may have
+STRIBECK_GRID = 16  # tried between the slowest and the fastest measured
+EXPONENT_GRID = (0.3, 0.5, 0.7, 1.4, 2.0)  # of a curved viscous part, tried
+MIN_SPEEDS_EACH_WAY = 3  # for numbers of its own for each direction
+MIN_SPEED_SPAN = 3.0  # fastest over slowest: within less a curve looks straight
+MIN_TEMPERATURE_SPAN = 2.0  # K
+MAX_ORDER = 8  # of the turn
+MAX_CHANCE = 1e-3  # probability that chance alone gives a harmonic, over all orders
+MAX_WAVES = 4  # harmonics in a law
+SPEED_TOLERANCE = 0.02  # relative: speeds that differ by less are one
+MAX_MAP_SPEEDS, MAX_MAP_LEVELS = 8, 128  # of a map
 QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
 MIN_LOAD = 0.1  # of the largest load: smaller loads determine no loss
 MIN_ROWS_PER_QUADRANT = 3
-CELLS = 12  # of a turn, at most
-IN_A_CELL = 8  # samples, at least on average
+MAX_CELLS = 12  # of a turn
+MIN_SAMPLES_PER_CELL = 8  # on average
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A law to start from, and the numbers of it that a table shall tell.
+    """A law to start from, and the numbers of it that a table shall determine.
 
     Attributes:
         name: what it describes
@@ -63,19 +63,19 @@ class Shape:
         return {f"friction_mesh.{name}": f"friction_mesh.{other}" for name, other in self.ties.items()}
 
     def around(self, name: str, outer: type[Any], free: tuple[str, ...], **members: Any) -> Shape:
-        """The same, modulated by another law."""
+        """Return the shape, modulated by another law."""
         inner = tuple(f"law.{path}" for path in self.free)
         return replace(self, name=f"{self.name}, {name}", law=outer(law=self.law, **members), free=(*inner, *free))
 
 
 def over_speed(table: FrictionTable) -> Iterator[Shape]:
-    """The shapes over the speed, simplest first, as far as a table has speeds enough to tell them and to validate."""
+    """Yield the shapes over the speed, simplest first, as far as a table has enough speeds to fit and to validate them."""
     speeds, span = len(np.unique(table.speed)), float(np.abs(table.speed).max() / np.abs(table.speed).min())
-    both_ways = min(len(np.unique(table.speed[side])) for side in (table.speed < 0.0, table.speed > 0.0)) >= SPEEDS_EACH_WAY
+    both_ways = min(len(np.unique(table.speed[side])) for side in (table.speed < 0.0, table.speed > 0.0)) >= MIN_SPEEDS_EACH_WAY
     for curved, falls in product((False, True), (False, True)):
         shape = _started(table, curved=curved, falls=falls)
         simple = not (curved or falls)
-        if curved and span < SPAN:
+        if curved and span < MIN_SPEED_SPAN:
             continue
         if simple or speeds > len(shape.free) + 2:
             yield shape
@@ -84,13 +84,13 @@ def over_speed(table: FrictionTable) -> Iterator[Shape]:
 
 
 def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
-    """A shape at the best of a grid over its speeds and exponents, the rest by linear least squares (GolubPereyra1973)."""
+    """Return a shape at the best of a grid of speeds and exponents, the rest by least squares (GolubPereyra1973)."""
     speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
     fastest = float(speed.max())
     grid = list(
         product(
-            np.geomspace(speed.min(), fastest, STRIBECK_SPEEDS) if falls else (fastest,),
-            EXPONENTS if curved else (1.0,),
+            np.geomspace(speed.min(), fastest, STRIBECK_GRID) if falls else (fastest,),
+            EXPONENT_GRID if curved else (1.0,),
         )
     )
     columns = [
@@ -127,14 +127,14 @@ def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
 
 
 def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterator[Shape]:
-    """What else may vary a shape that was found, as far as the table has columns that tell it.
+    """Yield variations of a shape over the other quantities that a table has.
 
     Args:
         table: the measurement
         shape: the shape over the speed, its law as fitted
         residual: measured less fitted torque [N.m], shape (n,)
     """
-    if table.temperature is not None and np.ptp(table.temperature) > WARMER:
+    if table.temperature is not None and np.ptp(table.temperature) > MIN_TEMPERATURE_SPAN:
         middle = float(np.mean(table.temperature))
         yield shape.around("over the temperature", friction.Thermal, ("dry_fall", "viscous_fall"), reference_temperature=middle)
         yield from _lubricated(
@@ -209,7 +209,7 @@ def under_load(table: FrictionTable, ratio: float) -> Iterator[Shape]:
 
 
 def _lubricated(shape: Shape, table: FrictionTable, name: str, **changed: float) -> Iterator[Shape]:
-    """The same friction, as of a bearing that load and viscosity act on; the first number changed is to be found."""
+    """Yield the friction of a bearing on which load and viscosity act; the first number changed is free."""
     outer = shape.law if isinstance(shape.law, friction.Asymmetric) else None
     law = shape.law if outer is None else outer.law
     if isinstance(law, friction.Stribeck):
@@ -225,13 +225,13 @@ def _lubricated(shape: Shape, table: FrictionTable, name: str, **changed: float)
 
 
 def _map(table: FrictionTable, angle: Array) -> Iterator[Shape]:
-    """A table over angle and speed, where few speeds were measured and many samples at each."""
+    """Yield a map over angle and speed, if few speeds were measured and many samples at each."""
     speed, level = np.abs(table.speed), np.sign(table.speed) * table.torque
     ordered = np.sort(speed)
-    group = np.searchsorted(ordered[1:][np.diff(ordered) > NEAR * ordered[1:]], speed, "right")
+    group = np.searchsorted(ordered[1:][np.diff(ordered) > SPEED_TOLERANCE * ordered[1:]], speed, "right")
     speeds = [float(speed[group == k].mean()) for k in range(group.max() + 1)]
-    angles = min(CELLS, LEVELS // len(speeds), int(np.bincount(group).min()) // IN_A_CELL)
-    if len(speeds) > MAP_SPEEDS or angles < 3:
+    angles = min(MAX_CELLS, MAX_MAP_LEVELS // len(speeds), int(np.bincount(group).min()) // MIN_SAMPLES_PER_CELL)
+    if len(speeds) > MAX_MAP_SPEEDS or angles < 3:
         return
     cell = np.rint(angle / (2.0 * np.pi) * angles).astype(int) % angles
     means = [float(level[group == k].mean()) for k in range(len(speeds))]
@@ -244,7 +244,7 @@ def _map(table: FrictionTable, angle: Array) -> Iterator[Shape]:
 
 
 def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, float, float]]:
-    """Orders, amplitudes and phases [rad] of friction over the turn that chance does not explain, relative to its mean.
+    """Return orders, amplitudes relative to the mean, and phases [rad] of friction over the turn that chance does not explain.
 
     Whole orders are taken one by one, each time the one that explains most of what those before it leave, as long as chance
     would not (F test, its probability times the number looked for).
@@ -254,15 +254,16 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
     assert table.angle is not None
     mean = table.torque - residual
     pairs = {
-        n: mean[:, np.newaxis] * np.stack([np.sin(n * table.angle), np.cos(n * table.angle)], 1) for n in range(1, ORDERS + 1)
+        n: mean[:, np.newaxis] * np.stack([np.sin(n * table.angle), np.cos(n * table.angle)], 1)
+        for n in range(1, MAX_ORDER + 1)
     }
     taken: list[int] = []
     waves, left = np.zeros(0), float(np.sum(residual**2))
-    while len(taken) < WAVES:
+    while len(taken) < MAX_WAVES:
         tried = {n: _explained(residual, [pairs[each] for each in (*taken, n)]) for n in pairs if n not in taken}
         order, (found, still) = min(tried.items(), key=lambda item: item[1][1])
         freedom = len(residual) - len(found)
-        if freedom < 1 or ORDERS * fisher.sf(0.5 * (left - still) * freedom / max(still, 1e-300), 2, freedom) > SURE:
+        if freedom < 1 or MAX_ORDER * fisher.sf(0.5 * (left - still) * freedom / max(still, 1e-300), 2, freedom) > MAX_CHANCE:
             break
         taken, waves, left = [*taken, order], found, still
     sine, cosine = waves.reshape(-1, 2).T
@@ -271,7 +272,7 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
 
 
 def _explained(residual: Array, pairs: list[Array]) -> tuple[Array, float]:
-    """What multiplies the columns of all pairs, and the sum of squares they leave."""
+    """Return the factors of the columns of all pairs, and the sum of squares left."""
     columns = np.hstack(pairs)
     found = np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], float)
     return found, float(np.sum((residual - columns @ found) ** 2))

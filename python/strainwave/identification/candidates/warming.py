@@ -1,4 +1,4 @@
-"""How friction falls while a drive warms up, from a long log of an axis that moves to and fro."""
+"""Friction over the temperature, from a long log of an axis that moves to and fro while it warms up."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, stud
 
 Array = NDArray[np.float64]
 
-SLOWEST = 0.05  # of the largest speed: below, an axis may stick
-BLOCKS = (10, 30, 100)  # samples that may err together
-FEWEST = 10  # blocks that tell a variance
-WARMER = 2.0  # K
+MIN_MOVING_SPEED = 0.05  # of the largest speed; a slower axis may stick
+BLOCK_LENGTHS = (10, 30, 100)  # samples that may err together
+MIN_BLOCKS = 10  # for a variance
+MIN_TEMPERATURE_SPAN = 2.0  # K
 
 
 @dataclass(frozen=True)
@@ -43,13 +43,13 @@ class Warming:
 
 
 def friction_over_temperature(recording: Recording, effort: str = "current", *, slowest: float | None = None) -> Warming:
-    """The part of an effort that turns round with the motion, and how it changes while the axis warms up.
+    """Return the part of an effort that reverses with the motion, and its change while the axis warms up.
 
     Least squares of the effort by a constant and its drift with the temperature (weight, offset), by sgn(v) and sgn(v) times
     T - T0. What else moves the axis, as its inertia, counts as noise. Such noise hangs together over a movement and longer: the
     variance is that of sums over blocks of neighbouring samples (LiangZeger1986), the largest of several lengths of block.
 
-    A log of one warm-up cannot tell temperature from what else changes in the same time, as wear-in or another task.
+    A log of one warm-up does not separate temperature from other changes in the same time, as wear-in or another task.
 
     Args:
         recording: columns speed, temperature and the effort, in the order of time
@@ -62,17 +62,22 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     check_recording("recording", recording)
     speed, temperature = sensible(recording, "speed", "rad/s"), recording.values("temperature", "K")
     force, unit = recording[effort], recording.unit(effort)
-    least = SLOWEST * float(np.abs(speed).max()) if slowest is None else arguments.number("slowest", slowest, "rad/s", low=0.0)
+    least = (
+        MIN_MOVING_SPEED * float(np.abs(speed).max())
+        if slowest is None
+        else arguments.number("slowest", slowest, "rad/s", low=0.0)
+    )
     moving = np.abs(speed) > least
-    if moving.sum() < FEWEST * BLOCKS[0] or not (np.any(speed[moving] > 0.0) and np.any(speed[moving] < 0.0)):
+    if moving.sum() < MIN_BLOCKS * BLOCK_LENGTHS[0] or not (np.any(speed[moving] > 0.0) and np.any(speed[moving] < 0.0)):
         raise ValueError(
             f"only {moving.sum()} samples move faster than {least:.3g} rad/s, or all of them one way: friction is what turns "
             "round with the motion, so record more of a motion to and fro"
         )
     force, way, temperature = force[moving], np.sign(speed[moving]), temperature[moving]
-    if np.ptp(temperature) < WARMER:
+    if np.ptp(temperature) < MIN_TEMPERATURE_SPAN:
         raise ValueError(
-            f"the temperature changes by {np.ptp(temperature):.2g} K only; record a warm-up of {WARMER:g} K or more"
+            f"the temperature changes by {np.ptp(temperature):.2g} K only; "
+            f"record a warm-up of {MIN_TEMPERATURE_SPAN:g} K or more"
         )
     middle = float(np.mean(temperature))
     warmer = temperature - middle
@@ -80,25 +85,27 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     found = np.linalg.lstsq(jacobian, force, rcond=None)[0]
     scores = jacobian * (force - jacobian @ found)[:, np.newaxis]
     inverse = np.linalg.inv(jacobian.T @ jacobian)
-    covariances = [(length, _clustered(scores, inverse, length)) for length in BLOCKS if len(force) // length >= FEWEST]
+    covariances = [
+        (length, _clustered(scores, inverse, length)) for length in BLOCK_LENGTHS if len(force) // length >= MIN_BLOCKS
+    ]
     length, covariance = max(covariances, key=lambda each: each[1][3, 3])
     freedom = len(force) / length - len(found)
     wider = student(ONE_SIGMA, freedom)
     level, slope = float(found[2]), float(found[3])
     of_fall = np.array([slope / level**2, -1.0 / level])
     sigmas = [np.sqrt(covariance[2, 2]), np.sqrt(covariance[3, 3]), np.sqrt(of_fall @ covariance[2:, 2:] @ of_fall)]
-    told: Sequence[tuple[str, str, float]] = (
+    numbers: Sequence[tuple[str, str, float]] = (
         ("friction", unit, level), ("slope", f"{unit}/K", slope), ("dry_fall", "1/K", -slope / level)
     )  # fmt: skip
     of_level, of_slope, of_both = (
         Estimate(name, of, 0.0, value, wider * float(sigma), False, freedom)
-        for (name, of, value), sigma in zip(told, sigmas, strict=True)
+        for (name, of, value), sigma in zip(numbers, sigmas, strict=True)
     )
     return Warming(of_level, of_slope, of_both, middle, int(moving.sum()), length)
 
 
 def _clustered(scores: Array, inverse: Array, length: int) -> Array:
-    """Covariance where samples of one block may err together, and blocks err alone."""
+    """Return the covariance if samples of one block may err together, and blocks err alone."""
     sums = np.add.reduceat(scores, np.arange(0, len(scores), length), axis=0)
     blocks = len(sums)
     covariance: Array = blocks / (blocks - 1.0) * inverse @ (sums.T @ sums) @ inverse

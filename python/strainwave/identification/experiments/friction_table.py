@@ -52,7 +52,7 @@ class FrictionTable(ComparedByFields):
 
     @classmethod
     def of(cls, recording: Recording) -> FrictionTable:
-        """From columns speed and torque of the input, and angle, load and temperature where there are such.
+        """Return a table of columns speed and torque of the input, and angle, load and temperature if present.
 
         A torque given as a magnitude takes the sign of its speed. Of a long table, means over neighbouring speeds are taken;
         where an angle is beside it, every so many rows.
@@ -61,7 +61,7 @@ class FrictionTable(ComparedByFields):
         speed, torque = sensible(recording, "speed", "rad/s"), sensible(recording, "torque", "N.m")
         if np.any(speed == 0.0):
             row = int(np.argmin(np.abs(speed)))
-            raise ValueError(f"sample {row} has speed 0: a table of steady sliding cannot say what holds at rest; leave it out")
+            raise ValueError(f"sample {row} has speed 0: a table of steady sliding shows no friction at rest; leave it out")
         if np.any(speed < 0.0) and np.all(torque >= 0.0):
             torque = np.sign(speed) * torque
         if np.sum(speed * torque) <= 0.0:
@@ -85,7 +85,7 @@ class FrictionTable(ComparedByFields):
 
     @classmethod
     def of_output(cls, recording: Recording, gear: Gear) -> FrictionTable:
-        """From columns of the output, as a joint measures its friction, referred to the input by the ratio."""
+        """Return a table of columns of the output, referred to the input by the ratio."""
         check_recording("recording", recording)
         ratio = abs(arguments.gear(gear).kinematics.ratio)
         units = {"speed": "rad/s", "torque": "N.m"} | {name: unit for name, unit in BESIDE.items() if name in recording.names}

@@ -1,4 +1,4 @@
-"""Friction of a drive that warms up while it moves, as a long log with a temperature tells it."""
+"""Friction over the temperature, of a drive that warms up in a long log."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.warming import SLOWEST, WARMER, Warming, friction_over_temperature
+from strainwave.identification.candidates.warming import (
+    MIN_MOVING_SPEED,
+    MIN_TEMPERATURE_SPAN,
+    Warming,
+    friction_over_temperature,
+)
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -18,9 +23,9 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 Array = NDArray[np.float64]
 
 EFFORTS = ("joint_torque", "input_torque", "current")
-SURE = 2.0  # standard deviations, beyond which friction changes with the temperature
-CLASSES = 24  # of the temperature that are drawn
-FEWEST = 10  # samples of a class
+SIGNIFICANCE_SIGMA = 2.0  # beyond which friction changes with the temperature
+TEMPERATURE_CLASSES = 24  # in the figure
+MIN_SAMPLES_PER_CLASS = 10
 
 
 @dataclass(frozen=True)
@@ -56,10 +61,10 @@ class Warmed:
 
 
 def warmed(file: Recognised) -> Warmed | None:
-    """Friction over the temperature; None where a log has no temperature that changes, or cannot tell it."""
+    """Return friction over the temperature; None if a log has no temperature that changes, or does not determine it."""
     recording = file.recording
     effort = next((name for name in EFFORTS if name in recording), None)
-    if effort is None or "temperature" not in recording or np.ptp(recording["temperature"]) < WARMER:
+    if effort is None or "temperature" not in recording or np.ptp(recording["temperature"]) < MIN_TEMPERATURE_SPAN:
         return None
     speed = _speed(recording)
     if speed is None:
@@ -73,14 +78,14 @@ def warmed(file: Recognised) -> Warmed | None:
     except ValueError:
         return None
     fall, slope, level = found.fall, found.slope, found.friction
-    sure = abs(fall.value) > SURE * fall.sigma
+    sure = abs(fall.value) > SIGNIFICANCE_SIGMA * fall.sigma
     why = "" if sure else "the friction does not change with the temperature beyond chance"
     low, high = slope.interval(0.95)
     remarks = (
         f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
         f"{_celsius(found.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
         f"with 95 % between {low:.3g} and {high:.3g}",
-        "temperature is not told from what else changed in the same time, as wear-in or another task",
+        "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
     told = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
     return Warmed(found, effort, told, remarks, Picture(_curves(series, effort, found), "means"))
@@ -102,15 +107,15 @@ def _speed(recording: Recording) -> Array | None:
 def _curves(series: Recording, effort: str, found: Warming) -> Recording:
     """Means of the effort against the motion, of classes of the temperature."""
     speed, temperature = series["speed"], series["temperature"]
-    moving = np.abs(speed) > SLOWEST * np.abs(speed).max()
+    moving = np.abs(speed) > MIN_MOVING_SPEED * np.abs(speed).max()
     temperature, way, force = temperature[moving], np.sign(speed[moving]), series[effort][moving]
-    edges = np.quantile(temperature, np.linspace(0.0, 1.0, CLASSES + 1))
-    place = np.clip(np.searchsorted(edges, temperature, "right") - 1, 0, CLASSES - 1)
+    edges = np.quantile(temperature, np.linspace(0.0, 1.0, TEMPERATURE_CLASSES + 1))
+    place = np.clip(np.searchsorted(edges, temperature, "right") - 1, 0, TEMPERATURE_CLASSES - 1)
     rows = []
-    for each in range(CLASSES):
+    for each in range(TEMPERATURE_CLASSES):
         there = place == each
         both = [force[there & (way == sign)] for sign in (1.0, -1.0)]
-        if min(map(len, both)) >= FEWEST:
+        if min(map(len, both)) >= MIN_SAMPLES_PER_CLASS:
             rows.append((float(temperature[there].mean()), 0.5 * float(both[0].mean() - both[1].mean())))
     where, level = np.array(rows).reshape(-1, 2).T
     line = found.friction.value + found.slope.value * (where - found.reference_temperature)

@@ -286,6 +286,7 @@ def _of_catalogue(found: LoopAnalysis) -> Iterator[str]:
     if rated is None:
         if found.width_at_zero is not None:
             yield "no rated torque is known: hysteresis loss and lost motion as catalogues define them cannot be stated"
+            yield from _of_peaks(found)
         return
     if found.hysteresis_loss is None and found.width_at_zero is not None and not found.whole_angle:
         low, high = found.peaks
@@ -298,6 +299,20 @@ def _of_catalogue(found: LoopAnalysis) -> Iterator[str]:
         yield (
             f"the cycle from {low:.4g} to {high:.4g} N.m does not reach ±{LOST_MOTION * rated:.4g} N.m, 4 % of the rated "
             "torque, either way: no lost motion"
+        )
+
+
+def _of_peaks(found: LoopAnalysis) -> Iterator[str]:
+    """Yield the lost motion of a cycle whose peaks are 4 % of the rated torque, if that is not known."""
+    falling, rising, (low, high) = found.cut.falling, found.cut.rising, found.peaks
+    assumed = 0.5 * (high - low) / LOST_MOTION
+    if falling is None or rising is None or not is_lost_motion_cycle(falling, rising, assumed):
+        return
+    lost = lost_motion(falling, rising, assumed, found.cut.loop)
+    if lost is not None:
+        yield (
+            f"if its peaks of ±{LOST_MOTION * assumed:.3g} N.m are 4 % of the rated torque, that is {assumed:.3g} N.m, the "
+            f"lost motion is {60.0 * np.degrees(lost.value):.3g} arcmin"
         )
 
 

@@ -207,6 +207,8 @@ def _at(branch: Branch, torque: float) -> tuple[float, float, float]:
     after = int(np.clip(np.searchsorted(branch.torque, torque, "right"), 1, len(branch.torque) - 1))
     if branch.torque[after] == branch.torque[after - 1]:  # a level stretch that ends here
         after = int(np.clip(np.searchsorted(branch.torque, torque, "left"), 1, len(branch.torque) - 1))
+    while after > 1 and branch.torque[after] == branch.torque[after - 1]:  # a level stretch at the end of the branch
+        after -= 1
     low, high = float(branch.torque[after - 1]), float(branch.torque[after])
     near = slice(after - 1, after + 1)
     weights = np.array([high - torque, torque - low]) / (high - low)

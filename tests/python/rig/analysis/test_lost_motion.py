@@ -305,3 +305,11 @@ def test_a_loop_of_a_bench_is_read_without_names_or_a_side(tmp_path: Path) -> No
     assert loop.side == "output"
     assert loop.angle == pytest.approx(angle, abs=1e-8)
     assert "that of an output" in " ".join(loop.remarks)
+
+
+def test_without_a_rated_torque_the_lost_motion_is_stated_for_peaks_of_four_percent() -> None:
+    torque, angle = small_cycle(2.68)
+    found = analyse(Loop(angle, torque, side="output", name="test", angle_sigma=1e-6))
+    arcmin = 60.0 * math.degrees(2.0 * (2.68 - 0.8) / 16e3)
+    (remark,) = (each for each in found.remarks if "4 % of the rated torque" in each)
+    assert remark.endswith(f"that is 67 N.m, the lost motion is {arcmin:.3g} arcmin")
