@@ -306,8 +306,8 @@ def _warn(table: FrictionTable, trusted: NDArray[np.bool_], best: FrictionCandid
     more = f"; and {len(rows) - 5} more" if len(rows) > 5 else ""
     warnings.warn(
         f"{len(rows)} of {len(trusted)} rows of the friction table lie more than {OUTLIER_SIGMA:g} standard deviations off "
-        f"what the others predict, and were left out: {named}{more}. Without them the error of predictions is {best.error:.3g} N·m. "
-        "Measure them again, or take them out of the table",
+        f"what the others predict, and were left out: {named}{more}. Without them the error of predictions is "
+        f"{best.error:.3g} N·m. Measure them again, or take them out of the table",
         RuntimeWarning,
         stacklevel=3,
     )

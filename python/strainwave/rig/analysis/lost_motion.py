@@ -207,10 +207,11 @@ def _at(branch: Branch, torque: float) -> tuple[float, float, float]:
     after = int(np.clip(np.searchsorted(branch.torque, torque, "right"), 1, len(branch.torque) - 1))
     if branch.torque[after] == branch.torque[after - 1]:  # a level stretch that ends here
         after = int(np.clip(np.searchsorted(branch.torque, torque, "left"), 1, len(branch.torque) - 1))
-    while after > 1 and branch.torque[after] == branch.torque[after - 1]:  # a level stretch at the end of the branch
-        after -= 1
-    low, high = float(branch.torque[after - 1]), float(branch.torque[after])
-    near = slice(after - 1, after + 1)
+    before, last = after - 1, len(branch.torque) - 1
+    while branch.torque[after] == branch.torque[before] and (before > 0 or after < last):  # a level stretch at an end
+        before, after = (before - 1, after) if before > 0 else (before, after + 1)
+    low, high = float(branch.torque[before]), float(branch.torque[after])
+    near = [before, after]
     weights = np.array([high - torque, torque - low]) / (high - low)
     slope = float(np.diff(branch.angle[near])[0]) / (high - low)
     variance = weights**2 @ (branch.angle_sigma[near] ** 2 + (slope * branch.torque_sigma[near]) ** 2)
