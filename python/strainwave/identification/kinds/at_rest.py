@@ -1,4 +1,4 @@
-"""Friction at rest, before a shaft slides: what presliding loops and ramps of torque tell, as findings."""
+"""Friction at rest, before a shaft slides: presliding loops and ramps of torque."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ NO_RAMP = "no ramp went that way"
 
 
 def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    """Bristle or Maxwell elements of a loop of small motion at rest.
+    """Fit bristle or Maxwell elements to a loop of small motion at rest.
 
     Raises:
-        ValueError: it cannot be told; says why
+        ValueError: the file does not determine it; states why
     """
     recording, uncertain = at_input(file, known)
     loop = PreslidingLoop.of(recording)
     slides = _sliding_beyond(0.5 * float(np.ptp(loop.torque)), known)
     best, *_ = fit_presliding(loop)
     slid = best.reach >= 1.0 and slides is None
-    told = tuple(_elements(best, uncertain, slid=slid))
+    estimates = tuple(_elements(best, uncertain, slid=slid))
     begun = np.arange(len(loop.angle)) >= loop.turns[0]
     error = best.error / float(np.std(loop.torque[begun]))
     remarks = [*file.remarks]
@@ -55,19 +55,19 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
         law = best.law(sliding, slid=slid)
         if not isinstance(sliding, friction.Stribeck):
             remarks.append("a Stribeck speed of 1 rad/s is assumed in the gear, as no table tells it")
-        level = next(each.sigma for each in told if each.path.endswith(("breakaway", "share[0]")))
+        level = next(each.sigma for each in estimates if each.path.endswith(("breakaway", "share[0]")))
         if slid and sliding.coulomb - best.breakaway > SIGNIFICANCE_SIGMA * level and sliding.coulomb > 1.01 * best.breakaway:
             remarks.append(
                 f"it breaks away at {best.breakaway:.3g} N·m, below the {sliding.coulomb:.3g} N·m with which it slides: "
                 "the smaller one is taken in the gear"
             )
-        sigmas = {each.path.removeprefix("gear.friction_input."): each.sigma for each in told if not each.why}
+        sigmas = {each.path.removeprefix("gear.friction_input."): each.sigma for each in estimates if not each.why}
         after = known.with_sliding(law, sigmas, file.path.name)
     compared = {"small_angle": loop.angle, "torque": loop.torque, "modelled": best.predicted}
     units = {"small_angle": "rad", "torque": "N.m", "modelled": "N.m"}
     curves = Recording({name: values[begun] for name, values in compared.items()}, units)
     picture = Picture(curves, "loop", "torque at the input")
-    return FileResult(file.path.name, file, _in_words(best), told, error, tuple(remarks), pictures=(picture,)), after
+    return FileResult(file.path.name, file, _in_words(best), estimates, error, tuple(remarks), pictures=(picture,)), after
 
 
 def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:
@@ -98,11 +98,11 @@ def _elements(best: PreslidingCandidate, uncertain: float, *, slid: bool) -> Ite
     for each in best.estimates:
         level = each.path.startswith("breakaway")
         own = "" if level and best.name == "bristle" else law  # breakaway is the same in every law that has it
-        yield _told(each, f"gear.friction_input.{names[each.path]}", own, uncertain, short if level else "")
+        yield _estimate(each, f"gear.friction_input.{names[each.path]}", own, uncertain, short if level else "")
 
 
 def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    """The torque of breakaway of ramps, in both directions.
+    """Fit the breakaway torque of ramps, in both directions.
 
     Raises:
         ValueError: no ramp broke the shaft away
@@ -120,25 +120,25 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
         remarks.append(
             f"for each decade of the ramps' rate it changes by {found.slope.value:.2g} ± {found.slope.sigma:.1g} N·m"
         )
-    told = (_told(both, "gear.friction_input.breakaway", "", uncertain, few),)
+    estimates = (_estimate(both, "gear.friction_input.breakaway", "", uncertain, few),)
     law, after = known.sliding(), known
-    if isinstance(law, (*SLIDING, friction.LuGre)) and not _tells_breakaway(known) and not told[0].why:
+    if isinstance(law, (*SLIDING, friction.LuGre)) and not _has_breakaway(known) and not estimates[0].why:
         if both.value >= law.coulomb:
-            after = known.with_sliding(law.replace(breakaway=both.value), {"breakaway": told[0].sigma}, file.path.name)
+            after = known.with_sliding(law.replace(breakaway=both.value), {"breakaway": estimates[0].sigma}, file.path.name)
         else:
             remarks.append(
                 f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
             )
-    return FileResult(file.path.name, file, "breakaway of each ramp", told, np.nan, tuple(remarks)), after
+    return FileResult(file.path.name, file, "breakaway of each ramp", estimates, np.nan, tuple(remarks)), after
 
 
-def _tells_breakaway(known: GearSoFar) -> bool:
-    """Whether an earlier file has told the torque of breakaway."""
+def _has_breakaway(known: GearSoFar) -> bool:
+    """True if an earlier file determines the breakaway torque."""
     return any(plain(path) == "gear.friction_input.breakaway" for path in known.determined_by)
 
 
 def _mean(sides: list[Estimate]) -> Estimate:
-    """The mean of both directions; where they differ by more than chance, half of the difference is an uncertainty of it."""
+    """Return the mean of both directions; if they differ by more than chance, half the difference adds to its uncertainty."""
     values, sigmas = np.array([each.value for each in sides]), np.array([each.sigma for each in sides])
     value, sigma = float(values.mean()), float(np.linalg.norm(sigmas)) / len(sides)
     half = 0.5 * float(np.ptp(values))
@@ -147,7 +147,7 @@ def _mean(sides: list[Estimate]) -> Estimate:
     return replace(sides[0], path="breakaway", value=value, sigma=sigma)
 
 
-def _told(each: Estimate, path: str, law: str, uncertain: float, short: str) -> FileEstimate:
+def _estimate(each: Estimate, path: str, law: str, uncertain: float, short: str) -> FileEstimate:
     common = uncertain * abs(each.value)
     sigma = float(np.hypot(each.sigma, common))
     why = short or ("its standard deviation exceeds half the value" if sigma > MAX_RELATIVE_SIGMA * abs(each.value) else "")
@@ -155,7 +155,7 @@ def _told(each: Estimate, path: str, law: str, uncertain: float, short: str) -> 
 
 
 def at_input(file: Recognised, known: GearSoFar) -> tuple[Recording, float]:
-    """Angle and torque of the input; what was measured at the output is referred to it by the ratio."""
+    """Return angle and torque of the input; what was measured at the output is referred to it by the ratio."""
     recording, uncertain = with_torque(file, known.gear_set)
     if file.side != "output":
         return recording, uncertain

@@ -1,4 +1,4 @@
-"""What a torsion loop says: stiffness, widths, losses, soft spots, and how sure all of this is."""
+"""Analysis of a torsion loop: stiffness, widths, losses, soft spots, and their uncertainty."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ DEFINITIONS: dict[Definition, str] = {
     "regression": "line through all points of the regime, with errors in torque and angle",
     "softest": "slope of the softest straight stretch of the regime",
 }
-BENT = 4.0  # chi-square per degree of freedom: from here on a regime is not one straight line
-NEAR = 0.1  # of the rated torque: a cycle with such peaks is one at rated torque
-OPEN = 3.0  # standard deviations, and a share of the width, from which on a closure error is told
-TOLD = 0.02  # of the hysteresis
-MOST = 100_000  # points of a loop that are evaluated; of a longer one, the means of so many stretches
+MAX_MISFIT = 4.0  # chi-square per degree of freedom of a regime that is one straight line
+PEAK_TOLERANCE = 0.1  # of the rated torque, for the peaks of a cycle at rated torque
+SIGNIFICANCE_SIGMA = 3.0  # of a closure error that is reported
+MIN_CLOSURE = 0.02  # of the hysteresis: a smaller closure error is not reported
+MAX_POINTS = 100_000  # of a loop; of a longer one the means of so many stretches are evaluated
 
 
 @dataclass(frozen=True, eq=False)
 class LoopAnalysis(ComparedByFields):
-    """What a loop says; what it does not tell is None, and `remarks` say why.
+    """Results of a loop; what it does not determine is None, and `remarks` give the reason.
 
     Attributes:
         loop: as it was measured; of a very long one, the means of short stretches
@@ -129,7 +129,7 @@ class Row:
 
 
 def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float | None = None) -> LoopAnalysis:
-    """What a loop says. Of several cycles the last complete one is analysed; `cycles` gives each as a loop of its own.
+    """Analyse a loop. Of several cycles the last complete one is analysed; `cycles` gives each as a loop of its own.
 
     Of a loop of more than 100 000 points, the means of as many stretches are analysed, and a remark says so.
 
@@ -167,16 +167,18 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
 
 
 def _shortened(loop: Loop) -> Loop:
-    """A loop of no more points than can be evaluated in some seconds; the mean of n points errs by the root of n less."""
+    """Return a loop of at most so many points that it is evaluated in seconds; the mean of n points errs by root n less."""
     n = len(loop)
-    if n <= MOST:
+    if n <= MAX_POINTS:
         return loop
-    root = np.sqrt(n / MOST)
+    root = np.sqrt(n / MAX_POINTS)
     angle, torque, angle_sigma, torque_sigma = thinned(
-        loop.angle, loop.torque, loop.angle_sigma / root, loop.torque_sigma / root, samples=MOST
+        loop.angle, loop.torque, loop.angle_sigma / root, loop.torque_sigma / root, samples=MAX_POINTS
     )
-    time, temperature = (None if each is None else thinned(each, samples=MOST)[0] for each in (loop.time, loop.temperature))
-    words = f"{n} points are evaluated as the means of {MOST} stretches"
+    time, temperature = (
+        None if each is None else thinned(each, samples=MAX_POINTS)[0] for each in (loop.time, loop.temperature)
+    )
+    words = f"{n} points are evaluated as the means of {MAX_POINTS} stretches"
     return replace(
         loop, angle=angle, torque=torque, angle_sigma=angle_sigma, torque_sigma=torque_sigma, time=time,
         temperature=temperature, remarks=(*loop.remarks, words),
@@ -184,7 +186,7 @@ def _shortened(loop: Loop) -> Loop:
 
 
 def _with_scatter(loop: Loop) -> tuple[Segmented, float]:
-    """The loop with the scatter about straight stretches as the error of its angles, and the degrees of freedom of this."""
+    """Return the loop with the scatter about straight stretches as error of its angles, and its degrees of freedom."""
     told = [fitted for regime in segment(loop).regimes if (fitted := segments_of(regime)) is not None and fitted.freedom > 0]
     freedom = sum(each.freedom for each in told)
     if freedom == 0:
@@ -217,7 +219,7 @@ def _analysis(loop: Loop, cut: Segmented, freedom: float, rated: float | None, s
         _drift(loop, cut), soft_spots(stiffnesses), (), stated, (), whole,
     )  # fmt: skip
     low, high = analysis.peaks
-    if rated is not None and max(abs(high - rated), abs(low + rated)) <= NEAR * rated:
+    if rated is not None and max(abs(high - rated), abs(low + rated)) <= PEAK_TOLERANCE * rated:
         analysis = replace(analysis, hysteresis_loss=at_zero)
     return replace(analysis, remarks=(*loop.remarks, *cut.remarks, *_remarks(analysis)))
 
@@ -236,7 +238,7 @@ def _drift(loop: Loop, cut: Segmented) -> Result | None:
 
 
 def _remarks(found: LoopAnalysis) -> Iterator[str]:
-    """What the numbers leave unsaid."""
+    """Yield what limits the numbers."""
     cut, loop = found.cut, found.loop
     if cut.cycles > 1:
         yield f"{cut.cycles} complete cycles: the numbers are those of the last one"
@@ -249,7 +251,7 @@ def _remarks(found: LoopAnalysis) -> Iterator[str]:
         )
     if found.closure is not None and found.hysteresis is not None:
         yield from _of_closure(found, found.closure, found.hysteresis)
-    yield from (_of_bend(each) for each in found.stiffnesses if each.misfit > BENT and not each.whole)
+    yield from (_of_bend(each) for each in found.stiffnesses if each.misfit > MAX_MISFIT and not each.whole)
     yield from _of_catalogue(found)
     if loop.input_friction:
         yield (
@@ -261,8 +263,8 @@ def _remarks(found: LoopAnalysis) -> Iterator[str]:
 
 
 def _of_closure(found: LoopAnalysis, gap: Result, wide: Width) -> Iterator[str]:
-    large = abs(gap.value) > TOLD * abs(wide.width.value)
-    if not large or not (np.isnan(gap.sigma) or abs(gap.value) > OPEN * gap.sigma):
+    large = abs(gap.value) > MIN_CLOSURE * abs(wide.width.value)
+    if not large or not (np.isnan(gap.sigma) or abs(gap.value) > SIGNIFICANCE_SIGMA * gap.sigma):
         return
     yield (
         f"the cycle ends {np.degrees(gap.value):.3g} degrees from where it began: drift, settling, or a first cycle that was "

@@ -14,9 +14,9 @@ from strainwave.rig.loop import Loop
 
 Array = NDArray[np.float64]
 
-LOST_MOTION = 0.04  # of the rated torque: catalogues of strain wave gears state the lost motion there
+LOST_MOTION = 0.04  # of the rated torque, at which catalogues of strain wave gears state the lost motion
 MIN_PEAK, MAX_PEAK = 0.9, 2.0  # of a cycle that is a test of lost motion, over 4 % of the rated torque
-FLAT = 1e-6  # of the widest separation: what differs by less is as wide
+WIDTH_TOLERANCE = 1e-6  # of the widest separation: widths that differ by less are equal
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Width:
 
 
 def separation(falling: Branch, rising: Branch, torque: float, loop: Loop, freedom: float = inf) -> Result | None:
-    """Angle of the falling branch less that of the rising one at a torque [rad]; None where one of them does not reach it.
+    """Return the angle of the falling branch less that of the rising one at a torque [rad]; None if one does not reach it.
 
     >>> from strainwave.rig import Loop
     >>> from strainwave.rig.analysis.regimes import segment
@@ -81,7 +81,7 @@ def lost_motion(falling: Branch, rising: Branch, rated: float, loop: Loop, freed
 
 
 def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) -> Width | None:
-    """The widest separation at equal torque: hysteresis as document T defines it; None where the branches share no torque.
+    """Return the widest separation at equal torque, document T's hysteresis; None if the branches share no torque.
 
     Of noisy points the widest is, by about the noise, wider than that of the loop without noise. An error of the pulleys'
     friction moves the branches apart, and with them the torque at which they are widest: at a knee the width changes by twice
@@ -94,7 +94,7 @@ def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) ->
     both = [_limit(falling, knots, side) - _limit(rising, knots, side) for side in ("left", "right")]
     torque, apart = np.repeat(knots, 2)[1:-1], np.column_stack(both).ravel()[1:-1]  # no limit from beyond the ends
     most = float(apart.max())
-    wide = torque[apart >= most - FLAT * abs(most)]
+    wide = torque[apart >= most - WIDTH_TOLERANCE * abs(most)]
     band = (float(wide.min()), float(wide.max()))
     at = float(torque[int(np.argmax(apart))]) if band[1] - band[0] == 0.0 else 0.5 * (band[0] + band[1])
     (_, down, _), (_, up, _) = _at(falling, at), _at(rising, at)
@@ -104,7 +104,7 @@ def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) ->
 
 
 def widest_in_torque(falling: Branch, rising: Branch) -> tuple[float, float]:
-    """The widest separation in torque at equal angle [N.m], and that angle [rad].
+    """Return the widest separation in torque at equal angle [N.m], and that angle [rad].
 
     It is twice what friction holds, where all of it slips.
 
@@ -133,7 +133,7 @@ def widest_in_torque(falling: Branch, rising: Branch) -> tuple[float, float]:
 
 
 def area(loop: Loop, freedom: float = inf) -> Result:
-    """Energy lost in a cycle [J]: the area of the polygon of its points, closed by a straight line; positive if it is lost.
+    """Return the energy lost in a cycle [J]: the area of the polygon of its points, closed by a straight line.
 
     >>> loop = Loop([1.0, -1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], side="output", name="a square")
     >>> area(loop).value
@@ -150,7 +150,7 @@ def area(loop: Loop, freedom: float = inf) -> Result:
 
 
 def closure(cut: Segmented, freedom: float = inf) -> Result | None:
-    """Angle at the end of the cycle less that at its beginning, at equal torque [rad]; None where it does not close.
+    """Return the angle at the end of the cycle less that at its beginning, at equal torque [rad]; None where it does not close.
 
     Where the end lacks a little torque, the angle goes on straight as it went before, and may be wrong by all of that.
     """
@@ -165,14 +165,14 @@ def closure(cut: Segmented, freedom: float = inf) -> Result | None:
 
 
 def _slope_at_end(cycle: Loop) -> float:
-    """Change of angle per torque over the last points [rad/(N.m)]."""
+    """Return the change of angle per torque over the last points [rad/(N.m)]."""
     away = np.abs(cycle.torque - cycle.torque[-1]) > MISSING * np.ptp(cycle.torque)
     first = int(np.flatnonzero(away)[-1])
     return float((cycle.angle[-1] - cycle.angle[first]) / (cycle.torque[-1] - cycle.torque[first]))
 
 
 def drift(centres: Array, sigma: float) -> Result:
-    """Movement of the middle of the loop from cycle to cycle [rad per cycle], by the straight line through the cycles.
+    """Return the movement of the middle of the loop [rad per cycle], by the straight line through the cycles.
 
     Args:
         centres: angle half way between the branches at zero torque, of each cycle [rad], shape (n,), n >= 2
@@ -197,13 +197,13 @@ def drift(centres: Array, sigma: float) -> Result:
 
 
 def _width(value: float, variance: float, compliance: float, loop: Loop, freedom: float) -> Result:
-    """A width, with the friction of the rig, which moves the branches apart, among the shared errors."""
+    """Return a width, with the friction of the rig, which moves the branches apart, among the shared errors."""
     shared = hypot(value * loop.angle_scale, compliance * loop.friction_sigma)
     return result(value, "rad", random=float(np.sqrt(variance)), shared=shared, freedom=freedom)
 
 
 def _at(branch: Branch, torque: float) -> tuple[float, float, float]:
-    """Angle at a torque on the straight line between the neighbours, its variance, and the slope there."""
+    """Return the angle at a torque on the straight line between the neighbours, its variance, and the slope there."""
     after = int(np.clip(np.searchsorted(branch.torque, torque, "right"), 1, len(branch.torque) - 1))
     if branch.torque[after] == branch.torque[after - 1]:  # a level stretch that ends here
         after = int(np.clip(np.searchsorted(branch.torque, torque, "left"), 1, len(branch.torque) - 1))
@@ -219,7 +219,7 @@ def _at(branch: Branch, torque: float) -> tuple[float, float, float]:
 
 
 def _slopes(branch: Branch, torque: float) -> tuple[float, float]:
-    """Change of angle per torque just below a torque, and just above it; at an end, both are those of the last stretch."""
+    """Return the change of angle per torque just below and above a torque; at an end, both are those of the last stretch."""
     knots, rows = np.unique(branch.torque, return_index=True)
     last = np.append(rows[1:] - 1, len(branch.torque) - 1)  # of a level stretch, where the next one begins
     slopes = (branch.angle[rows[1:]] - branch.angle[last[:-1]]) / np.diff(knots)
@@ -232,7 +232,7 @@ def _limit(branch: Branch, torque: Array, side: str) -> Array:
 
 
 def _read(x: Array, y: Array, at: Array, side: str) -> Array:
-    """Values of a chain of straight lines, at steps the limit from one side; x ascends, if not strictly."""
+    """Return values of a chain of straight lines, at steps the limit from one side; x ascends, if not strictly."""
     right = np.searchsorted(x, at, "right")
     left = np.searchsorted(x, at, "left")
     value = np.interp(at, x, y)
