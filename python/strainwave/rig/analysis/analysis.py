@@ -43,6 +43,7 @@ MAX_MISFIT = 4.0  # chi-square per degree of freedom of a regime that is one str
 PEAK_TOLERANCE = 0.1  # of the rated torque, for the peaks of a cycle at rated torque
 SIGNIFICANCE_SIGMA = 3.0  # of a closure error that is reported
 MIN_CLOSURE = 0.02  # of the hysteresis: a smaller closure error is not reported
+MAX_LOST_MOTION = 3.0  # arcmin; makers allow 1 to 3: a cycle that turns by more is no test of lost motion
 MAX_POINTS = 100_000  # of a loop; of a longer one the means of so many stretches are evaluated
 
 
@@ -311,7 +312,7 @@ def _of_peaks(found: LoopAnalysis) -> Iterator[str]:
     if falling is None or rising is None or not is_lost_motion_cycle(falling, rising, assumed):
         return
     lost = lost_motion(falling, rising, assumed, found.cut.loop)
-    if lost is not None:
+    if lost is not None and found.loop.side == "output" and 60.0 * np.degrees(lost.value) < MAX_LOST_MOTION:
         yield (
             f"if its peaks of ±{LOST_MOTION * assumed:.3g} N.m are 4 % of the rated torque, that is {assumed:.3g} N.m, the "
             f"lost motion is {60.0 * np.degrees(lost.value):.3g} arcmin"
