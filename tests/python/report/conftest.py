@@ -1,4 +1,4 @@
-"""Twins of each kind of measurement, and their reports."""
+"""Results of each kind of measurement, and their reports."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
+from strainwave.identification.identify import Identified
 from strainwave.report.experiment import SimulatedExperiment
-from strainwave.report.twin import twin_report
+from strainwave.report.identify import identify_report
 
-from tests.python.report.twins import HOSTILE, drive_log, friction_table, input_loop, swing, torsion_loop, with_drive
+from tests.python.report.measured import drive_log, friction_table, input_loop, swing, torsion_loop, with_drive
 from tests.strategies import made
 
 
@@ -21,47 +22,47 @@ def start() -> GearSet:
 
 
 @pytest.fixture(scope="session")
-def from_friction(start: GearSet) -> sw.Twin:
-    return sw.twin(start, friction=friction_table(), sources={"friction": HOSTILE})
+def from_friction(start: GearSet) -> Identified:
+    return sw.identify(start, {"friction": friction_table()})
 
 
 @pytest.fixture(scope="session")
-def from_torsion(start: GearSet) -> sw.Twin:
-    return sw.twin(start, torsion=torsion_loop())
+def from_torsion(start: GearSet) -> Identified:
+    return sw.identify(start, {"torsion": torsion_loop()})
 
 
 @pytest.fixture(scope="session")
-def from_input(start: GearSet) -> sw.Twin:
-    return sw.twin(start, torsion=input_loop(start))
+def from_input(start: GearSet) -> Identified:
+    return sw.identify(start, {"torsion": input_loop(start)})
 
 
 @pytest.fixture(scope="session")
-def from_log(start: GearSet) -> sw.Twin:
+def from_log(start: GearSet) -> Identified:
     full = with_drive(start)
-    return sw.twin(full, log=drive_log(full))
+    return sw.identify(full, {"run": drive_log(full)})
 
 
 @pytest.fixture(scope="session")
-def from_log_and_loop(start: GearSet) -> sw.Twin:
-    """A log fitted before the loop, whose friction it tells; the loop then gives a spring of another kind."""
+def from_log_and_loop(start: GearSet) -> Identified:
+    """A run fitted before the loop, whose friction it determines; the loop then gives a spring of another kind."""
     full = with_drive(start)
     friction = start.gear.friction_input.coulomb
-    return sw.twin(full, log=drive_log(full), torsion=input_loop(start, friction))
+    return sw.identify(full, {"run": drive_log(full), "torsion": input_loop(start, friction)})
 
 
 @pytest.fixture(scope="session")
-def contradicted(start: GearSet) -> sw.Twin:
+def contradicted(start: GearSet) -> Identified:
     """A set whose friction was measured before, and now is another."""
     earlier = Entry("test report 7 <of 2019>", uncertainty=1e-3)
     sources = {**start.sources, "gear.friction_input.coulomb": earlier, "gear.friction_input.viscous": earlier}
-    return sw.twin(replace(start, sources=sources), friction=friction_table(), sources={"friction": "table of today"})
+    return sw.identify(replace(start, sources=sources), {"friction": friction_table()}, accept=True)
 
 
 VARYING = ("coupling_variation", "bearing_variation", "mesh_variation", "circular_spline_variation")
 
 
 @pytest.fixture(scope="session")
-def complete(start: GearSet) -> sw.Twin:
+def complete(start: GearSet) -> Identified:
     """A gear with every kind of part, models inside models too."""
     losses = sw.friction.LoadDependent(driving_forward=0.1, driving_reverse=0.1)
     varying = sw.variation.Periodic(order=[2.0], amplitude=[0.05], phase=[0.0])
@@ -75,19 +76,19 @@ def complete(start: GearSet) -> sw.Twin:
         structure=made(sw.structure.Staged, **dict.fromkeys(VARYING, varying)),
         input_inertia=1e-5,
     )
-    return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
+    return sw.identify(GearSet.of(gear, name="complete", source="assumed"), {"friction": friction_table()})
 
 
 EACH = ["from_friction", "from_torsion", "from_input", "from_log", "from_log_and_loop", "contradicted", "complete"]
 
 
 @pytest.fixture(scope="session", params=EACH)
-def each(request: pytest.FixtureRequest) -> sw.Twin:
-    found: sw.Twin = request.getfixturevalue(request.param)
+def each(request: pytest.FixtureRequest) -> Identified:
+    found: Identified = request.getfixturevalue(request.param)
     return found
 
 
 @pytest.fixture(scope="session")
-def html(each: sw.Twin) -> str:
-    """The report of each twin, with two experiments of one name."""
-    return twin_report(each, [SimulatedExperiment("sine", (("twin", swing(50)),))] * 2)
+def html(each: Identified) -> str:
+    """The report of each result, with two experiments of one name."""
+    return identify_report(each, experiments=[SimulatedExperiment("sine", (("gear", swing(50)),))] * 2)

@@ -1,4 +1,4 @@
-"""The page of what files tell: nothing of it is lost, and what contradicts or is refused comes first."""
+"""The report of an identification: nothing of the result is lost, and failed checks come first."""
 
 from __future__ import annotations
 
@@ -14,15 +14,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.evidence.verdict import numbers
+from strainwave.identification.checks.comparisons import between_files
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.recognise import recognise
-from strainwave.identification.results.file_result import FileEstimate, FileResult, combine
-from strainwave.report import identify_figures
-from strainwave.report.identify import identify_files, identify_report, name_of
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.combined_parameter import combine
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Look, Picture
+from strainwave.identification.results.held_out import HeldOut
+from strainwave.parameters import gear_numbers
+from strainwave.report import figures, identify_figures
+from strainwave.report.experiment import Figure, SimulatedExperiment
+from strainwave.report.identify import identify_report
+from strainwave.report.identify_files import identify_files
+from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 
-from tests.python.report.reading import Page, section
+from tests.python.report.measured import HOSTILE, swing
+from tests.python.report.reading import Node, Page, section
 from tests.samples import sample
 
 START = GearSet.read("hfuc-20-80")
@@ -46,19 +54,20 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
     """Two tables that differ, a copy of the first, a loop that tells half, and a file that was not read."""
     path = tmp_path_factory.mktemp("files") / "warm.csv"
     path.write_text("Drehzahl [1/min];Reibmoment [mNm]\n600;41,2\n-600;-40,9\n1200;50,1\n")
-    read = recognise(path)
+    read, drawn, bare = recognise(path), (Picture(curves(), "table"),), (Picture(curves(sigma=False), "table"),)
     findings = (
-        FileResult("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), 0.02, ("a remark of warm",), curves=curves()),
-        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), 0.03, curves=curves()),
-        FileResult("copy.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), same_as="warm.csv", curves=curves(sigma=False)),
+        FileResult("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), 0.02, ("a remark of warm",), pictures=drawn),
+        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), 0.03, pictures=drawn),
+        FileResult("copy.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), same_as="warm.csv", pictures=bare),
         FileResult(
             "loop.csv", read, "a spring",
             (told(STIFF, 14000.0, 90.0, "N.m/rad", "three_segment"), told("gear.stiffness.k2", 1.0, 9.0, why="low load")),
-            curves=curves("twist"),
+            pictures=(Picture(curves("twist"), "loop"),),
         ),
         FileResult("<b>notes</b>.txt", refused="no name of a column tells what it measures; give --column"),
     )  # fmt: skip
-    return Identified(START, findings, combine(findings), START)
+    parameters = combine(findings)
+    return Identified(START, findings, parameters, START, tuple(between_files(parameters)))
 
 
 @pytest.fixture(scope="module")
@@ -70,49 +79,78 @@ def text_of(html: str) -> str:
     return Page(html).root.text
 
 
-def test_contradictions_and_refused_files_come_first_with_what_to_do(page: str) -> None:
+def test_the_verdict_comes_first_then_files_measured_against_predicted_then_parameters(page: str) -> None:
     text = text_of(page)
-    places = [
-        text.index(each)
-        for each in ("Files contradict each other", "What to do", "Files that tell nothing", "What each file is")
-    ]
+    order = (
+        "5 files: 3 determine 2 parameters, 1 contains the measurement of another, 1 is refused; the one check passed.",
+        "Files that cannot be used", "give --column", "Measured against predicted", "Coulomb torque",
+        "13 standard deviations lie between them",  # 0.03 over the root of 0.001² + 0.002²
+    )  # fmt: skip
+    places = [text.index(each) for each in order]
     assert places == sorted(places)
-    assert "13 standard deviations lie between them" in text  # 0.03 over the root of 0.001² + 0.002²
-    assert "give --column" in text
 
 
-def test_it_counts_what_files_come_to(page: str) -> None:
-    assert "5 files: 3 tell 2 numbers, 1 shows what another file shows too, 1 is refused" in text_of(page)
+def test_a_failed_check_stands_first_with_what_to_do_and_marks_its_file(found: Identified) -> None:
+    check = Check(
+        "input speed", "warm.csv", 2e3, 1.6e3, "rad/s", True, "its input would turn too fast", "see whether units are right"
+    )
+    warm = replace(found.files[0], checks=(check,))
+    failed = Identified(START, (warm,), combine((warm,)), START, (check,))
+    root = Page(identify_report(failed)).root
+    (alert,) = (each for each in root.walk() if each.attributes.get("role") == "alert")
+    for words in ("warm.csv", check.message, check.remedy):
+        assert words in alert.text
+    assert "1 of 1 check failed, and no gear was written" in root.text
+    assert "accepted" in text_of(identify_report(failed, accepted=True))
+    assert "A check of this file failed" in section(identify_report(failed), "measured").text
+    results = json.loads(identify_files(failed)["results.json"])
+    assert results["failed"] == ["input speed"]
+    assert results["checks"][0]["value"] == 2e3
 
 
 def test_what_is_fine_needs_no_alarm(found: Identified) -> None:
     one = found.files[0]
     html = identify_report(Identified(START, (one,), combine((one,)), START))
     assert not [each for each in Page(html).root.walk() if each.attributes.get("role") == "alert"]
-    assert "1 file: 1 tells 1 number." in text_of(html)
+    assert "1 file: 1 determines 1 parameter; no check applied." in text_of(html)
     assert "Files beside each other" not in text_of(html)
+
+
+def test_the_error_on_data_held_out_stands_beside_plain_least_squares(found: Identified) -> None:
+    held_out = HeldOut("last 30 % of the motion", "current", "A", 0.281, 1.2, 0.363, 900)
+    warm = replace(found.files[0], held_out=held_out)
+    text = section(identify_report(Identified(START, (warm,), combine((warm,)), START)), "measured").text
+    for expected in ("last 30 % of the motion", "0.281 A, 23 %", "Plain least squares there", "0.363 A", "1.2 A"):
+        assert expected in text, expected
 
 
 def test_each_file_is_listed_with_what_it_is_and_why(page: str) -> None:
     text = section(page, "files").text
     for expected in (
         "a table of steady friction", "speed: Drehzahl [1/min]", "torque: Reibmoment [mN·m]", "side: input", "a law",
-        "error 2 %", "a remark of warm", "the same measurement as warm.csv", "refused", "<b>notes</b>.txt",
+        "a remark of warm", "the same measurement as warm.csv", "refused", "<b>notes</b>.txt",
     ):  # fmt: skip
         assert expected in text or expected.replace("mN·m", "mNm") in text, expected
 
 
-def test_each_number_stands_with_its_file_the_initial_set_and_the_others(page: str) -> None:
-    row = next(each for each in section(page, "numbers").find("tr") if "coulomb" in each.text)
+def test_each_parameter_stands_with_its_file_the_start_set_and_the_others(page: str) -> None:
+    row = next(each for each in section(page, "parameters").find("tr") if "coulomb" in each.text)
     assert "0.0500 ± 0.0010" in row.text
+    assert "0.048 to 0.052" in row.text
     assert "warm.csv" in row.text
-    assert f"{numbers(START.gear)[COULOMB][0]:.4g}" in row.text
+    assert f"{gear_numbers(START.gear)[COULOMB][0]:.4g}" in row.text
     assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart: contradiction)" in row.text
     assert "1 more of the same measurement" in row.text
 
 
-def test_what_is_not_told_stands_with_its_reason(page: str) -> None:
-    text = section(page, "untold").text
+def test_parameters_are_grouped_by_effect(page: str) -> None:
+    headings = [each.text for each in section(page, "parameters").find("h3")]
+    assert headings[:2] == ["Friction", "Stiffness"]
+
+
+def test_what_is_not_determined_stands_with_its_state_and_reason(page: str) -> None:
+    text = section(page, "undetermined").text
+    assert "not identified" in text
     assert "low load" in text
     assert "gear.input_inertia" in text  # kept from the set
     assert "loop.csv" in text
@@ -121,12 +159,44 @@ def test_what_is_not_told_stands_with_its_reason(page: str) -> None:
 def test_every_file_that_was_fitted_has_a_drawing_of_its_own(page: str, found: Identified) -> None:
     root = Page(page).root
     titles = [each.attributes["aria-label"] for each in root.find("svg")]
-    for finding in found.files:
-        drawn = f"Measured against modelled, {finding.name}" in titles
-        assert drawn == (finding.curves is not None)
+    for result in found.files:
+        drawn = f"Measured against modelled, {result.name}" in titles
+        assert drawn == bool(result.pictures)
     names = [each.attributes["id"] for each in root.walk() if "id" in each.attributes]
     assert len(names) == len(set(names))
     assert {link.attributes["href"][1:] for link in root.find("a")} <= set(names)
+
+
+def test_experiments_show_every_run_and_every_figure_beside_the_published_one(found: Identified) -> None:
+    error = Figure("largest error", "rad", (0.0123, 0.0456), published=0.0042)
+    runs = (("_gear", swing(50)), (HOSTILE, swing(60)))
+    experiment = SimulatedExperiment("sine", runs, (error,), remark="amplitude assumed", source="Table 4")
+    page = section(identify_report(found, experiments=[experiment]), "experiments")
+    assert [cell.text for cell in page.find("tr")[1].children if isinstance(cell, Node)] == [
+        "largest error", "0.0123", "0.0456", "0.0042", "rad",
+    ]  # fmt: skip
+    assert "compared, not reproduced" in page.text
+    assert "amplitude assumed" in page.text
+    labels = [text.text for text in page.find("text")]
+    assert {"command", "_gear", " ".join(HOSTILE.split())} <= set(labels)
+
+
+def test_an_open_loop_experiment_draws_the_command_by_itself() -> None:
+    columns = {"time": [0.0, 1.0], "command": [0.0, 5.0], "output_angle": [0.0, 0.1]}
+    run = Recording(columns, {"time": "s", "command": "V", "output_angle": "rad"})
+    drawn = Page(figures.experiment(SimulatedExperiment("step", (("gear", run),)), "e")).root
+    labels = [text.text for text in drawn.find("text")]
+    assert "command [V]" in labels
+    assert not any("response" in label for label in labels)
+
+
+def test_an_experiment_refuses_what_it_cannot_show() -> None:
+    with pytest.raises(ValueError, match=r'^experiment "e" has no run$'):
+        SimulatedExperiment("e", ())
+    with pytest.raises(ValueError, match=r'^experiment "e": run "a" has no column "torque"$'):
+        SimulatedExperiment("e", (("a", swing(9)),), response="torque")
+    with pytest.raises(ValueError, match=r'^experiment "e": rms has 2 values for 1 runs$'):
+        SimulatedExperiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
 
 
 def test_a_page_needs_nothing_else_and_is_the_same_each_time(page: str, found: Identified) -> None:
@@ -142,7 +212,9 @@ def test_any_length_can_be_drawn(over: str, count: int) -> None:
     x = np.linspace(1.0, 500.0, count)
     columns = {over: x, "torque": np.sin(x), "modelled": np.sin(x) + 0.1, "sigma": np.full(count, 0.1)}
     units = dict.fromkeys(columns, "N.m") | {over: {"speed": "rad/s", "time": "s"}.get(over, "rad")}
-    drawing = identify_figures.file_figure(FileResult("long.csv", curves=Recording(columns, units)), "long")
+    look: Look = {"speed": "table", "twist": "loop"}.get(over, "series")  # type: ignore[assignment]
+    picture = Picture(Recording(columns, units), look)
+    drawing = identify_figures.file_figure(FileResult("long.csv"), picture, "long")
     assert len(drawing) < 300_000
 
 
@@ -183,14 +255,14 @@ def test_files_hold_every_number_to_the_last_digit(first: float, second: float, 
     ]  # fmt: skip
     assert float(rows[1]["sigmas_apart"]) == pytest.approx(abs(first - second) / (np.sqrt(5.0) * sigma))
     assert rows[1]["same_measurement"] == ("yes" if same else "no")
-    assert rows[-1]["not_told_because"] == "noise"
+    assert (rows[-1]["state"], rows[-1]["reason"]) == ("not identified", "noise")
     results = json.loads(made["results.json"])
-    assert results["numbers"][0]["best"]["value"] == first
+    assert results["parameters"][0]["best"]["value"] == first
     agree = not same and abs(first - second) <= 2.0 * np.sqrt(5.0) * sigma
-    assert bool(results["numbers"][0]["mean_of"]) == agree
+    assert bool(results["parameters"][0]["mean_of"]) == agree
     assert (rows[2]["taken"] == "yes") == agree
-    assert results["numbers"][0]["others"][0]["value"] == second
-    assert results["numbers"][0]["contradicts"] == ["b.csv"][: rows[1]["contradicts"] == "yes"]
+    assert results["parameters"][0]["others"][0]["value"] == second
+    assert results["parameters"][0]["contradicts"] == ["b.csv"][: rows[1]["contradicts"] == "yes"]
 
 
 def test_a_phase_is_compared_around_the_turn() -> None:

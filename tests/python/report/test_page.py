@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import strainwave as sw
+from strainwave.identification.identify import Identified
 from strainwave.report import figures
 from strainwave.report.experiment import SimulatedExperiment
+from strainwave.report.identify import identify_report
 from strainwave.report.page import write
 from strainwave.report.provenance import Provenance
-from strainwave.report.twin import twin_report
 
-from tests.python.report.reading import Node, Page, points, section
-from tests.python.report.twins import HOSTILE, swing
+from tests.python.report.measured import HOSTILE, swing
+from tests.python.report.reading import Node, Page, points
 
 
 def test_the_page_is_well_formed_and_no_name_stands_twice(html: str) -> None:
@@ -33,35 +33,36 @@ def test_the_page_refers_to_nothing_outside_itself(html: str) -> None:
         assert "".join(reference).startswith(("#", "data:"))
 
 
-def test_markup_in_names_is_shown_and_not_obeyed(from_friction: sw.Twin) -> None:
-    html = twin_report(from_friction, provenance=Provenance(command=HOSTILE, files={HOSTILE: "0" * 64}))
+def test_markup_in_names_is_shown_and_not_obeyed(from_friction: Identified) -> None:
+    html = identify_report(from_friction, Provenance(command=HOSTILE, files={HOSTILE: "0" * 64}))
+    name = from_friction.files[0].name
+    assert name == HOSTILE.replace("/", "_")
     assert "<script" not in html
     assert "<b>table" not in html
     page = Page(html).root
-    assert HOSTILE in page.find("header")[0].text
+    assert name in page.find("main")[0].text
     assert page.find("footer")[0].find("code")[0].text == HOSTILE
-    assert any(HOSTILE in svg.attributes["aria-label"] for svg in page.find("svg"))
-    assert "a < b" in section(html, "friction").text, "the title of the recording"
+    assert any(name in svg.attributes["aria-label"] for svg in page.find("svg"))
 
 
-def test_the_same_twin_gives_the_same_bytes_and_the_date_is_the_one_given(from_friction: sw.Twin) -> None:
-    provenance = Provenance("2026-01-01", "strainwave twin", {})
-    assert twin_report(from_friction, (), provenance) == twin_report(from_friction, (), provenance)
-    assert "2026-01-01" in twin_report(from_friction, (), provenance)
-    assert not re.search(r"20\d\d-\d\d-\d\d", twin_report(from_friction))
+def test_the_same_result_gives_the_same_bytes_and_the_date_is_the_one_given(from_friction: Identified) -> None:
+    provenance = Provenance("2026-01-01", "strainwave identify", {})
+    assert identify_report(from_friction, provenance) == identify_report(from_friction, provenance)
+    assert "2026-01-01" in identify_report(from_friction, provenance)
+    assert not re.search(r"20\d\d-\d\d-\d\d", identify_report(from_friction))
 
 
-def test_the_preferences_of_a_machine_do_not_change_the_report(from_friction: sw.Twin) -> None:
+def test_the_preferences_of_a_machine_do_not_change_the_report(from_friction: Identified) -> None:
     import matplotlib as mpl
 
-    expected = twin_report(from_friction)
+    expected = identify_report(from_friction)
     with mpl.rc_context({"font.size": 20.0, "axes.grid": False, "text.usetex": False, "lines.linewidth": 9.0}):
-        assert twin_report(from_friction) == expected
+        assert identify_report(from_friction) == expected
         assert mpl.rcParams["font.size"] == 20.0
 
 
-def test_drawing_leaves_no_figure_open(from_friction: sw.Twin) -> None:
-    twin_report(from_friction)
+def test_drawing_leaves_no_figure_open(from_friction: Identified) -> None:
+    identify_report(from_friction)
     assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
 
 
@@ -69,7 +70,7 @@ def test_a_long_record_stays_small_and_keeps_its_peak() -> None:
     run = swing(400_000)
     noisy = run["output_angle"] + 1e-3 * np.random.default_rng(1).normal(size=len(run))
     noisy[123_456] = 0.4
-    svg = figures.experiment(SimulatedExperiment("long", (("twin", run.with_column("output_angle", noisy, "rad")),)), "long")
+    svg = figures.experiment(SimulatedExperiment("long", (("gear", run.with_column("output_angle", noisy, "rad")),)), "long")
     assert len(svg) < 80_000
     lines = [points(path) for path in Page(svg).root.find("path") if "--model" in path.attributes.get("style", "")]
     response = next(line for line in lines if len(line) > 100)
@@ -80,7 +81,7 @@ def test_a_long_record_stays_small_and_keeps_its_peak() -> None:
 def test_provenance_holds_the_digest_of_each_file(tmp_path: Path) -> None:
     file = tmp_path / "loop.csv"
     file.write_bytes(b"abc")
-    provenance = Provenance.of([file], command="strainwave twin", date="2026-01-01")
+    provenance = Provenance.of([file], command="strainwave identify", date="2026-01-01")
     # FIPS 180-2, appendix B.1
     assert provenance.files == {"loop.csv": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"}
 

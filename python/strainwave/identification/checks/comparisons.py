@@ -49,8 +49,8 @@ class _Compared:
 def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
     """Yield the check that friction and stiffness are those of the start set, by the logarithms of all numbers together.
 
-    Assumed numbers of the set, and files with a failed check, take no part. Logarithms are compared, since a number with a spread of 30 % may be two thirds or
-    one and a half of the one stated, but never less than nothing.
+    Assumed numbers of the set, and files with a failed check, take no part. Logarithms are compared, since a number with a
+    spread of 30 % may be two thirds or one and a half of the one stated, but never less than nothing.
     """
     from scipy.stats import chi2
 

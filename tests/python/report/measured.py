@@ -1,4 +1,4 @@
-"""Measurements of gears that are not there, for twins to be made of."""
+"""Measurements of gears that are not there, to be identified and reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LAW = sw.friction.LuGre(
 
 def friction_table() -> sw.Recording:
     torque = LAW.steady(SPEED) * (1.0 + 0.01 * np.random.default_rng(1).normal(size=len(SPEED)))
-    return sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}, title="a < b")
+    return sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}, title=HOSTILE)
 
 
 def torsion_loop() -> sw.Recording:
