@@ -151,9 +151,10 @@ def test_no_joint_of_the_kinova_gets_another_ratio_than_100(name: str) -> None:
 def test_two_encoders_of_an_rv_gear_take_the_ratio_given(axis: int) -> None:
     """Its motor angle is exported in joint units."""
     ratio = {1: 1798.0 / 7.0, 3: 757.0 / 3.0}[axis]
-    names = {"time": "rec.time_cont", "input_angle": "rec.act_pos_mot_deg_{}", "output_angle": "rec.act_pos_se_deg_{}"}
+    names = {"time": "rec.time_cont", "input_angle": "rec.act_pos_mot_deg_{}"}
+    names |= {"output_angle": "rec.act_pos_se_deg_{}", "input_torque": "rec.act_torque_abs_nm_{}"}
     columns = {name: wanted.format(axis) for name, wanted in names.items()}
-    units = {"input_angle": "deg", "output_angle": "deg"}
+    units = {"input_angle": "deg", "output_angle": "deg", "input_torque": "N.m"}
     read = recognise(ARMS / "kuka-kr300" / "FF_A.mat", FileMapping(columns=columns, units=units))
     found = orders_found(read.recording, side="output", ratio=ratio).transmission
     assert found is not None
@@ -161,3 +162,12 @@ def test_two_encoders_of_an_rv_gear_take_the_ratio_given(axis: int) -> None:
     assert found.ratio.in_joint_units
     assert not any("teeth" in each for each in found.remarks)
     assert any("joint units" in each for each in found.remarks)
+
+
+@arms_are_here
+@pytest.mark.parametrize("name", ["left-hip-pitch/idle", "left-hip-pitch/ref", "right-ankle-roll/Idle", "right-knee/idle"])
+def test_no_leg_joint_gets_a_ratio_from_its_hysteresis(name: str) -> None:
+    """Gears of 100; a few periods in a motion of some 30 degrees are no ripple of a gear."""
+    columns, units = {"output_angle": "out_1", "joint_torque": "out_3"}, {"output_angle": "deg", "joint_torque": "N.m"}
+    found = ripple_of(ARMS / "icub" / f"{name}.mat", FileMapping(columns=columns, units=units))
+    assert set(found.concluded) <= {100, 101}

@@ -12,6 +12,7 @@ RATIOS = range(30, 401)  # of strain wave gears
 USUAL_RATIOS = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # that makers offer, with either spline fixed
 USUAL_PREFERENCE = 4.0  # logarithm of the prior odds of these over others (assumed)
 MIN_LINE_ORDER = 2.0 * RATIOS[0]  # per output turn: slower lines of an arm are gravity, inertia and friction of its joints
+MIN_LINE_PERIODS = 20.0  # in the span of the angle: fewer are hysteresis, and friction that varies over the angle
 WAVE_ORDERS = {2.0: 0.45, 4.0: 0.11, 1.0: 0.09, 3.0: 0.02, 6.0: 0.02, 8.0: 0.01}  # prior share of lines by order (assumed)
 MAX_MOTOR_ORDER = 48  # pole pairs, slots and their multiples
 MOTOR_SHARES = (0.15, 0.05)  # over the order: prior share of the lines of even and odd orders of the motor (assumed)
@@ -24,6 +25,7 @@ MIN_RELATIVE_EVIDENCE = 0.15  # of the strongest line [1]: weaker ones do not co
 MATCH_SIGMA = 3.0  # standard deviations, within which a line lies on a comb
 MAX_CANDIDATES = 5  # that are listed
 MIN_CONCLUSIVE_SHARE = 0.7  # probability of a ratio with its neighbour, from which it is concluded
+MIN_NEIGHBOUR_SHARE = 0.1  # probability of the neighbour over that of a ratio, from which it is not excluded
 
 
 @dataclass(frozen=True)
@@ -41,13 +43,18 @@ class Candidate:
     matched: tuple[tuple[float, float], ...]
 
 
-def usable_lines(lines: Sequence[Line]) -> list[Line]:
+def lowest_usable(resolution: float) -> float:
+    """Return the order from which a line counts for the ratio."""
+    return max(MIN_LINE_ORDER, MIN_LINE_PERIODS * resolution)
+
+
+def usable_lines(lines: Sequence[Line], resolution: float) -> list[Line]:
     """Return the lines from which a ratio may be found: of this joint, strong, and too fast for the motion of an arm.
 
     Lines of other joints and of time are left out. So are lines that may be those of time or of another joint, unless a line of
     this joint alone is among the others.
     """
-    fast = [each for each in lines if each.kind in ("order", "either") and each.order >= MIN_LINE_ORDER]
+    fast = [each for each in lines if each.kind in ("order", "either") and each.order >= lowest_usable(resolution)]
     if not any(each.kind == "order" for each in fast):
         return []
     strongest = max(each.evidence for each in fast)
@@ -65,7 +72,7 @@ def candidates(lines: Sequence[Line], resolution: float, highest: float) -> tupl
         resolution: 1 / revolutions, in which two lines merge [1]
         highest: order up to which lines were looked for
     """
-    usable = usable_lines(lines)
+    usable = usable_lines(lines, resolution)
     if not usable:
         return ()
     priors = {ratio: exp(USUAL_PREFERENCE) if ratio in USUAL_RATIOS else 1.0 for ratio in RATIOS}
@@ -92,13 +99,12 @@ def conclusive(found: Sequence[Candidate]) -> tuple[int, ...]:
     if not found:
         return ()
     best = found[0]
-    if best.share >= MIN_CONCLUSIVE_SHARE:
-        return (best.ratio,)
-    for other in found[1:]:
-        if abs(other.ratio - best.ratio) == 1 and best.share + other.share >= MIN_CONCLUSIVE_SHARE:
-            low, high = sorted((best.ratio, other.ratio))
-            return low, high
-    return ()
+    pair = [best, *(each for each in found[1:] if abs(each.ratio - best.ratio) == 1)][:2]
+    if len(pair) == 2 and pair[1].share < MIN_NEIGHBOUR_SHARE * best.share:
+        pair.pop()
+    if sum(each.share for each in pair) < MIN_CONCLUSIVE_SHARE:
+        return ()
+    return tuple(sorted(each.ratio for each in pair))
 
 
 def _explained(

@@ -15,7 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.messages import listed
-from strainwave.orders.comb import MIN_LINE_ORDER, RATIOS, Candidate, candidates, conclusive, usable_lines
+from strainwave.orders.comb import RATIOS, Candidate, candidates, conclusive, lowest_usable, usable_lines
 from strainwave.orders.floor import Floor
 from strainwave.orders.lines import MERGE_PERIODS, MIN_PERIODS, Kind, Line, LineSearch, find_lines, waves, weighed_fit
 from strainwave.orders.smooth_part import Moving, moving
@@ -384,12 +384,13 @@ def _joints(names: Sequence[str]) -> str:
 def _ratio_remarks(found: LineSearch, likely: Sequence[Candidate], revolutions: float, top: float, shaft: Moving) -> list[str]:
     """Return what to know of the ratio: why none is concluded, or which one beside it is possible."""
     remarks = []
-    slow = [line for line in found.lines if line.kind in ("order", "either") and line.order < MIN_LINE_ORDER]
+    slow = [line for line in found.lines if line.kind in ("order", "either") and line.order < lowest_usable(1.0 / revolutions)]
     if slow:
+        limit = f"{lowest_usable(1.0 / revolutions):.3g}"
         hint = "" if len(shaft.shafts) > 1 else "; name the angles of other joints that move, with --column other_angles=…"
         remarks.append(
-            f"lines below order {MIN_LINE_ORDER:g} do not count for the ratio: in an arm they come from gravity, inertia and "
-            f"friction of all joints that move{hint}"
+            f"lines below order {limit} do not count for the ratio: they come from gravity, inertia, "
+            f"hysteresis and friction of all joints that move{hint}"
         )
     if top < 2.0 * MAX_RATIO:
         remarks.append(
@@ -408,7 +409,7 @@ def _ratio_remarks(found: LineSearch, likely: Sequence[Candidate], revolutions: 
             f"no ratio is concluded: the lines fit {each}; give --ratio, or turn further: orders are determined to "
             f"{1.0 / revolutions:.2g} per revolution"
         )
-    elif found.lines and not usable_lines(found.lines):
+    elif found.lines and not usable_lines(found.lines, 1.0 / revolutions):
         remarks.append(
             "no ratio is concluded: no line is surely one of this joint; record this joint alone, at speeds that vary, and "
             "over more of a revolution"

@@ -44,6 +44,12 @@ class Ratio:
     whole: bool
     in_joint_units: bool = False
 
+    @property
+    def of_strain_wave(self) -> bool:
+        """True if a strain wave gear may have the ratio used."""
+        low, high = STRAIN_WAVE_RATIOS
+        return float(self.used).is_integer() and low <= abs(self.used) <= high
+
 
 @dataclass(frozen=True)
 class Pair:
@@ -162,10 +168,9 @@ def ratio_remarks(ratio: Ratio, given: float | None, option: str) -> list[str]:
         option: with which a user gives the ratio
     """
     remarks = _found_remarks(ratio, option) if given is None else _given_remarks(ratio, given)
-    low, high = STRAIN_WAVE_RATIOS
-    size = abs(ratio.used)
-    if not ratio.whole or not low <= size <= high:
+    if not (ratio.whole and ratio.of_strain_wave):
         return remarks
+    size = abs(ratio.used)
     circular = f"circular spline fixed, {2 * size:.0f} and {2 * size + 2:.0f} teeth"
     flexspline = f"flexspline fixed, {2 * size - 2:.0f} and {2 * size:.0f} teeth"
     means, other = (circular, flexspline) if ratio.used < 0.0 else (flexspline, circular)

@@ -213,12 +213,12 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
         )
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
-        for order in MESH_ORDERS:
+        for order in MESH_ORDERS if ratio.of_strain_wave else ():
             mesh = order * (1.0 - 1.0 / ratio.used)
             if lowest <= mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
                 found.append((mesh, "mesh"))
         found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= MIN_ORDER_PERIODS * (1.0 - 1e-3)]
-    elif found:
+    elif found and ratio.of_strain_wave:
         near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
             f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "

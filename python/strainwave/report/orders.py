@@ -79,8 +79,7 @@ def _error(error: TransmissionError, name: str) -> dict[str, Any]:
     from markupsafe import Markup
 
     return {
-        "ratio": uncertain(error.ratio.value, error.ratio.sigma),
-        "used": number(error.ratio.used),
+        "ratio": _ratio(error),
         "lost": _quantity(error.lost_motion),
         "windup": _quantity(error.windup),
         "frequency": _quantity(error.natural_frequency),
@@ -184,8 +183,9 @@ def orders_summary(found: Sequence[OrdersFound]) -> str:
 
 
 def _error_lines(error: TransmissionError) -> Iterator[str]:
-    yield f"  ratio {number(error.ratio.used)} (measured {uncertain(error.ratio.value, error.ratio.sigma)})"
-    yield f"  kinematic error, over {number(error.revolutions, 4)} revolutions of the input:"
+    yield f"  ratio {_ratio(error)}"
+    if error.orders:
+        yield f"  kinematic error, over {number(error.revolutions, 4)} revolutions of the input:"
     for each in error.orders:
         if each.significant:
             amplitude = uncertain(each.amplitude / MICRORADIAN, each.amplitude_sigma / MICRORADIAN)
@@ -198,6 +198,14 @@ def _error_lines(error: TransmissionError) -> Iterator[str]:
         yield f"  wind-up: {_quantity(error.windup)}"
     if error.natural_frequency is not None:
         yield f"  output vibrates at {_quantity(error.natural_frequency)} with the input held"
+
+
+def _ratio(error: TransmissionError) -> str:
+    """Return the ratio used and that of the angles, in words."""
+    measured = uncertain(error.ratio.value, error.ratio.sigma)
+    if error.ratio.in_joint_units and not error.orders:
+        return f"of the angles {measured}: both are counted in joint units"
+    return f"{number(error.ratio.used, 9)} (measured {measured})"
 
 
 def _order_words(each: ErrorOrder) -> str:
