@@ -230,7 +230,7 @@ def analyse(
     if left := [each for each in there if each not in files]:
         print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
     for each in loop_names(found.loops):
-        print(f"for a gear: strainwave identify {gear or 'GEAR'} {target / each}.csv")
+        print(f"for a gear: strainwave identify {gear or 'GEAR'} {target / each}.csv --kind torsion")
 
 
 @rig.command()

@@ -133,7 +133,7 @@ def test_a_virtual_test_gives_back_the_row_of_document_t(made: Path, analysed: R
     assert found["deviations_from_plan"] == []
     steps = read_steps(made)
     assert set(found["photographs"]) == {step.image for step in steps}
-    assert f"for a twin: strainwave twin --gear {GEAR} --torsion found/loop-0deg.csv" in analysed.stdout
+    assert f"for a gear: strainwave identify {GEAR} found/loop-0deg.csv --kind torsion" in analysed.stdout
 
 
 def test_the_photographs_stay_as_they_are_and_the_report_has_their_hashes(test: Path, tmp_path: Path) -> None:
@@ -145,11 +145,11 @@ def test_the_photographs_stay_as_they_are_and_the_report_has_their_hashes(test: 
     assert all(digest in html for name, digest in before.items() if name.endswith(".png") or name in ("steps.csv", "rig.toml"))
 
 
-def test_the_loop_feeds_a_twin_without_retyping(made: Path, analysed: Result) -> None:
-    said = next(line for line in analysed.stdout.splitlines() if line.startswith("for a twin: "))
-    result = strainwave(*said.removeprefix("for a twin: strainwave ").split(), folder=made.parent)
+def test_the_loop_feeds_an_identification_without_retyping(made: Path, analysed: Result) -> None:
+    command = next(line for line in analysed.stdout.splitlines() if line.startswith("for a gear: "))
+    result = strainwave(*command.removeprefix("for a gear: strainwave ").split(), "--out", "gear", folder=made.parent)
     assert result.returncode == 0, result.stderr
-    assert (made.parent / "twin" / "gear.toml").exists()
+    assert (made.parent / "gear" / "gear.toml").exists()
 
 
 def test_a_loop_that_others_measured_is_analysed(tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ def test_columns_of_a_loop_may_have_other_names_and_no_units(tmp_path: Path) -> 
     loop = Recording.read(LOOP)
     rows = zip(loop.values("input_angle", "deg").tolist(), loop.values("input_torque", "N.m").tolist(), strict=True)
     (tmp_path / "mine.csv").write_text("turn,load\n" + "".join(f"{turn},{load}\n" for turn, load in rows))
-    refused(tmp_path, ("rig", "analyse", "mine.csv"), "Name yours like --column")
+    refused(tmp_path, ("rig", "analyse", "mine.csv"), "say which, as with --column torque=NAME")
     named = ("--column", "input_angle=turn", "--column", "input_torque=load")
     refused(tmp_path, ("rig", "analyse", "mine.csv", *named), "--unit")
     refused(tmp_path, ("rig", "analyse", "mine.csv", "--column", "colour=turn"), "colour is no column of these measurements")

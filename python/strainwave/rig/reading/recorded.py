@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
+from strainwave.files.tables import open_table
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
-from strainwave.messages import listed, one_line
+from strainwave.messages import as_option, listed, one_line, quoted
 from strainwave.rig.loop import COLUMNS, Loop, Side
 
 Array = NDArray[np.float64]
@@ -67,7 +68,13 @@ def _recording(
         if side is None:
             raise ValueError(one_line(f"{path}: {BOTH_SHAFTS}"))
         columns = {name: name for name in COLUMNS[side]}
+    stated = {label.name for label in open_table(path).labels if label.unit is not None}
     found = recognise(path, FileMapping(columns=columns or {}, units=units or {}, kind="torsion", side=side))
+    for name in (each for pair in COLUMNS.values() for each in pair if each in found.columns):
+        if found.columns[name] not in stated and name not in (units or {}):
+            unit = "deg" if name in ("input_angle", "twist") else "N.m"
+            column = quoted(found.columns[name])
+            raise ValueError(one_line(f"{path}: column {column} states no unit; give it, with {as_option('unit', name, unit)}"))
     assumed = () if columns or there else (*found.why[2:], *found.remarks)  # the first two are its columns and their side
     return found.recording, assumed
 
