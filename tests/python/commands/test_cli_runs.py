@@ -219,7 +219,6 @@ def test_no_option_is_advised_that_the_verb_does_not_have(folder: Path, argument
     result = strainwave(*arguments, folder=folder)
     assert result.returncode == 2
     assert result.stderr.endswith("has no unit; write it behind the name, as in torque [N.m]\n")
-    assert "--unit" in strainwave("twin", "--gear", "joint.toml", "--friction", "bare.csv", folder=folder).stderr
 
 
 def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

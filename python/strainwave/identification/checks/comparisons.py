@@ -16,6 +16,7 @@ from strainwave.identification.results.file_result import FileEstimate
 from strainwave.messages import listed
 
 CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit by chance: that of three standard deviations
+FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
 MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
 REPEATABILITY = {"friction_input": 0.2, "friction_mesh": 0.2, "hysteresis": 0.2}  # of a part from run to run, in logarithms
 REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
@@ -87,20 +88,20 @@ def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterat
 
 
 def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
-    """Return the number of the start set that an estimate is compared with; springs of two kinds by their first stiffness."""
-    path = estimate.path
-    if not path.startswith(("gear.friction_input.", "gear.stiffness.")) or "[" in path or estimate.label != path:
+    """Return the number of the start set that an estimate is compared with; None if it has none of the same meaning.
+
+    Of springs the stiffness at zero twist is compared. Where their knees lie depends on how far they were twisted.
+    """
+    path, spring = estimate.path, start.gear.stiffness
+    if path in FIRST_STIFFNESS and estimate.label == path:
+        first, stiffness = spring.fields[0]["name"], float(spring.tangent(0.0))
+        return (f"gear.stiffness.{first}", stiffness) if stiffness == float(getattr(spring, first)) else None
+    if not path.startswith("gear.friction_input.") or "[" in path or estimate.label != path:
         return None
     try:
-        value = float(attrgetter(path)(start))
+        return path, float(attrgetter(path)(start))
     except AttributeError:
-        spring = start.gear.stiffness
-        first = spring.fields[0]["name"]
-        is_first = path in ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")
-        if not is_first or float(spring.tangent(0.0)) != float(getattr(spring, first)):
-            return None
-        return f"gear.stiffness.{first}", float(spring.tangent(0.0))
-    return path, value
+        return None
 
 
 def between_files(parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:

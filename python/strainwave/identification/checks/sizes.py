@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
+from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.checks.mistakes import MAX_FACTOR_LEFT, nearest, times, wrong_units
 from strainwave.identification.experiments.friction_table import FrictionTable
@@ -22,6 +23,7 @@ MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compare
 MAX_FACTOR = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
 MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a torque with less is not that of the motor
 STIFFNESS_SPREAD = 1.3  # factor by which gears of one kind differ in stiffness, as makers state
+MIN_SPREAD_OF_STIFFNESS = 0.3  # standard deviation of its logarithm, as makers state it
 MAX_SHARE_BY_ACCELERATION = 0.5  # of what steady friction leaves unexplained: if acceleration explains more, it is a log
 MIN_ROWS_OF_LOG = 30  # tables of steady friction are shorter, or in no order that acceleration could follow
 MAX_FRICTION_SHARE = 0.8  # of the torque at the ends of a loop: a twisted gear carries more than the rest by its spring
@@ -187,7 +189,7 @@ def clipping(recording: Recording, source: str) -> Check:
     )  # fmt: skip
 
 
-def stiffness_of_loop(recording: Recording, found: Fit, start: Gear, source: str) -> Iterator[Check]:
+def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: str) -> Iterator[Check]:
     """Yield the checks of a torsion loop: that a spring carries most of its torque, and the size of its stiffness."""
     loop = found.experiment
     assert isinstance(loop, TorsionLoop)
@@ -203,8 +205,8 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: Gear, source: str
         )  # fmt: skip
         if share > MAX_FRICTION_SHARE:
             return
-    measured, known = spring / half, float(start.stiffness.torque(half)) / half
-    factor, squared = measured / known, start.kinematics.ratio**2
+    measured, known = spring / half, float(start.gear.stiffness.torque(half)) / half
+    factor, squared, limit = measured / known, start.gear.kinematics.ratio**2, _largest_factor(start)
     mistakes = {
         "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,
         "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
@@ -213,11 +215,19 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: Gear, source: str
     mistakes |= wrong_units("torque", recording.unit(torque))
     mistakes |= {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(angle)).items()}
     yield Check(
-        "stiffness of the start set", source, max(factor, 1.0 / factor), MAX_FACTOR, "1",
-        not 1.0 / MAX_FACTOR < factor < MAX_FACTOR,
+        "stiffness of the start set", source, max(factor, 1.0 / factor), limit, "1", not 1.0 / limit < factor < limit,
         f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({known:.3g} N·m/rad)",
         f"{nearest(factor, mistakes)[0]}see whether sides and units are right; if they are, --accept",
     )  # fmt: skip
+
+
+def _largest_factor(start: GearSet) -> float:
+    """Return the factor by which the stiffness of a gear may differ from that of its set: three standard deviations."""
+    first = f"gear.stiffness.{start.gear.stiffness.fields[0]['name']}"
+    entry = start.sources.get(first)
+    if entry is None or entry.assumed:
+        return MAX_FACTOR
+    return float(np.exp(3.0 * max(entry.spread or 0.0, MIN_SPREAD_OF_STIFFNESS)))
 
 
 def hint_of_ratio(found: Fit, start: Gear) -> Iterator[str]:

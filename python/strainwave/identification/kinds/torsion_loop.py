@@ -49,7 +49,7 @@ class Torsion(Kind):
         friction_measured = "friction_input" in known.determined
         training = held_out_blocks(len(loop.twist))
         best, *others = fit_loop(loop, gear, training, friction_measured=friction_measured)
-        checks = [clipping(file.recording, name), *stiffness_of_loop(file.recording, best.fit, start.gear, name)]
+        checks = [clipping(file.recording, name), *stiffness_of_loop(file.recording, best.fit, start, name)]
         whole = explained(best.fit, name)
         shared = _shared(best, gear, loop, friction_measured)
         fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, shared)
