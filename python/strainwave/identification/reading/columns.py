@@ -16,7 +16,7 @@ from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channe
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import Assumed, missing_units
+from strainwave.identification.reading.missing_units import Assumed, counts_of_revolution, missing_units
 from strainwave.identification.reading.names import QUANTITIES, UNITS, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
@@ -316,6 +316,8 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     numbers, left_out = table.measured(sources)
     raw = {column.position: numbers[str(column.position)] for column in columns}
     known, told = _with_units(table, columns, mapping)
+    known, counted = _with_counts(known, raw)
+    told += counted
     _check_units([column for column in known if column.own], raw)
     try:
         assumed = missing_units([_with_side(column, mapping) for column in known if column.own], raw)
@@ -347,6 +349,17 @@ def _naming(table: OpenTable) -> str:
     if nameless(table):
         return "say which is which, as with --constant rate=HZ --column output_angle=1 --column joint_torque=2"
     return f"say it, as with {as_option('column', 'speed', names[0])}"
+
+
+def _with_counts(columns: Sequence[Column], raw: Mapping[int, Array]) -> tuple[list[Column], list[str]]:
+    """The columns, with the counts of a revolution where the speed beside an encoder determines them; and which."""
+    found = counts_of_revolution(
+        [replace(c, unit="counts") if counts(_incomplete_unit(c, raw[c.position])) else c for c in columns], raw
+    )
+    told = [
+        f"a revolution has {found[c.position]} counts of {c.name}, as its speed shows" for c in columns if c.position in found
+    ]
+    return [replace(c, unit=f"counts/{found[c.position]}") if c.position in found else c for c in columns], told
 
 
 def _check_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> None:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.units import convert
+from strainwave.files.units import convert, counts, measures
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import UNITS
 from strainwave.messages import as_option, quoted
@@ -28,6 +28,7 @@ FINER = ("ms", "us", "ns")  # than a second
 DIFFERENCES = (5000, 200)  # parts of a record over which slopes are taken, the finest first: encoders have steps
 RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
 NEAR = 0.03  # relative: a rate of rows that differs by less from a usual one is this one
+NEAR_COUNTS = 3e-3  # relative: counts of a revolution that differ by less from a usual number are this one
 WRAP = 0.5  # of the range of an angle: by more it does not move within a thousandth of a log, but where it begins anew
 SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
 
@@ -83,6 +84,28 @@ def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[i
                     units[column.position] = unit
                     sure.add(column.position)
             break
+    return found
+
+
+def counts_of_revolution(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[int, int]:
+    """The counts of one revolution of encoders beside their speed, by their places; those that are a usual number.
+
+    Args:
+        columns, raw: as of `missing_units`
+    """
+    times = [convert(raw[c.position], c.unit, "s") for c in columns if c.channel.quantity == "time" and c.unit is not None]
+    found = dict[int, int]()
+    for angle, speed in _pairs(columns) if times else ():
+        is_counted = angle.unit is not None and counts(angle.unit) and not measures(angle.unit, "rad")
+        if not is_counted or speed.unit is None or not measures(speed.unit, "rad/s"):
+            continue
+        slope = _slope(raw[angle.position], raw[speed.position], times[0])
+        per_turn = 1.0 / turns if (turns := convert(abs(slope), speed.unit, "rev/s")) > 0.0 else 0.0
+        bits = round(np.log2(per_turn)) if per_turn > 1.0 else 0
+        usual = (2**bits, 100 * round(per_turn / 100.0)) if COARSEST <= bits <= FINEST else ()
+        near = next((each for each in usual if each and abs(per_turn / each - 1.0) < NEAR_COUNTS), None)
+        if near is not None:
+            found[angle.position] = near
     return found
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.names import Side, meaning
 from strainwave.messages import as_option
 
 Array = NDArray[np.float64]
@@ -64,7 +64,8 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
     if said is not None:
         return said, f"{column.name} was said to be at the {said}"
     if column.robot:
-        return "output", f"{column.name} is what robots call a channel of a joint: it is taken to be at the output"
+        why = "what robots call a channel of a joint" if _is_word_of_robots(column) else "a channel of one of several joints"
+        return "output", f"{column.name} is {why}: it is taken to be at the output"
     for other in beside:
         if (
             (side := other.channel.side)
@@ -92,6 +93,12 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
     unknown = f"whether {column.name} was measured at the motor or at the output cannot be told"
     sides = [FileMapping(side="output"), FileMapping(side="input")]
     raise UndecidedError(f"{unknown}; say it with {ways}, or with --side for all", sides)
+
+
+def _is_word_of_robots(column: Column) -> bool:
+    """True if the name itself is that of a joint's channel, and not only its number."""
+    found = meaning(column.label)
+    return found is not None and found.robot
 
 
 def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple[Side, str]:

@@ -95,8 +95,10 @@ def test_shares_of_a_rated_torque_are_those_of_the_motor(tmp_path: Path) -> None
     counts, rpm = np.round(RATIO * ANGLE / (2.0 * np.pi) * 4096), RATIO * SPEED * 30.0 / np.pi
     columns = [1e3 * TIME, np.full_like(TIME, 4663.0), counts, rpm, TORQUE / RATIO / 0.4e-3]
     path = written(tmp_path / "log.txt", header, columns, "\t")
-    units = {"angle": "counts/4096", "torque": "‰ of 0.4 Nm"}
-    found = recognise(path, FileMapping(units=units))
+    with pytest.raises(ValueError, match="does not contain of which rated value Torque actual value is a share"):
+        recognise(path)
+    found = recognise(path, FileMapping(units={"torque": "‰ of 0.4 Nm"}))
+    assert "a revolution has 4096 counts of Position actual value, as its speed shows" in found.remarks
     assert (found.kind, found.side) == ("log", "input")
     assert found.recording["input_torque"] == pytest.approx(TORQUE / RATIO, abs=1e-7)
     assert found.recording["input_angle"] == pytest.approx(RATIO * ANGLE, abs=1e-3)
@@ -323,3 +325,10 @@ def test_a_time_that_counts_rows_gets_their_rate_from_angle_and_speed(tmp_path: 
     angle, speed, torque = (np.interp(time, TIME, each) for each in (ANGLE, SPEED, TORQUE))
     path = written(tmp_path / "log.csv", "Time,q,dq,tau\n", [np.arange(len(time)), angle, speed, torque])
     check_joint(recognise(path), angle, torque, time)
+
+
+def test_the_counts_that_a_person_gives_go_before_those_that_the_speed_shows(tmp_path: Path) -> None:
+    counts, rpm = np.round(RATIO * ANGLE / (2.0 * np.pi) * 4096), RATIO * SPEED * 30.0 / np.pi
+    path = written(tmp_path / "log.csv", "t [s],motor position,motor speed [rpm],current [A]\n", [TIME, counts, rpm, TORQUE])
+    assert recognise(path).units["input_angle"] == "counts/4096"
+    assert recognise(path, FileMapping(units={"angle": "counts/5000"})).units["input_angle"] == "counts/5000"
