@@ -130,7 +130,7 @@ def identify(
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
     checks += _nothing_determined(results)
     failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
-    checks += [*with_start_set(start, parameters, failed), *between_files(parameters, failed)]
+    checks += [*with_start_set(start, parameters, failed), *between_files(parameters, results)]
     return Identified(start, results, parameters, with_means(fits.known, parameters), tuple(checks))
 
 

@@ -67,7 +67,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
         FileResult("<b>notes</b>.txt", refused="no name of a column tells what it measures; give --column"),
     )  # fmt: skip
     parameters = combine(findings)
-    return Identified(START, findings, parameters, START, tuple(between_files(parameters)))
+    return Identified(START, findings, parameters, START, tuple(between_files(parameters, findings)))
 
 
 @pytest.fixture(scope="module")

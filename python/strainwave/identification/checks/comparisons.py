@@ -12,7 +12,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.fitting.influence import uncertainty
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE, CombinedParameter, distance
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.messages import listed
 
 CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit by chance: that of three standard deviations
@@ -104,12 +104,14 @@ def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
         return None
 
 
-def between_files(parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
+def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileResult]) -> Iterator[Check]:
     """Yield a check for each two files that contradict each other, of those without a failed check.
 
     Friction and hysteresis differ from run to run by more than their standard deviations, by temperature and wear. A check
-    fails if two files are further apart than that explains, too.
+    fails if two files are further apart than that explains, too. Friction of two laws fails none: their numbers differ even if
+    they describe the same friction.
     """
+    failed, laws = {file.name for file in files if file.failed}, {file.name: _friction_of(file) for file in files}
     for each in parameters:
         best = each.of_file(each.source)
         for name in each.contradicts:
@@ -119,15 +121,21 @@ def between_files(parameters: Sequence[CombinedParameter], failed: Collection[st
             part = each.estimate.path.removeprefix("gear.").partition(".")[0]
             repeatability = REPEATABILITY.get(part, REPEATABILITY_OF_OTHERS) * abs(best.value)
             apart = distance(best, other)
+            other_law = part == "friction_input" and laws.get(name) != laws.get(each.source)
             apart_from_run_to_run = abs(best.value - other.value) / float(np.hypot(repeatability, _sigma(best, other)))
             yield Check(
                 "agreement of files", f"{each.source}, {name}", apart_from_run_to_run, MAX_DISTANCE, "standard deviations",
-                apart_from_run_to_run > MAX_DISTANCE,
+                apart_from_run_to_run > MAX_DISTANCE and not other_law,
                 f"{each.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} by {each.source}, "
                 f"{other.value:.4g} ± {other.sigma:.2g} by {name}: {apart:.3g} standard deviations apart",
                 "see whether sides, columns and units of both are right, and compare temperature, load, speed and lubricant; "
                 "leave out the file that is not of this gear as you want it",
             )  # fmt: skip
+
+
+def _friction_of(file: FileResult) -> str:
+    """Return the law of friction that was fitted to a file."""
+    return file.model if file.fit is None else str(file.fit.gear.friction_input.name)
 
 
 def _sigma(one: FileEstimate, other: FileEstimate) -> float:

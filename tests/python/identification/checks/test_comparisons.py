@@ -1,0 +1,93 @@
+"""Files against the start set, and against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identification.checks.comparisons import CHANCE, between_files, with_start_set
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.combined_parameter import combine
+from strainwave.identification.results.file_result import FileEstimate, FileResult
+
+from tests.samples import sample
+
+SMALL, LARGE = sw.GearSet.read("hfuc-20-80"), sw.GearSet.read("hfuc-32-50")
+FIRST = "gear.stiffness.k1"
+
+
+def of(name: str, values: dict[str, float], relative: float = 0.005) -> FileResult:
+    units = {"stiffness": "N.m/rad", "friction_input": "N.m"}
+    return FileResult(
+        name,
+        estimates=tuple(
+            FileEstimate(path, units[path.split(".")[1]], value, relative * value, "") for path, value in values.items()
+        ),
+    )
+
+
+def against(start: sw.GearSet, *files: FileResult) -> Sequence[Check]:
+    return list(with_start_set(start, combine(files)))
+
+
+def test_the_stiffness_of_another_size_fails_though_a_linear_spread_of_30_percent_could_not_exclude_it() -> None:
+    """k1 of size 20 against the set of size 32: 14204 against 47560 N.m/rad, 2.3 standard deviations of 30 % below."""
+    known = LARGE.gear.stiffness.k1
+    assert (known - 14204.0) / (0.3 * known) < 3.0
+    (check,) = against(LARGE, of("loop.csv", {FIRST: 14204.0}))
+    assert check.failed
+    assert "gear.stiffness.k1 = 1.42e+04" in check.message
+    assert "(-4" in check.message
+    (right,) = against(SMALL, of("loop.csv", {FIRST: 14204.0}))
+    assert not right.failed
+
+
+def test_numbers_are_compared_jointly() -> None:
+    """Three numbers, each two and a half standard deviations off, are no chance."""
+    measured = sw.Entry("test bench", spread=0.2)
+    paths = [f"gear.friction_input.{name}" for name in ("coulomb", "viscous")]
+    start = SMALL.replace(sources={**SMALL.sources, **dict.fromkeys(paths, measured)})
+    off = float(np.exp(2.5 * 0.2))
+    law, spread = start.gear.friction_input, float(np.exp(2.5 * 0.3))
+    values = {paths[0]: off * law.coulomb, paths[1]: off * law.viscous, FIRST: start.gear.stiffness.k1 * spread}
+    for path, value in values.items():
+        (alone,) = against(start, of("file.csv", {path: value}))
+        assert not alone.failed
+    (together,) = against(start, of("file.csv", values))
+    assert together.failed
+
+
+def test_assumed_numbers_contradict_nothing() -> None:
+    assert SMALL.sources["gear.friction_input.coulomb"].assumed
+    assert against(SMALL, of("table.csv", {"gear.friction_input.coulomb": 50.0})) == []
+
+
+def test_the_share_that_fails_by_chance_is_the_one_stated() -> None:
+    random, known = np.random.default_rng(1), SMALL.gear.stiffness.k1
+    count = sample(4000, 20_000)
+    factors = np.exp(0.3 * random.standard_normal(count))
+    (one,) = against(SMALL, of("loop.csv", {FIRST: known}, 1e-6))
+    failed = float(np.mean((np.log(factors) / 0.3) ** 2 > one.limit))
+    assert failed == pytest.approx(CHANCE, abs=4.0 * np.sqrt(CHANCE / count))
+
+
+def test_friction_from_run_to_run_may_differ_by_more_than_its_standard_deviation_and_by_no_factor_of_two() -> None:
+    path = "gear.friction_input.coulomb"
+    for factor, fails in ((1.2, False), (2.0, True)):
+        files = of("a.csv", {path: 0.05}), of("b.csv", {path: 0.05 * factor})
+        (check,) = between_files(combine(files), files)
+        assert check.failed == fails, factor
+        assert "standard deviations apart" in check.message
+
+
+def test_files_that_agree_and_files_with_a_failed_check_are_not_compared() -> None:
+    agree = of("a.csv", {FIRST: 14200.0}), of("b.csv", {FIRST: 14250.0})
+    assert list(between_files(combine(agree), agree)) == []
+    bad = Check("torque at its limit", "b.csv", 0.2, 0.05, "1", True)
+    doubtful = FileResult("b.csv", estimates=of("b.csv", {FIRST: 7100.0}).estimates, checks=(bad,))
+    files = agree[0], doubtful
+    assert list(between_files(combine(files), files)) == []
+    (taken,) = combine(files)
+    assert (taken.source, taken.mean_of) == ("a.csv", ("a.csv",))
