@@ -11,7 +11,7 @@ import shlex
 from collections.abc import Iterable, Sequence
 
 _LONGEST_TEXT = 60  # characters of a text in quotes
-_LONGEST_LINE = 480  # characters of a whole message
+_LONGEST_LINE = 960  # characters of a whole message; with its options in both spellings a question has some 600
 _MOST_NAMES = 20  # of a list
 
 

@@ -42,7 +42,7 @@ TITLE = "# title: "
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
 _SEEN = 1000  # rows that tell what a column holds
-MAX_SIDEWAYS_BYTES = 2**26  # of a table with a row for each channel
+MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells are texts before they are numbers
 
 
 def open_text(path: str | Path) -> CsvTable | ArrayTable:
