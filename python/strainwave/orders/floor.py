@@ -1,4 +1,4 @@
-"""The noise floor of a series over its frequencies, told from what stands out of it."""
+"""Noise floor of a series over its frequencies, without the lines that stand out of it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-NARROWEST = 40  # lines of a block at the lowest frequencies
-WIDENING = 0.5  # of the frequency: blocks grow with it, as noise is steep at low frequencies and flat at high ones
-WIDEST = 0.03  # of all lines
-EDGE = 0.05  # of the series, on which the taper rises at each end
+MIN_BLOCK_LINES = 40  # lines of a block at the lowest frequencies
+BLOCK_GROWTH = 0.5  # of the frequency: blocks grow with it, as noise is steep at low frequencies and flat at high ones
+MAX_BLOCK_SHARE = 0.03  # of all lines
+TAPER_SHARE = 0.05  # of the series, on which the taper rises at each end
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,16 @@ class Floor:
     lines: Array
 
     def at(self, frequency: Array) -> Array:
-        """The level at a frequency [cycles per sample], of any size: what is sampled too seldom is folded back."""
+        """Return the level at a frequency [cycles per sample]; frequencies above half the rate are folded back."""
         folded = np.abs(frequency - np.rint(frequency))
         return np.exp(np.interp(folded, self.place, np.log(self.level)))
 
     def whitened(self, series: Array) -> Array:
-        """The series over the root of its floor: white, of variance 1, where it is noise."""
+        """Return the series over the root of its floor: white, of variance 1, if it is noise."""
         return self._divided(series, 0.5)
 
     def weighed(self, series: Array) -> Array:
-        """The series over its floor: its product with a shape tells how much of the shape is in it (a matched filter)."""
+        """Return the series over its floor: its product with a shape is the amount of the shape in it (a matched filter)."""
         return self._divided(series, 1.0)
 
     def _divided(self, series: Array, power: float) -> Array:
@@ -53,18 +53,18 @@ class Floor:
 
 
 def floor_of(power: Array, count: int) -> Floor:
-    """The floor of a periodogram: medians of blocks, each over the median of the exponential distribution.
+    """Return the floor of a periodogram: medians of blocks, each over the median of the exponential distribution.
 
-    A median does not see single lines that stand out, which a mean would smear over their neighbours.
+    A median is not moved by single lines, which a mean would smear over their neighbours.
 
     Args:
         power: |DFT|² over the sum of the squared taper at 1 / count, 2 / count, … cycles per sample, shape (n,)
         count: samples of the series
     """
     edges = [0]
-    widest = max(NARROWEST, int(WIDEST * len(power)))
+    widest = max(MIN_BLOCK_LINES, int(MAX_BLOCK_SHARE * len(power)))
     while edges[-1] < len(power):
-        width = int(min(max(NARROWEST, WIDENING * edges[-1]), widest))
+        width = int(min(max(MIN_BLOCK_LINES, BLOCK_GROWTH * edges[-1]), widest))
         edges.append(edges[-1] + width)
     if len(edges) > 2:
         edges.pop(-2)  # the last block takes what is left
@@ -77,14 +77,14 @@ def floor_of(power: Array, count: int) -> Floor:
 
 
 def floor_under(series: Array, weight: Array) -> Floor:
-    """The floor of a series that was multiplied by a weight, which is 1 or less."""
+    """Return the floor of a series that was multiplied by a weight of 1 or less."""
     power = np.abs(np.fft.rfft(series)[1:]) ** 2 / float(weight @ weight)
     return floor_of(power, len(series))
 
 
 def taper(count: int) -> Array:
-    """One in the middle, cosines down to zero at both ends, shape (count,)."""
-    rise = max(1, int(EDGE * count))
+    """Return ones in the middle and cosines down to zero at both ends, shape (count,)."""
+    rise = max(1, int(TAPER_SHARE * count))
     shape = np.ones(count)
     shape[:rise] = 0.5 - 0.5 * np.cos(np.pi * (np.arange(rise) + 0.5) / rise)
     shape[-rise:] = shape[:rise][::-1]

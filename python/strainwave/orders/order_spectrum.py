@@ -1,4 +1,4 @@
-r"""Orders: what repeats a number of times in each revolution of a shaft, told from a recording in the domain of its angle.
+r"""Orders: what repeats a number of times in each revolution of a shaft, found in a recording over its angle.
 
 .. math:: x(\theta) = x_0 + s\,\theta + \sum_n A_n \sin(n \theta + \varphi_n)
 
@@ -23,8 +23,8 @@ from strainwave.messages import quoted
 
 Array = NDArray[np.float64]
 
-ROUNDING = 1e-9  # by which a number of revolutions may be off
-LARGEST = 1e150  # of a value, so that its square is a number, too
+MAX_ROUNDING = 1e-9  # by which a number of revolutions may be off
+MAX_VALUE = 1e150  # of a value, so that its square is a number, too
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class Orders(ComparedByFields):
 
 
 class BearingOrders(NamedTuple):
-    """How often something happens in a bearing in each revolution of its inner ring.
+    """Events in a bearing in each revolution of its inner ring.
 
     Attributes:
         cage: the cage goes round [1]
@@ -67,7 +67,7 @@ class BearingOrders(NamedTuple):
 
 
 def order_amplitudes(recording: Recording, column: str, order: ArrayLike, *, angle: str = "input_angle") -> Orders:
-    """Amplitude and phase of some orders in a column, each for itself.
+    """Return amplitude and phase of some orders in a column, each separately.
 
     The last whole revolutions of the recording are used, each sample weighted by the angle that it stands for. A constant and a
     drift that is linear in the angle are taken out. The drift follows from means of whole revolutions, so no whole order is
@@ -131,7 +131,7 @@ def order_amplitudes(recording: Recording, column: str, order: ArrayLike, *, ang
 
 
 def order_spectrum(recording: Recording, column: str, highest: float, *, angle: str = "input_angle") -> Recording:
-    """Amplitude of all orders in a column, up to the highest.
+    """Return the amplitude of all orders in a column, up to the highest.
 
     The last whole revolutions are resampled over the angle. Mean and linear drift are taken out, and a Hann window is laid over
     the rest. An order that is a multiple of 1 / revolutions then shows its full amplitude, and half of it at both neighbours;
@@ -165,7 +165,7 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
     turned, values = _turned(recording, column, angle)
     revolutions = _revolutions(turned, angle)
     _check_sampled(turned, highest, angle)
-    lines = int(highest * revolutions * (1.0 + ROUNDING))
+    lines = int(highest * revolutions * (1.0 + MAX_ROUNDING))
     if not lines:
         raise ValueError(f"highest = {highest:g} is less than the first line at 1/{revolutions}, of {revolutions} revolutions")
     moving = np.append(True, np.diff(turned) != 0.0)
@@ -184,7 +184,7 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
 def bearing_orders(
     balls: int, ball_diameter: float, pitch_diameter: float, contact_angle: float = 0.0, *, outer_speed: float = 0.0
 ) -> BearingOrders:
-    r"""Orders of the faults of a ball bearing whose inner ring turns with the shaft.
+    r"""Return the orders of the faults of a ball bearing whose inner ring turns with the shaft.
 
     .. math:: f_c = \tfrac{1}{2} [1 - \gamma + r (1 + \gamma)], \quad
               f_o = \tfrac{z}{2} (1 - \gamma) |1 - r|, \quad
@@ -232,11 +232,11 @@ def bearing_orders(
 
 
 def _turned(recording: Recording, column: str, angle: str) -> tuple[Array, Array]:
-    """The angle [rad] and the values of the column, shape (n,); an angle that turns back is refused."""
+    """Return the angle [rad] and the values of the column, shape (n,). Raise ValueError if it turns back."""
     check_recording("recording", recording)
     turned, values = recording.values(arguments.text("angle", angle), "rad"), recording[arguments.text("column", column)]
-    if (reached := float(np.abs(values).max())) > LARGEST:
-        raise ValueError(f"column {quoted(column)} reaches {reached:g}; orders are told of up to {LARGEST:g}")
+    if (reached := float(np.abs(values).max())) > MAX_VALUE:
+        raise ValueError(f"column {quoted(column)} reaches {reached:g}; values up to {MAX_VALUE:g} are allowed")
     steps = np.diff(turned)
     sense = np.sign(steps)
     back = sense * sense[np.argmax(steps != 0.0)] < 0.0 if len(steps) else np.zeros(0, dtype=np.bool_)
@@ -248,21 +248,21 @@ def _turned(recording: Recording, column: str, angle: str) -> tuple[Array, Array
 
 
 def _revolutions(turned: Array, angle: str) -> int:
-    """Whole revolutions that the shaft makes."""
+    """Return the whole revolutions that the shaft makes."""
     made = float(abs(turned[-1] - turned[0])) / tau
-    whole = int(made * (1.0 + ROUNDING) + ROUNDING)
+    whole = int(made * (1.0 + MAX_ROUNDING) + MAX_ROUNDING)
     if whole < 1:
         raise ValueError(f"{angle} makes {made:.3g} revolutions; orders need 1 or more")
     return whole
 
 
 def _check_separated(wanted: Array, revolutions: int, angle: str) -> None:
-    """Refuses orders that lie closer to each other, or to the mean, than the revolutions tell."""
+    """Raise ValueError for orders that the revolutions do not separate from each other or from the mean."""
     for low, high in pairwise([0.0, *sorted(wanted.tolist())]):
-        if isclose(high, low, rel_tol=ROUNDING):
+        if isclose(high, low, rel_tol=MAX_ROUNDING):
             raise ValueError(f"order {high:g} is asked for twice")
         needed = 1.0 / (high - low)
-        if needed > revolutions * (1.0 + ROUNDING):
+        if needed > revolutions * (1.0 + MAX_ROUNDING):
             two = f"orders {low:g} and {high:g}" if low else f"order {high:g} and the mean"
             raise ValueError(
                 f"to tell {two} from each other takes {needed:.6g} revolutions of {angle}, the recording has {revolutions}; "
@@ -271,7 +271,7 @@ def _check_separated(wanted: Array, revolutions: int, angle: str) -> None:
 
 
 def _check_sampled(turned: Array, highest: float, angle: str) -> None:
-    """Refuses an order of which a cycle has fewer than two samples."""
+    """Raise ValueError for an order of which a cycle has fewer than two samples."""
     steps = np.abs(np.diff(turned))
     row = int(np.argmax(steps))
     allowed = pi / highest
@@ -283,7 +283,7 @@ def _check_sampled(turned: Array, highest: float, angle: str) -> None:
 
 
 def _weights(turned: Array, low: float, high: float) -> Array:
-    """How much of the angle from `low` to `high` lies nearer to each sample than to any other [rad], shape (n,)."""
+    """Return how much of the angle from `low` to `high` lies nearer to each sample than to any other [rad], shape (n,)."""
     if turned[-1] < turned[0]:
         return _weights(turned[::-1], low, high)[::-1]
     borders = np.concatenate([turned[:1], 0.5 * (turned[1:] + turned[:-1]), turned[-1:]])

@@ -1,4 +1,4 @@
-"""A shaft that turns, as a recording has it: evenly in time, without wraps, each sample with its direction."""
+"""A shaft that turns in a recording: evenly in time, without wraps, each sample with its direction."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from strainwave.messages import quoted
 
 Array = NDArray[np.float64]
 
-FEWEST = 64  # samples
-LARGEST_STEP = 0.45 * tau  # between samples of an angle that wraps; beyond it the sense is a guess
-LONGEST_GAP = 8  # samples missing in a row that are filled with a straight line
-JITTER = 0.35  # of a step, by which a time stamp may be off
-UNEVEN = 4.0  # steps, that one of twenty steps may be long: others are no clock
-GAP = 2.5  # steps without a row, between which nothing is known
-REST = 1e-3  # of the fastest speed, below which a shaft counts as resting
+MIN_SAMPLES = 64  # samples
+MAX_WRAPPED_STEP = 0.45 * tau  # between samples of an angle that wraps; beyond it the sense is a guess
+MAX_GAP_SAMPLES = 8  # samples missing in a row that are filled with a straight line
+MAX_JITTER_STEPS = 0.35  # of a step, by which a time stamp may be off
+MAX_STEP_RATIO = 4.0  # steps, that one of twenty steps may be long: others are no clock
+MAX_FILLED_STEPS = 2.5  # steps without a row, between which nothing is known
+REST_SPEED_SHARE = 1e-3  # of the fastest speed, below which a shaft counts as resting
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,11 +50,11 @@ class Evenly(ComparedByFields):
 
 
 def evenly(recording: Recording, names: Sequence[str], rate: float | None = None) -> Evenly:
-    """The named columns, each row at its place in an even time.
+    """Return the named columns, each row at its place in an even time.
 
     Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter; where they are
     more uneven than that, rows are put on an even clock by interpolation. Where rows are missing for long, the longest stretch
-    without such a gap is taken. Both is said.
+    without such a gap is taken. Remarks follow.
 
     Args:
         recording: with or without the column `time`
@@ -68,8 +68,8 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     count = len(recording)
     if rate is not None:
         rate = arguments.number("rate", rate, "Hz", low=0.0)
-    if count < FEWEST:
-        raise ValueError(f"the recording has {count} samples; orders need {FEWEST} or more")
+    if count < MIN_SAMPLES:
+        raise ValueError(f"the recording has {count} samples; orders need {MIN_SAMPLES} or more")
     if "time" not in recording:
         step = 1.0 if rate is None else 1.0 / rate
         return Evenly(columns, np.ones(count, dtype=bool), step, rate is not None, 0.0, ())
@@ -79,7 +79,7 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
 
 
 def beginning(record: Evenly, count: int) -> Evenly:
-    """The first samples of a long record, and that it is so; the record itself, where it is not longer."""
+    """Return the first samples of a long record, with a remark; a shorter record itself."""
     if len(record) <= count:
         return record
     said = f"the first {count} of {len(record)} samples are used, which is enough for orders"
@@ -92,7 +92,7 @@ def _placed(columns: dict[str, Array], time: Array) -> Evenly:
     step = float(np.median(steps))
     whole = np.rint(steps / step)
     off = np.abs(steps - whole * step)
-    if float(np.quantile(off, 0.95)) > JITTER * step:
+    if float(np.quantile(off, 0.95)) > MAX_JITTER_STEPS * step:
         return _resampled(columns, time, step)
     place = np.concatenate([[0], np.cumsum(whole)]).astype(int)
     first = np.concatenate([[True], np.diff(place) > 0])
@@ -105,13 +105,13 @@ def _placed(columns: dict[str, Array], time: Array) -> Evenly:
     if stretch.stop - stretch.start < len(place):
         used, all_of_it = time[stretch.stop - 1] - time[stretch.start], time[-1] - time[0]
         remarks.append(
-            f"rows are missing for more than {LONGEST_GAP} samples; the longest stretch without such a gap is used, "
+            f"rows are missing for more than {MAX_GAP_SAMPLES} samples; the longest stretch without such a gap is used, "
             f"{used:.4g} s of {all_of_it:.4g} s"
         )
     place, time = place[stretch] - place[stretch.start], time[stretch]
     count = int(place[-1]) + 1
-    if count < FEWEST:
-        raise ValueError(f"between gaps the recording has no more than {count} samples; orders need {FEWEST} or more")
+    if count < MIN_SAMPLES:
+        raise ValueError(f"between gaps the recording has no more than {count} samples; orders need {MIN_SAMPLES} or more")
     if missing := count - len(place):
         remarks.append(f"{missing} of {count} samples are missing; straight lines stand for them")
     measured = np.zeros(count, dtype=bool)
@@ -123,11 +123,11 @@ def _placed(columns: dict[str, Array], time: Array) -> Evenly:
 
 
 def _resampled(columns: dict[str, Array], time: Array, step: float) -> Evenly:
-    """Rows of a clock that is not even, put on one that is by interpolation between them."""
+    """Return rows of an uneven clock on an even one, by interpolation."""
     from scipy.interpolate import Akima1DInterpolator
 
     steps = np.diff(time)
-    if (often := float(np.quantile(steps, 0.95))) > UNEVEN * step:
+    if (often := float(np.quantile(steps, 0.95))) > MAX_STEP_RATIO * step:
         raise ValueError(
             f"time is not even: every second step between samples is longer than {step:.4g} s, and every twentieth longer than "
             f"{often:.4g} s; orders need samples at nearly equal distances: leave the time out, or record at a fixed rate"
@@ -135,20 +135,22 @@ def _resampled(columns: dict[str, Array], time: Array, step: float) -> Evenly:
     stretch = _longest(np.rint((time - time[0]) / step).astype(int))
     remarks = [f"its clock is not even: rows are put on one of {1.0 / step:.4g} Hz by interpolation"]
     if stretch.stop - stretch.start < len(time):
-        remarks.append(f"rows are missing for more than {LONGEST_GAP} samples; the longest stretch without such a gap is used")
+        remarks.append(
+            f"rows are missing for more than {MAX_GAP_SAMPLES} samples; the longest stretch without such a gap is used"
+        )
     when = time[stretch]
     grid = np.arange(when[0], when[-1], step)
-    if len(grid) < FEWEST:
-        raise ValueError(f"between gaps the recording has no more than {len(grid)} samples; orders need {FEWEST} or more")
+    if len(grid) < MIN_SAMPLES:
+        raise ValueError(f"between gaps the recording has no more than {len(grid)} samples; orders need {MIN_SAMPLES} or more")
     after = np.clip(np.searchsorted(when, grid), 1, len(when) - 1)
-    measured = when[after] - when[after - 1] < GAP * step
+    measured = when[after] - when[after - 1] < MAX_FILLED_STEPS * step
     found = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}
     return Evenly(found, measured, step, True, float(when[0]), tuple(remarks))
 
 
 def _longest(place: NDArray[np.int_]) -> slice:
-    """The longest run of places without a long gap."""
-    edges = np.concatenate([[0], np.flatnonzero(np.diff(place) > LONGEST_GAP + 1) + 1, [len(place)]])
+    """Return the longest run of places without a long gap."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(place) > MAX_GAP_SAMPLES + 1) + 1, [len(place)]])
     longest = int(np.argmax(np.diff(edges)))
     return slice(int(edges[longest]), int(edges[longest + 1]))
 
@@ -168,16 +170,16 @@ def unwrapped(name: str, angle: Array) -> Array:
     if not jumps.any() or float(np.ptp(angle)) > tau * (1.0 + 1e-3):
         return angle
     turned = np.unwrap(angle)
-    if (largest := float(np.quantile(np.abs(np.diff(turned)), 0.999))) > LARGEST_STEP:
+    if (largest := float(np.quantile(np.abs(np.diff(turned)), 0.999))) > MAX_WRAPPED_STEP:
         raise ValueError(
-            f"{quoted(name)} wraps at each revolution and turns by up to {largest:.3g} rad between two samples; which way it "
-            "turns cannot be told beyond half a revolution; record faster, or turn slower"
+            f"{quoted(name)} wraps at each revolution and turns by up to {largest:.3g} rad between two samples; beyond half a "
+            "revolution its direction is not determined; record faster, or turn slower"
         )
     return turned
 
 
 def smooth_speed(angle: Array, reach: int) -> Array:
-    """Speed over some samples [rad per sample], shape (n,): the slope of a line through 2 reach + 1 of them."""
+    """Return the slope of a line through 2 reach + 1 samples [rad per sample], shape (n,)."""
     from scipy.signal import savgol_filter
 
     length = 2 * reach + 1
@@ -186,9 +188,9 @@ def smooth_speed(angle: Array, reach: int) -> Array:
 
 
 def direction(speed: Array) -> Array:
-    """1 forward, -1 backward, shape (n,); at rest that of the motion before, and before any motion that of the first."""
+    """Return 1 forward, -1 backward, shape (n,); at rest that of the motion before, or of the first one."""
     fastest = float(np.abs(speed).max())
-    sense = np.where(np.abs(speed) > REST * fastest, np.sign(speed), 0.0)
+    sense = np.where(np.abs(speed) > REST_SPEED_SHARE * fastest, np.sign(speed), 0.0)
     moving = np.flatnonzero(sense)
     if not len(moving):
         return np.zeros_like(speed)
@@ -198,5 +200,5 @@ def direction(speed: Array) -> Array:
 
 
 def reach_of(count: int) -> int:
-    """Samples on each side over which a speed is told: few, as orders pass by in tens of samples."""
+    """Return the samples on each side that a speed is fitted to: few, as orders pass in tens of samples."""
     return max(1, min(5, count // 32))

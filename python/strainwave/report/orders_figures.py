@@ -16,15 +16,15 @@ from strainwave.report.figures import LIGHT, WIDTH
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BLOCKS = 40  # of time, in the map
-CELLS = 90  # of the order, in the map
-SHADES = (0.25, 0.45, 0.7, 1.0)  # of a cell, over the largest amplitude
-VARIES = 0.1  # of the speed, above which a map shows more than the spectrum
-FEW = 8  # samples of a block that can show anything
+TIME_BLOCKS = 40  # of time, in the map
+ORDER_CELLS = 90  # of the order, in the map
+SHADE_LIMITS = (0.25, 0.45, 0.7, 1.0)  # of a cell, over the largest amplitude
+MIN_SPEED_SPREAD = 0.1  # of the speed, above which a map shows more than the spectrum
+MIN_BLOCK_SAMPLES = 8  # samples of a block that can show anything
 
 
 def spectrum_figure(ripple: Ripple, name: str) -> str:
-    """Amplitude over order, with its floor, the threshold, and the lines that were found."""
+    """Return the figure of amplitude over order, with floor, threshold and lines."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
@@ -46,19 +46,19 @@ def spectrum_figure(ripple: Ripple, name: str) -> str:
 
 
 def map_figure(ripple: Ripple, name: str) -> str:
-    """Order against time; nothing where the speed does not vary, or no time is known."""
+    """Return the figure of order against time; empty if the speed is constant, or no time is known."""
     curves = ripple.curves
     if "time" not in curves or not ripple.lines:
         return ""
     speed = np.abs(curves["speed"])
-    if float(np.std(speed)) < VARIES * float(np.mean(speed)):
+    if float(np.std(speed)) < MIN_SPEED_SPREAD * float(np.mean(speed)):
         return ""
     drawn = [line.order for line in ripple.lines if line.kind != "joint" and line.order <= ripple.highest * 1.01]
     highest = min(ripple.highest, 1.3 * max(drawn, default=ripple.highest))
-    order = np.linspace(ripple.lowest, highest, CELLS)
+    order = np.linspace(ripple.lowest, highest, ORDER_CELLS)
     wave = curves["series"] - curves["smooth"]
-    edges = np.linspace(0, len(wave), BLOCKS + 1).astype(int)
-    blocks = [slice(low, high) for low, high in pairwise(edges.tolist()) if high - low >= FEW]
+    edges = np.linspace(0, len(wave), TIME_BLOCKS + 1).astype(int)
+    blocks = [slice(low, high) for low, high in pairwise(edges.tolist()) if high - low >= MIN_BLOCK_SAMPLES]
     rows = []
     for block in blocks:
         window = np.hanning(block.stop - block.start)
@@ -70,7 +70,7 @@ def map_figure(ripple: Ripple, name: str) -> str:
 
     def draw(figure: Figure) -> None:
         axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
-        for low, high in zip(SHADES, (*SHADES[1:], 1.1), strict=True):
+        for low, high in zip(SHADE_LIMITS, (*SHADE_LIMITS[1:], 1.1), strict=True):
             row, column = np.nonzero((share >= low) & (share < high))
             axes.plot(middle[row], order[column], "s", color=LIGHT["measured"], alpha=low, markersize=2.6, markeredgewidth=0.0)
         figures.curve(below, curves["time"], curves["speed"], color=LIGHT["ink"], linewidth=0.8)
@@ -82,7 +82,7 @@ def map_figure(ripple: Ripple, name: str) -> str:
 
 
 def error_figure(error: TransmissionError, name: str) -> str:
-    """The transmission error over the record, the orders found in it, and what is left."""
+    """Return the figure of the transmission error over the record, its orders and its residual."""
     curves = error.curves
     timed = "time" in curves
     x = curves["time"] if timed else curves["input_angle"] / tau
@@ -105,7 +105,7 @@ def error_figure(error: TransmissionError, name: str) -> str:
 
 
 def turn_figure(error: TransmissionError, name: str) -> str:
-    """The kinematic error over a revolution of the input, as found, and each sample's residual on top of it."""
+    """Return the figure of the kinematic error over a revolution of the input, with the residual of the samples."""
     law = error.law
     turn = np.linspace(0.0, 1.0, 400)
     found = sum(
