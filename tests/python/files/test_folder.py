@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from strainwave.files.folder import files_below, inside
+from strainwave.files.tables import is_table_of_numbers
 
 
 def test_links_are_named_and_not_followed(tmp_path: Path) -> None:
@@ -23,6 +24,13 @@ def test_links_are_named_and_not_followed(tmp_path: Path) -> None:
     assert links == [folder / "link.csv", folder / "loop"]
     (tmp_path / "named").symlink_to("folder")
     assert len(files_below(tmp_path / "named", {".csv"}).files) == 2
+
+
+def test_a_file_is_taken_for_what_it_contains(tmp_path: Path) -> None:
+    (tmp_path / "run.t").write_text(" 0.1\t 2.5\n" * 9)
+    (tmp_path / "notes.md").write_text("# Notes\n1 2\n")
+    (tmp_path / "sheet.xlsx").write_text("1 2\n" * 9)
+    assert files_below(tmp_path, {".csv"}, is_table_of_numbers).files == [tmp_path / "run.t"]
 
 
 def test_a_folder_has_its_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

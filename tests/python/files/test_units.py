@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strainwave.files.units import check, convert
+from strainwave.files.units import check, convert, measures
 
 from tests.work import calls
 
@@ -244,3 +244,24 @@ def test_counts_are_parts_of_a_revolution(counts: int, over: str, value: float) 
     assert check(unit) == unit
     assert convert(value, unit, unit) == value
     assert convert(value, unit, f"rev{over}") == pytest.approx(value / counts, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("unit", "message"),
+    [
+        ("‰", "needs the rated value; write it like permille of 0.4 N.m"),
+        ("% of 0 A", "the rated value must be larger than 0"),
+        ("% of 12 furlongs", '"furlongs" is not known'),
+        ("percent of N.m", "is not known"),
+    ],
+)
+def test_a_share_needs_a_rated_value_in_a_known_unit(unit: str, message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        check(unit)
+
+
+def test_a_share_of_a_rated_value_is_that_value() -> None:
+    shares = np.array([-1000.0, 250.0])
+    assert convert(shares, "‰ of 0.4 Nm", "N.m") == pytest.approx([-0.4, 0.1])
+    assert convert(12.0, "A", "% of 12 A") == pytest.approx(100.0)
+    assert not measures("% of 12 A", "N.m")

@@ -1,9 +1,9 @@
-"""The columns of a file that seem to measure something: which of several are taken, and their values in SI units."""
+"""The columns of a file that seem to measure something, and which of several are taken."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,28 +11,21 @@ from numpy.typing import NDArray
 
 from strainwave.files.labels import Source, places_of
 from strainwave.files.tables import OpenTable
-from strainwave.files.units import convert, counts, is_share, measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import Assumed, counts_of_revolution, missing_units
-from strainwave.identification.reading.names import QUANTITIES, UNITS, meaning, which_of, words_of
+from strainwave.identification.reading.motor_effort import one_effort
+from strainwave.identification.reading.names import meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
 
-FEW = 4  # names that are listed where none says anything
 STILL = 0.01  # of how far a joint moves, by which others move less that rest
 SEVERAL = ("other_angles", "regressors")  # as what a person names several columns
 ALIKE = (("angle", "speed"), ("torque", "current", "voltage"))  # of which a person names what is needed of one joint
 MEASURED = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
-CURRENT, TORQUE = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
-MIN_COUNTS = 1000  # range of whole numbers that are counts of an encoder
-MIN_STEPS, MIN_SAMPLES = 20, 100  # range and rows of whole numbers that are shares of a rated torque
-MIN_WHOLE = 0.5  # of the rows of the slowest channel: with fewer whole rows the channels were sampled at other instants
 FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
 
 
@@ -100,43 +93,6 @@ def _without_estimates(columns: Sequence[Column]) -> list[Column]:
     """The columns without estimates of what another one contains."""
     own = {(column.channel, column.which) for column in columns if not column.estimated}
     return [column for column in columns if not column.estimated or (column.channel, column.which) not in own]
-
-
-def one_effort(columns: Sequence[Column]) -> tuple[list[Column], list[tuple[str, str]]]:
-    """The columns with one torque or current of each joint where several are duplicates; and for each what was decided.
-
-    The torque of the motor shows the friction of the gear, that of a sensor behind the gear does not. So a torque from the
-    current goes before a current, and this before any other torque.
-    """
-    efforts = [column for column in columns if _is_effort(column)]
-    joints = dict.fromkeys(column.which for column in efforts)
-    taken, remarks = list(columns), list[tuple[str, str]]()
-    for joint in joints:
-        several = [column for column in efforts if column.which == joint]
-        from_current = [column for column in several if _words(column) & CURRENT and _words(column) & TORQUE]
-        currents = [column for column in several if column.channel.quantity == "current" and column not in from_current]
-        torques = [column for column in several if column.channel.quantity == "torque" and column not in from_current]
-        first = from_current if from_current and (currents or torques) else currents if len(torques) > 1 else []
-        if len(first) != 1:
-            continue
-        (best,) = first
-        as_torque = best in from_current and (best.unit is None or measures(best.unit, "N.m"))
-        kept = replace(best, channel=best.channel._replace(quantity="torque")) if as_torque else best
-        taken = [kept if column is best else column for column in taken if column is best or column not in several]
-        others = listed(column.name for column in several if column is not best)
-        what = "is the motor's torque from its current" if best in from_current else "is the current of the motor"
-        instead = f"--column joint_torque=NAME takes another one of {others}"
-        remarks.append((best.name, f"{best.name} {what}, which contains the friction, and is taken; {instead}"))
-    return taken, remarks
-
-
-def _is_effort(column: Column) -> bool:
-    is_one = column.channel.quantity in ("torque", "current") and column.channel.measured and column.channel.side is None
-    return is_one and column.own and not column.said
-
-
-def _words(column: Column) -> set[str]:
-    return set(words_of(column.name))
 
 
 def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
@@ -302,197 +258,3 @@ def _choice(group: Sequence[Column], joints: Sequence[str]) -> UndecidedError:
         return UndecidedError(f"{which}; say which with {ways}", (), f"--joint {joints[0]}", FileMapping(joint=joints[0]))
     names = listed(column.name for column in group)
     return UndecidedError(f"each of {names} may be the {name}; say which, as with {option}", (), option)
-
-
-def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
-    """The columns with their values in SI units, and what was said of units and left out."""
-    if not columns:
-        names = [label.text for label in table.labels]
-        there = listed(names) if len(names) <= FEW else f"{listed(names[:FEW])} and {len(names) - FEW} more"
-        raise ValueError(one_line(f"{table.file}: no name of a column tells what it measures: {there}; {_naming(table)}"))
-    sources = [
-        Source(column.position, column.name, str(column.position), column.unit or column.channel.unit) for column in columns
-    ]
-    numbers, left_out = table.measured(sources)
-    raw = {column.position: numbers[str(column.position)] for column in columns}
-    known, told = _with_units(table, columns, mapping)
-    known, counted = _with_counts(known, raw)
-    told += counted
-    _check_units([column for column in known if column.own], raw)
-    try:
-        assumed = missing_units([_with_side(column, mapping) for column in known if column.own], raw)
-    except ValueError as error:
-        raise ValueError(one_line(f"{table.file} {error}")) from None
-    known = _as_the_joint(known, assumed)
-    if assumed:
-        taken = ", ".join(f"{c.name} in {assumed[c.position].told}" for c in known if c.position in assumed)
-        told.append(f"no unit is stated: {taken}; --unit NAME=UNIT says another one")
-    found = []
-    for column in known:
-        unit, _, sure, scale = Assumed(column.unit, "", True) if column.unit else assumed[column.position]
-        is_open = column.unit is None and not sure
-        values = scale * _in_si(table, column, raw[column.position], unit)
-        found.append(replace(column, unit=unit, sure=sure, is_open=is_open, values=values))
-    remarks = [*left_out, *told]
-    empty = [column for column in found if not column.said and not np.isfinite(column.si).any()]
-    if empty and len(empty) < len(found):
-        remarks.append(f"left out, as no row holds a number: {listed(column.name for column in empty)}")
-        found = [column for column in found if column not in empty]
-    return _whole_rows(table, found, remarks)
-
-
-def _naming(table: OpenTable) -> str:
-    """How to name columns of which neither names nor numbers determine anything."""
-    if len([content for content in table.contents if content == "numbers"]) == 1:
-        return "of a record at one constant speed say it, as with --column current=1 --constant speed='20 1/min'"
-    names = [label.name for label in table.labels]
-    if nameless(table):
-        return "say which is which, as with --constant rate=HZ --column output_angle=1 --column joint_torque=2"
-    return f"say it, as with {as_option('column', 'speed', names[0])}"
-
-
-def _with_counts(columns: Sequence[Column], raw: Mapping[int, Array]) -> tuple[list[Column], list[str]]:
-    """The columns, with the counts of a revolution where the speed beside an encoder determines them; and which."""
-    found = counts_of_revolution(
-        [replace(c, unit="counts") if counts(_incomplete_unit(c, raw[c.position])) else c for c in columns], raw
-    )
-    told = [
-        f"a revolution has {found[c.position]} counts of {c.name}, as its speed shows" for c in columns if c.position in found
-    ]
-    return [replace(c, unit=f"counts/{found[c.position]}") if c.position in found else c for c in columns], told
-
-
-def _check_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> None:
-    """Ask for the numbers that units need and the file does not contain.
-
-    Raises:
-        UndecidedError: a unit needs the counts of a revolution, or a rated value
-    """
-    needs = {column.name: unit for column in columns if (unit := _incomplete_unit(column, raw[column.position]))}
-    if needs:
-        counted = [name for name, unit in needs.items() if counts(unit)]
-        shares = [name for name in needs if name not in counted]
-        lacks = [f"how many counts a revolution has in {listed(counted)}"] if counted else []
-        lacks += [f"of which rated value {listed(shares)} is a share"] if shares else []
-        options = " ".join(as_option("unit", name, unit) for name, unit in needs.items())
-        told = f"the file does not contain {' and '.join(lacks)}; add it, as with {options}"
-        raise UndecidedError(told, (), options, FileMapping(units=needs))
-
-
-def _incomplete_unit(column: Column, values: Array) -> str:
-    """The unit of a column as it may be with a number that is missing; empty if it is complete."""
-    share = f"permille of {'0.4 N.m' if column.channel.quantity == 'torque' else '10 A'}"
-    if column.unit is not None:
-        if is_share(column.unit):
-            return share.replace("permille", "%") if column.unit.strip() in ("%", "percent") else share
-        counted = "counts/16384/s" if column.channel.quantity == "speed" else "counts/16384"
-        return counted if counts(column.unit) and not measures(column.unit, column.channel.unit) else ""
-    there = values[np.isfinite(values)]
-    is_whole = len(there) > 1 and bool((there == np.round(there)).all())
-    if column.channel.quantity == "angle":
-        return "counts/16384" if is_whole and np.ptp(there) > MIN_COUNTS else ""
-    is_torque = column.channel.quantity == "torque" and column.channel.measured
-    return share if is_torque and is_whole and len(there) > MIN_SAMPLES and np.ptp(there) >= MIN_STEPS else ""
-
-
-def _with_side(column: Column, mapping: FileMapping) -> Column:
-    """The column with the side that a person said of the file, where its name says none."""
-    side = column.channel.side or (mapping.side if column.channel.quantity in ("angle", "speed") else None)
-    return replace(column, channel=column.channel._replace(side=side))
-
-
-def _as_the_joint(columns: Sequence[Column], assumed: Mapping[int, Assumed]) -> list[Column]:
-    """The columns, with angles of other joints in the unit of the one that is asked for."""
-    own = next((c for c in columns if c.own and c.channel.quantity == "angle" and not c.channel.commanded), None)
-    unit = UNITS["angle"] if own is None else own.unit or assumed[own.position].unit
-    return [replace(c, unit=c.unit or unit) if c.neighbour else c for c in columns]
-
-
-def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
-    """The columns with the units that a person gave, for a channel, a quantity, or by the name in the file."""
-    found, remarks = list(columns), []
-    for name, unit in mapping.units.items():
-        channel = CHANNELS.get(ALIASES.get(name, name))
-        places = [place for place, column in enumerate(columns) if column.name == name or _is_called(column, channel)]
-        if not places:
-            there = listed(column.name for column in columns)
-            raise ValueError(one_line(f"{table.file}: a unit is given for {quoted(name)}, which is not read; read are {there}"))
-        for place in places:
-            stated = found[place].unit
-            if stated is not None and stated != unit:
-                remarks.append(f"{found[place].name} is stated in {stated}, and taken in {unit}, as was said")
-            found[place] = replace(found[place], unit=unit)
-    return found, remarks
-
-
-def _is_called(column: Column, channel: Channel | None) -> bool:
-    if channel is None or channel._replace(side=None) != column.channel._replace(side=None):
-        return False
-    return channel.side is None or column.channel.side in (None, channel.side)
-
-
-def _in_si(table: OpenTable, column: Column, values: Array, unit: str) -> Array:
-    wanted = column.channel.unit
-    if column.channel.commanded and measures(unit, "V"):
-        wanted = "V"
-    there = ~np.isnan(values)
-    try:
-        found = np.full(len(values), np.nan)
-        found[there] = convert(values[there], unit, wanted)
-    except ValueError as error:
-        what = "command" if column.channel.commanded else column.channel.quantity
-        place = f"{table.file} column {quoted(column.name)}"
-        hint = as_option("unit", column.name, "counts/16384" if counts(unit) else column.channel.unit)
-        remedy = f"give its unit, with {hint}"
-        raise ValueError(one_line(f"{place} cannot be the {what}: {error}; {remedy}")) from None
-    return found
-
-
-def _whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str]) -> tuple[list[Column], list[str]]:
-    """The rows in which each column holds a number; of channels that were sampled at other instants those of the slowest."""
-    whole = np.all([np.isfinite(column.si) for column in columns], axis=0)
-    if whole.all():
-        return list(columns), remarks
-    if (resampled := _resampled(columns)) is not None:
-        return resampled[0], [*remarks, resampled[1]]
-    if not whole.any():
-        empty = listed(column.name for column in columns if not np.isfinite(column.si).any()) or "no single column"
-        raise ValueError(one_line(f"{table.file}: no row holds a number in each of its columns; all are missing in {empty}"))
-    lost = int((~whole).sum())
-    rows = "1 row without a number in each column is" if lost == 1 else f"{lost} rows without a number in each column are"
-    remarks.append(f"{rows} left out, the first at {table.place(int(np.argmin(whole)))}")
-    return [replace(column, values=column.si[whole]) for column in columns], remarks
-
-
-def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
-    """The columns at the instants of the slowest of them but for temperatures, by linear interpolation; and what was done.
-
-    None if most rows of this one are whole, or there is no time.
-    """
-    time = next((column.si for column in columns if column.channel.quantity == "time"), None)
-    others = [column for column in columns if column.channel.quantity not in ("time", "temperature")]
-    if time is None or not others:
-        return None
-    stamped = np.isfinite(time)
-    there = {column.position: np.isfinite(column.si) & stamped for column in columns}
-    slowest = min(others, key=lambda column: int(there[column.position].sum()))
-    rows = there[slowest.position].copy()
-    whole = np.all(list(there.values()), axis=0)
-    if whole.sum() > MIN_WHOLE * rows.sum() or not all(each.sum() > 1 for each in there.values()):
-        return None
-    for column in others:
-        own = time[there[column.position]]
-        rows &= (time >= own.min()) & (time <= own.max())
-    if not rows.any():
-        return None
-    found, moved = [], []
-    for column in columns:
-        finite = there[column.position]
-        if (finite & rows).sum() == rows.sum():
-            found.append(replace(column, values=column.si[rows]))
-            continue
-        moved.append(column.name)
-        order = np.argsort(time[finite], kind="stable")
-        found.append(replace(column, values=np.interp(time[rows], time[finite][order], column.si[finite][order])))
-    said = f"rows are of several channels: at the {int(rows.sum())} rows of {slowest.name}"
-    return found, f"{said}, {listed(moved)} is taken by linear interpolation"

@@ -16,7 +16,7 @@ from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import chosen, moving_joints, read
+from strainwave.identification.reading.columns import chosen, moving_joints
 from strainwave.identification.reading.held import renewed_rows
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.layout import LaidOutTable
@@ -26,6 +26,7 @@ from strainwave.identification.reading.name_of_file import joint_in, speed_in
 from strainwave.identification.reading.names import Side, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.source import MeasurementFile, beside, measurement_file
+from strainwave.identification.reading.values import read
 from strainwave.identification.reading.wraps import unwrapped
 from strainwave.messages import listed, one_line, quoted
 
