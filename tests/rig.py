@@ -1,9 +1,9 @@
-"""Twins of an independent joint, whose truth is known: `python -m tests.rig --seeds 10`.
+"""Gears identified from an independent joint, whose truth is known: `python -m tests.rig --seeds 10`.
 
 The joint and its measurements are a program that shares nothing with this package (STRAINWAVE_RIG points to its folder). Of
-each seed a friction table, the torsion loop of one rig from both sides, a loading branch and a log of voltage from rest become
-twins. What they identify must lie within two standard deviations of the truth in 90 % of the cases, and the loops that these
-twins make must be as wide as the true ones, within 3 %.
+each seed a friction table, the torsion loop of one rig from both sides, a loading branch and a run from rest under its voltage
+are identified. The estimates must lie within two standard deviations of the truth in 90 % of the cases, and the loops of these
+gears make must be as wide as the true ones, within 3 %.
 """
 
 from __future__ import annotations
@@ -24,8 +24,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.reading.measurement import read_measurement
-from strainwave.identification.twin import Twin
+from strainwave.identification.identify import Identified
 
 Array = NDArray[np.float64]
 RIG = Path(os.environ.get("STRAINWAVE_RIG", Path(__file__).parents[2] / "shared" / "independent-rig"))
@@ -37,52 +36,53 @@ COVERED, WIDE = 0.9, 0.03  # what must be reached
 
 @dataclass(frozen=True)
 class Case:
-    """A twin, and how far it is from the truth.
+    """A result, and its distance from the truth.
 
     Attributes:
         name: what it was made of
-        distances: of each parameter that it says to tell, in standard deviations
+        distances: of each parameter identified, alone or in combination, in standard deviations
         widths: of its loop over that of the truth, by side
-        twin: itself
+        found: itself
     """
 
     name: str
     distances: dict[str, float]
     widths: dict[str, float]
-    twin: Twin
+    found: Identified
 
 
 def cases(folder: Path, seed: int) -> Iterator[Case]:
-    """The twins of one seed."""
+    """Yield the results of one seed."""
     subprocess.run([sys.executable, RIG / "measure.py", folder, f"seed={seed}"], check=True)
     truth = json.loads((folder / "truth.json").read_text())
-    friction = read_measurement("friction", folder / "friction.csv", {"speed": "rpm"}, {"speed": "rpm"})
     given: dict[str, dict[str, Any]] = {
-        "friction": {"friction": friction},
-        "input side, with friction": {"friction": friction, "torsion": folder / "torsion_input.csv"},
+        "friction": {"friction": folder / "friction.csv"},
+        "input side, with friction": {"friction": folder / "friction.csv", "torsion": folder / "torsion_input.csv"},
         "input side": {"torsion": folder / "torsion_input.csv"},
         "output side": {"torsion": folder / "torsion_output.csv"},
         "branch": {"torsion": folder / "branch.csv"},
-        "log": {"log": voltage_log(folder, truth, seed)},
+        "run": {"run": voltage_log(folder, truth, seed)},
     }
     for name, measurements in given.items():
-        found = sw.twin(_start(truth) if name == "log" else GearSet.read(START), **measurements)
+        start = _start(truth) if name == "run" else GearSet.read(START)
+        found = sw.identify(start, measurements)
         yield Case(name, dict(_distances(found, truth)), dict(_widths(name, found, truth)), found)
 
 
-def _distances(found: Twin, truth: dict[str, float]) -> Iterator[tuple[str, float]]:
+def _distances(found: Identified, truth: dict[str, float]) -> Iterator[tuple[str, float]]:
     names = {
         "stiffness.k1": "K1", "stiffness.k2": "K2", "stiffness.k3": "K3", "stiffness.t1": "T1", "stiffness.t2": "T2",
         "friction_input.coulomb": "Fc", "friction_input.breakaway": "Fs", "friction_input.stribeck_speed": "vs",
         "friction_input.viscous": "viscous", "kinematic_error.amplitude[1]": "e2", "kinematic_error.amplitude[2]": "e4",
     }  # fmt: skip
-    for verdict in found.verdicts:
-        name = names.get(verdict.path.removeprefix("gear."))
-        if name is not None and verdict.state.startswith("identified"):
-            yield verdict.path, (verdict.value - truth[name]) / verdict.sigma
+    last = {each.path: each for result in found.files for each in result.estimates}
+    for each in last.values():
+        name = names.get(each.path.removeprefix("gear."))
+        if name is not None and each.state.startswith("identified"):
+            yield each.path, (each.value - truth[name]) / each.sigma
 
 
-def _widths(name: str, found: Twin, truth: dict[str, float]) -> Iterator[tuple[str, float]]:
+def _widths(name: str, found: Identified, truth: dict[str, float]) -> Iterator[tuple[str, float]]:
     inside = 2.0 * (truth["Fh1"] + truth["Fh2"])
     if name == "output side":
         yield "output", width(from_output(found.gear_set.gear)) / inside
@@ -169,7 +169,7 @@ def main() -> int:
                 widths += case.widths.values()
                 told = ", ".join(f"{path.rpartition('.')[2]} {distance:+.1f}" for path, distance in case.distances.items())
                 wide = "".join(f"; {side} loop {ratio:.3f} of the true width" for side, ratio in case.widths.items())
-                print(f"seed {seed}, {case.name}: {told}{wide}; {len(case.twin.doubts)} doubts", flush=True)
+                print(f"seed {seed}, {case.name}: {told}{wide}; {len(case.found.failed)} failed checks", flush=True)
     within = float(np.mean(np.abs(distances) < 2.0))
     off = float(np.abs(np.array(widths) - 1.0).max())
     told = f"{100.0 * within:.1f} % of {len(distances)} parameters within two standard deviations"

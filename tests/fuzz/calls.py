@@ -54,10 +54,9 @@ RESULTS = (
     "Run",
     "Seen",
     "TransmissionError",
-    "Twin",
 )
 NOT_CALLED = {
-    *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning", "twin")),
+    *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning")),
     "files.entries.check_line",
     *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter", "replaced")),
     *(f"identification.experiments.experiment.{name}" for name in ("Experiment", "Nuisance", "sensible")),

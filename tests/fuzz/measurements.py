@@ -22,12 +22,12 @@ SETS = ("hfuc-25-100", "csg-14-50", "shg-58-160")
 
 
 def measurements_case(random: Generator, folder: Path) -> Case:
-    """A twin of one to three measurements, or one fit."""
+    """A gear of one to three measurements, or one fit."""
     start = _whole(picked(random, SETS))
     given = {
         name: made(random)
-        for name, made in (("friction", _friction), ("torsion", _torsion), ("log", _log))
-        if random.random() < {"friction": 0.6, "torsion": 0.4, "log": 0.15}[name]
+        for name, made in (("friction", _friction), ("torsion", _torsion), ("run", _log))
+        if random.random() < {"friction": 0.6, "torsion": 0.4, "run": 0.15}[name]
     } or {"friction": _friction(random)}
     words = described({name: {column: one[column].tolist() for column in one.names} for name, one in given.items()}, 1000)
     if len(given) == 1 and "friction" in given and random.random() < 0.5:
@@ -38,7 +38,7 @@ def measurements_case(random: Generator, folder: Path) -> Case:
             )
         )
         return Case(f"fit {words}", lambda: sw.fit(gear, given["friction"], free), _check_fit)
-    return Case(f"twin {words}", lambda: sw.twin(start, **given), lambda twin: _check_twin(twin, folder))
+    return Case(f"identify {words}", lambda: sw.identify(start, given), lambda found: _check_identified(found, folder))
 
 
 @cache
@@ -113,12 +113,13 @@ def _check_estimates(fit: Any) -> None:
     assert finite(fit.predicted), "a prediction that is not finite"
 
 
-def _check_twin(twin: sw.Twin, folder: Path) -> None:
-    from strainwave.report.twin import twin_report
+def _check_identified(found: sw.Identified, folder: Path) -> None:
+    from strainwave.report.identify import identify_report
 
-    for evidence in twin.evidence:
-        _check_estimates(evidence.fit)
-    twin.gear_set.save(folder / "twin.toml")
-    assert sw.GearSet.read(folder / "twin.toml") == twin.gear_set, "a file holds the twin otherwise"
-    report = twin_report(twin)
+    for each in found.files:
+        if each.fit is not None:
+            _check_estimates(each.fit)
+    found.accepted.save(folder / "mine.toml")
+    assert sw.GearSet.read(folder / "mine.toml") == found.accepted, "a file holds the gear otherwise"
+    report = identify_report(found)
     assert "nan" not in report.lower().split(), "not-a-number in the report"

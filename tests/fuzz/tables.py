@@ -7,14 +7,15 @@ import io
 import re
 from functools import cache
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pyarrow
 import pyarrow.parquet
 import strainwave as sw
 from numpy.random import Generator
-from strainwave.identification.reading.measurement import Kind, read_measurement
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import NUMBERS, encoded, mutated, mutated_bytes, picked
@@ -25,14 +26,14 @@ WORDS = (
     "1 ",
 )  # fmt: skip
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
-COLUMNS: dict[Kind, tuple[str, ...]] = {
-    "log": ("time [s]", "command [V]", "position [rad]"),
+COLUMNS: dict[str, tuple[str, ...]] = {
+    "run": ("time [s]", "command [V]", "position [rad]"),
     "friction": ("speed [rad/s]", "torque [N.m]"),
     "torsion": ("twist [deg]", "torque [N.m]"),
 }
 
 
-def _text(kind: Kind, random: Generator) -> str:
+def _text(kind: str, random: Generator) -> str:
     """A table as it should be."""
     names, delimiter = COLUMNS[kind], picked(random, (",", ",", ";", "\t"))
     mark = "," if delimiter != "," and random.random() < 0.5 else "."
@@ -44,7 +45,7 @@ def _text(kind: Kind, random: Generator) -> str:
 
 
 def csv_case(random: Generator, folder: Path) -> Case:
-    held = picked(random, get_args(Kind))
+    held = picked(random, tuple(COLUMNS))
     data = encoded(mutated(_text(held, random), random, WORDS), random)
     path = folder / f"table{picked(random, ('.csv', '.txt', '.tsv'))}"
     path.write_bytes(data)
@@ -69,14 +70,14 @@ def parquet_case(random: Generator, folder: Path) -> Case:
         data = mutated_bytes(_parquet(int(random.integers(3))), random)
         path.write_bytes(data)
         what = f"{len(data)} bytes"
-    kind = picked(random, (None, None, *get_args(Kind)))
+    kind = picked(random, (None, None, *COLUMNS))
     return Case(
         f"{kind or 'table'} {described(what)}", lambda: _read(path, kind), lambda found: check_round_trip(found, folder)
     )
 
 
-def _read(path: Path, kind: Kind | None) -> sw.Recording:
-    return sw.Recording.read(path) if kind is None else read_measurement(kind, path)
+def _read(path: Path, kind: str | None) -> sw.Recording:
+    return sw.Recording.read(path) if kind is None else recognise(path, FileMapping(kind=kind)).recording
 
 
 def check_round_trip(recording: sw.Recording, folder: Path) -> None:
