@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
-from strainwave.identification import twin
-from strainwave.identification.evidence import explain, influence, plausible, verdict
+from strainwave.identification.checks import comparisons, sizes, unexplained
+from strainwave.identification.fitting import influence
+from strainwave.identification.kinds import along_motion
+from strainwave.identification.results import combined_parameter, identifiability
 
-PAGE = " ".join(Path(__file__).parents[4].joinpath("docs", "identify.md").read_text(encoding="utf-8").split())
+PAGE = " ".join(Path(__file__).parents[3].joinpath("docs", "identify.md").read_text(encoding="utf-8").split())
 NUMBERS = ("no", "one", "two", "three", "four", "five")
 
 
@@ -19,17 +22,23 @@ def percent(share: float) -> str:
 @pytest.mark.parametrize(
     "statement",
     [
-        f"kept may move it by more than {percent(verdict.LEANING)}",
-        f"it would move by more than {percent(verdict.SWAYED)} were a parameter",
-        f"standard deviation exceeds half the value (of a phase: {verdict.UNTOLD:g} rad)",
-        f"else {percent(influence.DOUBT)}, and {percent(influence.GUESSED)} where its source begins with",
-        f"more than {NUMBERS[int(twin.CONTRADICTION)]} standard deviations away",
-        f"more is left than {percent(explain.LEFT_IN_MOTION)} of an angle, a speed or a loop, "
-        f"or {percent(explain.LEFT_IN_TORQUE)} of a friction torque or a current",
-        f"the friction is more than {plausible.APART:g} times as large or small",
-        f"the stiffness is more than {plausible.APART:g} times as large or small",
-        f"{plausible.FEWEST} rows or more, and the change of speed explains half of what is left",
+        f"kept may move it by more than {percent(identifiability.MAX_SHIFT)}",
+        f"kept parameters that move it by more than {percent(identifiability.MIN_SHIFT_LISTED)}",
+        f"it would move by more than {percent(identifiability.MAX_SHIFT_BY_WRONG)} were a parameter",
+        f"standard deviation exceeds half the value (of a phase: {identifiability.MAX_SIGMA_OF_PHASE:g} rad)",
+        f"else {percent(influence.STATED_NOWHERE)}, and {percent(influence.ASSUMED)} where its source begins with",
+        f"differ by more than {NUMBERS[int(combined_parameter.MAX_DISTANCE)]} standard deviations",
+        f"more is left than {percent(unexplained.MAX_SHARE_OF_MOTION)} of an angle, a speed or a loop, "
+        f"or {percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current",
+        f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small",
+        f"a factor of {np.exp(3.0 * sizes.MIN_SPREAD_OF_STIFFNESS):.1f} for {percent(sizes.MIN_SPREAD_OF_STIFFNESS)}",
+        f"{sizes.MIN_ROWS_OF_LOG} rows or more, and the change of speed explains half of what is left",
         "the spring of a loop carries less than a fifth of the torque",
+        f"stays at its end over more than {percent(sizes.MAX_CLIPPED_SHARE)} of the range of the angle",
+        f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
+        f"with {percent(comparisons.REPEATABILITY['friction_input'])} of friction and hysteresis and "
+        f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers from run to run",
+        f"the log shows another one, by more than {percent(along_motion.UNLIKE)}",
     ],
 )
 def test_a_threshold_is_stated_as_it_is(statement: str) -> None:
@@ -37,5 +46,6 @@ def test_a_threshold_is_stated_as_it_is(statement: str) -> None:
 
 
 def test_thresholds_stated_in_words_are_those() -> None:
-    assert explain.LEFT_IN_LOOP == explain.LEFT_IN_MOTION
-    assert (verdict.UNTOLD, plausible.MOVING, plausible.ELASTIC) == (0.5, 0.5, 1.0 / 5.0)
+    assert unexplained.MAX_SHARE_OF_LOOP == unexplained.MAX_SHARE_OF_MOTION
+    halves = (identifiability.MAX_RELATIVE_SIGMA, sizes.MAX_SHARE_BY_ACCELERATION, sizes.MAX_FRICTION_SHARE)
+    assert halves == (0.5, 0.5, 1.0 - 1.0 / 5.0)
