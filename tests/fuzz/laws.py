@@ -20,7 +20,7 @@ Verdict = Literal["accepted", "refused", "wrong"]
 
 REFUSALS = (ValueError, TypeError, MemoryError, FloatingPointError, RuntimeError)  # exactly these, and any OSError
 PACKAGE = f"{Path(sw.__file__).parent}{os.sep}"
-LONGEST = 500  # characters of a message
+LONGEST = 1000  # characters of a message
 _CONTROL = {"Cc", "Cs", "Zl", "Zp"}  # what moves a terminal, ends a line, or cannot be written at all
 
 # Words of libraries, which say nothing of what was given: where they come through, a check is missing.

@@ -28,6 +28,8 @@ FEW = 4  # names that are listed where none says anything
 
 def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
     """The columns with their values in SI units, and what was said of units and left out."""
+    if not table.labels:
+        raise ValueError(one_line(f"{table.file} has no columns"))
     if not columns:
         names = [label.text for label in table.labels]
         there = listed(names) if len(names) <= FEW else f"{listed(names[:FEW])} and {len(names) - FEW} more"
