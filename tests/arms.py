@@ -396,7 +396,8 @@ def compared(sort: Sort, folder: Path, seconds: float) -> tuple[float, float, fl
     seen = sort.recorder(done_by(sort.motion, seconds))
     sort.write(folder / sort.name, seen)
     (finding,) = identify("hfuc-25-100", [folder / sort.name], mapping=lambda path: FileMapping(**sort.said)).files
-    return finding.error, least_squares(seen, 1, sort.effort), least_squares(seen, 1, sort.effort, links=True)
+    in_band = float("nan") if finding.held_out is None else finding.held_out.in_band
+    return in_band, least_squares(seen, 1, sort.effort), least_squares(seen, 1, sort.effort, links=True)
 
 
 def main() -> None:

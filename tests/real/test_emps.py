@@ -172,7 +172,7 @@ def test_the_best_friction_predicts_the_second_record_better_than_coulombs(
     gear = sw.load("hfuc-20-100").replace(input_inertia=0.0)
     axis = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-12), load=sw.loads.Inertia(inertia=1.0))
     log, other = (MotionLog.of(as_joint(each), axis, cutoff=100.0) for each in (identification, validation))
-    ranked = fit_motion({"identification": log}, axis)
+    ranked = fit_motion([log], axis)
     errors = {}
     for each in ranked:
         (part,) = each.fit.parts

@@ -1,8 +1,10 @@
 """Logs of moving drives: inertia, gravity and friction by the torque along a measured motion.
 
-Models are compared by what they predict of stretches of the motion that took no part in their fit, in the full band, at every
-sample. The estimates without a stretch follow from those with all by one step of Gauss and Newton, as least squares on a motion
-is nearly linear. A part is added as long as it makes the error smaller; plain least squares stands beside all.
+Numbers are estimated in the pass band and from sliding alone: there no vibration of the load and no bending of bristles biases
+them. What they predict is judged as a user reads it: on contiguous stretches that took no part in the fit, in the full band, at
+every sample. A part is added as long as it predicts better; what shows in the full band alone, bristles that bend at reversals
+and ripple over the turn, is added to the prediction without moving the estimates. Estimates without a stretch follow from those
+with all by one step of Gauss and Newton, as least squares on a motion is nearly linear. Plain least squares stands beside all.
 """
 
 from __future__ import annotations
@@ -10,42 +12,46 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, friction, loads
+from strainwave import Drive, _core, friction, loads
 from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.plain import Plain, fit_plain, held_out_residuals, moving
+from strainwave.identification.candidates.plain import Plain, fit_plain, held_out_residuals, moving, stretches
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
-from strainwave.identification.fitting.fit import Fit, fit, solved_problem
+from strainwave.identification.fitting.fit import Fit, fit, problem_of
+from strainwave.identification.fitting.loss import LOSSES as COSTS
+from strainwave.identification.fitting.problem import Problem
+from strainwave.identification.fitting.unknowns import plan
 from strainwave.identification.results.held_out import HeldOut
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-STRETCHES = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
 QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
-BENDS = np.geomspace(1e-3, 1.0, 7)  # rad of the input, in which a bristle bends: from where a fit starts
+BENDS = np.geomspace(3e-3, 1.0, 16)  # rad of the input, in which bristles bend
 RIPPLE_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, found in every gear measured so far
 MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler model: what leaves more is chance
 MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves more is not worth a part more
 MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
 MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
-MIN_DELAY_SIGMA = 2.5  # standard deviations: a smaller delay is none
+MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 MAX_DELAY_SAMPLES = 5.0  # of the log
-SHAPES = ("exponent", "stribeck_speed", "bristle_stiffness")  # numbers in which friction is not linear
-RIPPLE = "ripple"  # begins the names of waves over the input angle
+SQUARED = COSTS["linear"]
+NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
+MAX_STEPS = 8  # of a fit while models are compared
+SHAPES = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
 MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
+MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
 NO_INERTIA = 1e-12  # kg.m2: a load must have some
 MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
 
@@ -80,29 +86,88 @@ class MotionModel(ComparedByFields):
 
 
 @dataclass(frozen=True, eq=False)
-class MotionCandidate(ComparedByFields):
-    """A model of a joint fitted to a log.
+class Fold(ComparedByFields):
+    """A model by what the motion outside a stretch determines.
 
     Attributes:
-        model: that was fitted, from where it started
-        fit: to the whole log
-        residuals: of each stretch held out, in the unit of the effort
+        stretch: samples of the grid that took no part, shape (m,)
+        drive: with the numbers determined
+        nuisances: likewise
+        in_band: residuals of the samples of the stretch that are compared in the pass band
+        residual: at every sample of the grid, in the full band, shape (m,)
+    """
+
+    stretch: Rows
+    drive: Drive
+    nuisances: Array
+    in_band: Array
+    residual: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MotionCandidate(ComparedByFields):
+    """A model of a joint as a log determines it, and what it predicts.
+
+    Attributes:
+        model: near its least squares, from where a fit starts
+        priors: what is known of its numbers before
+        unexplained: root mean square of what is left in the band over that of the effort about its mean [1]
+        folds: the model without each stretch
+        bend: angle of the input in which bristles bend at reversals [rad]; 0 for none
+        rippled: True if a torque that repeats with the input's rotation is part of the prediction
     """
 
     model: MotionModel
-    fit: Fit
-    residuals: tuple[Array, ...]
+    priors: Mapping[str, tuple[float, float]]
+    unexplained: float
+    folds: tuple[Fold, ...]
+    bend: float = 0.0
+    rippled: bool = False
 
     @property
     def name(self) -> str:
-        return self.model.name
+        more = [", bristles that bend at reversals"] * (self.bend > 0.0) + [", ripple"] * self.rippled
+        return "".join([self.model.name, *more])
 
     @property
     def log(self) -> MotionLog:
         """The log as it was compared."""
-        log = self.fit.parts[0].experiment
-        assert isinstance(log, MotionLog)
-        return log
+        return self.model.log
+
+    @cached_property
+    def fit(self) -> Fit:
+        """The fit to the whole log, with the covariance of its estimates."""
+        return self.fitted_to(None)
+
+    def fitted_to(self, training: Rows | None) -> Fit:
+        """Return the fit to some of the samples compared, shape (n,), or to all."""
+        model = self.model
+        return fit(model.drive, model.log, model.free, ties=model.ties, priors=self.priors, training=training)
+
+    def predicting(self, drive: Drive) -> Drive:
+        """Return the drive that predicts at reversals, too: a fitted one, with bristles that bend."""
+        return bristled(drive, self.bend) if self.bend else drive
+
+    def left(self, drive: Drive, nuisances: Array, training: Rows) -> Array:
+        """Return measured less predicted effort at every sample, ripple by that of the samples of training, shape (m,)."""
+        residual = self.log.residual(self.predicting(drive), nuisances)
+        if not self.rippled:
+            return residual
+        angle = self.log.motion.angle
+        waves = np.stack([wave(order * angle) for order in RIPPLE_ORDERS for wave in (np.sin, np.cos)], axis=1)
+        rows = training & moving(self.log) & ~self.log.motion.resting
+        shares = np.linalg.lstsq(waves[rows], residual[rows], rcond=MIN_SINGULAR)[0]
+        return np.asarray(residual - np.where(self.log.motion.resting, 0.0, waves @ shares))
+
+    def predicted_anew(self) -> MotionCandidate:
+        """Return the same, with the residuals of what it predicts."""
+        folds = [replace(each, residual=self.left(each.drive, each.nuisances, ~each.stretch)) for each in self.folds]
+        return replace(self, folds=tuple(folds))
+
+    @cached_property
+    def residuals(self) -> list[Array]:
+        """Of each stretch held out, in the full band, in the unit of the effort."""
+        return [each.residual[each.stretch] for each in self.folds]
 
     @cached_property
     def errors(self) -> Array:
@@ -114,10 +179,15 @@ class MotionCandidate(ComparedByFields):
         """Root mean square of the residuals of all stretches."""
         return float(np.sqrt(np.mean(np.concatenate(self.residuals) ** 2)))
 
-    @property
-    def ended(self) -> MotionModel:
-        """The model from where its fit has ended."""
-        return replace(self.model, drive=self.fit.model, log=self.log.starting(nuisances_of(self.fit).tolist()))
+    @cached_property
+    def error_in_band(self) -> float:
+        """Root mean square of the residuals of all stretches in the pass band."""
+        return float(np.sqrt(np.mean(np.concatenate([each.in_band for each in self.folds]) ** 2)))
+
+    def explains_more_than(self, other: MotionCandidate) -> bool:
+        """True if it predicts sliding in the pass band clearly better, and the full band and the last stretch no worse."""
+        no_worse = MAX_ERROR * self.error < other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+        return no_worse and self.error_in_band < MAX_RELATIVE_ERROR * other.error_in_band
 
     def is_better_than(self, other: MotionCandidate) -> bool:
         """True if it predicts better by more than chance makes, all over the motion, and the last stretch no worse."""
@@ -133,12 +203,6 @@ class MotionCandidate(ComparedByFields):
         is_narrower = self.log.motion.cutoff < other.log.motion.cutoff
         return is_narrower and self.unexplained < other.unexplained and MAX_ERROR * self.error < other.error
 
-    @cached_property
-    def unexplained(self) -> float:
-        """Root mean square of what is left in the band over that of the effort about its mean [1]."""
-        part = self.fit.parts[0]
-        return float(np.std(part.residuals) / np.std(part.experiment.measured))
-
 
 def _gain(before: Array, after: Array) -> list[Array]:
     """By how much squares of residuals become smaller, in blocks of a stretch."""
@@ -149,14 +213,6 @@ def nuisances_of(found: Fit) -> Array:
     """Return the unknowns of the measurement that a fit ended with, shape (nuisances,)."""
     count = len(found.experiment.nuisances)
     return np.array([each.value for each in found.estimates[len(found.estimates) - count :]])
-
-
-def stretches(log: MotionLog) -> list[Rows]:
-    """Return the contiguous stretches of the motion that are held out in turn, the last 30 % at the end, shape (m,) each."""
-    places = np.flatnonzero(moving(log))
-    ends = [places[0] + round(share * (places[-1] + 1 - places[0])) for share in STRETCHES]
-    every = np.arange(len(log.motion.time))
-    return [(every >= begin) & (every < end) for begin, end in pairwise(ends)]
 
 
 def fit_motion(
@@ -176,58 +232,88 @@ def fit_motion(
 
     Returns:
         candidates, best first
+
+    Raises:
+        ValueError: no model can be fitted
     """
-    held_out = stretches(logs[0])
-    plain = fit_plain(logs[0], drive)
-    start, free = _start(drive, plain, inertia)
-    zero = [plain.offset * per_torque(drive, logs[0].effort)] if logs[0].both_ways else []
-
-    failures = list[str]()
-
-    def tried(model: MotionModel) -> MotionCandidate | None:
-        try:
-            return _candidate(model, held_out, priors or {})
-        except (ValueError, FloatingPointError) as error:  # beyond what a law allows, from its start
-            failures.append(str(error))
-            return None
-
-    simple = MotionModel("Coulomb and viscous", logs[0], start, (*free, *COULOMB), FOLLOWS)
-    found = [tried(replace(simple, log=log.starting((*zero, *plain.shares)))) for log in logs]
-    every = [each for each in found if each is not None]
-    if not every:
-        raise ValueError(failures[0])
-    best = every[0]
-    for other in every[1:]:
-        best = other if other.is_better_than(best) or other.is_clearer_than(best) else best
-    left: list[Part] = [_delayed, _curved, _falling, _lossy, _bristled, _rippled]
+    search = _Search(drive, stretches(logs[0]), priors or {})
+    logs = [each for each in logs if len(each.motion.rows) >= MIN_SLIDING] or [logs[0].in_full_band()]
+    simple = _simple(logs[0], drive, inertia)
+    best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
     for less in (_without_gravity, _without_inertia, _without_viscous):
-        simpler = tried(model) if (model := less(best.ended)) is not None else None
-        if simpler is not None:
-            every.append(simpler)
-            best = simpler if simpler.error < best.error else best
-    while left:
-        grown = {part: tried(model) for part in left if (model := part(best.ended)) is not None}
-        sensible = {part: each for part, each in grown.items() if each is not None and _is_sensible(each)}
-        every += sensible.values()
-        chosen = min(sensible, key=lambda part: sensible[part].error, default=None)
-        if chosen is None or not sensible[chosen].is_better_than(best):
-            break
-        best = sensible[chosen]
-        left = [part for part in left if part is not chosen and part in sensible]
-    best = _no_worse_than_plain(
-        best, tried(replace(simple, log=logs[0].in_full_band().starting((*zero, *plain.shares)))), drive
-    )
-    return best, *sorted((each for each in every if each is not best), key=lambda each: each.error)
+        best = search.reduced(best, less(best))
+    best = search.grown(best, [_delayed, _curved, _falling, _lossy])
+    for more in (_with_bristles, _with_ripple):
+        added = more(best)
+        best = added if added is not None and added.is_better_than(best) else best
+    best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
+    return best, *sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
 
 
-def _no_worse_than_plain(best: MotionCandidate, simple: MotionCandidate | None, drive: Drive) -> MotionCandidate:
-    """Return the best model, or plain least squares if that predicts better: inertia, gravity, Coulomb and viscous friction."""
-    blocks = stretches(best.log)
-    left = held_out_residuals(replace(best.log, regressors=_of_other_joints(best.log)), drive, blocks)
-    plain = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
-    if simple is None or plain > MAX_RELATIVE_ERROR * best.error:
+class _Search:
+    """Models of one log, each with what it predicts of the stretches held out."""
+
+    def __init__(self, drive: Drive, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> None:
+        self.drive, self.held_out, self.priors = drive, held_out, priors
+        self.every, self.failures = list[MotionCandidate](), list[str]()
+
+    def tried(self, model: MotionModel | None) -> MotionCandidate | None:
+        """Return a model fitted to the log; None if it goes beyond what its laws allow."""
+        if model is None:
+            return None
+        try:
+            found = _candidate(model, self.held_out, self.priors)
+        except (ValueError, FloatingPointError) as error:
+            self.failures.append(str(error))
+            return None
+        self.every.append(found)
+        return found
+
+    def first(self, models: Sequence[MotionModel]) -> MotionCandidate:
+        """Return the simplest model, in the band in which it shows most."""
+        found = [each for model in models if (each := self.tried(model)) is not None]
+        if not found:
+            raise ValueError(self.failures[0])
+        best = found[0]
+        for other in found[1:]:
+            best = other if other.is_clearer_than(best) else best
         return best
-    return simple if simple.error < best.error else best
+
+    def reduced(self, best: MotionCandidate, model: MotionModel | None) -> MotionCandidate:
+        """Return the model with a part less, if that predicts better."""
+        simpler = self.tried(model)
+        return simpler if simpler is not None and simpler.error < best.error else best
+
+    def grown(self, best: MotionCandidate, parts: list[Part]) -> MotionCandidate:
+        """Return the model with those parts that explain more, the one that explains most first."""
+        while parts:
+            tried = {part: self.tried(part(best.model)) for part in parts}
+            found = {part: each for part, each in tried.items() if each is not None and _is_sensible(each)}
+            chosen = min(found, key=lambda part: found[part].error_in_band, default=None)
+            if chosen is None or not found[chosen].explains_more_than(best):
+                break
+            promising = [part for part, each in found.items() if each.error_in_band < MAX_ERROR * best.error_in_band]
+            parts = [part for part in promising if part is not chosen]
+            best = found[chosen]
+        return best
+
+    def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
+        """Return the best model, or inertia, gravity, Coulomb and viscous friction in the full band if these predict better."""
+        log = best.log
+        left = held_out_residuals(log, self.drive, self.held_out)
+        ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
+        if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
+            return best
+        simple = self.tried(model)
+        return simple if simple is not None and simple.errors[-1] < MAX_RELATIVE_ERROR * best.errors[-1] else best
+
+
+def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
+    """Return the model with Coulomb and viscous friction alone, as plain least squares has it."""
+    plain = fit_plain(log, drive)
+    start, free = _start(drive, plain, inertia)
+    zero = [plain.offset * per_torque(drive, log.effort)] if log.both_ways else []
+    return MotionModel("Coulomb and viscous", log.starting((*zero, *plain.shares)), start, (*free, *COULOMB), FOLLOWS)
 
 
 # ---- Parts that a record may not show -------------------------------------------------------------------------------------
@@ -238,9 +324,17 @@ def _without(free: Sequence[str], name: str) -> tuple[str, ...]:
     return tuple(path for path in free if not path.rpartition(".")[2].startswith(name))
 
 
-def _without_gravity(model: MotionModel) -> MotionModel | None:
+def _is_small(best: MotionCandidate, path: str, unit: Array) -> bool:
+    """True if a number makes so little of the effort that the model may do without: `unit` is what one unit of it makes."""
+    value = next((value for name, value, *_ in _core.parameters(best.model.drive) if name == path), 0.0)
+    scale = per_torque(best.model.drive, best.log.effort)
+    return path in best.model.free and float(np.std(scale * value * unit)) < MAX_SMALL_PART * best.error
+
+
+def _without_gravity(best: MotionCandidate) -> MotionModel | None:
     """Return the model of a joint whose axis is upright."""
-    if "load.gravity_torque" not in model.free:
+    model, ratio = best.model, best.model.drive.gear.kinematics.ratio
+    if not _is_small(best, "load.gravity_torque", np.sin(best.log.motion.angle / ratio) / ratio):
         return None
     load = loads.Inertia(inertia=inertia_of(model.drive))
     return replace(
@@ -248,17 +342,19 @@ def _without_gravity(model: MotionModel) -> MotionModel | None:
     )
 
 
-def _without_inertia(model: MotionModel) -> MotionModel | None:
+def _without_inertia(best: MotionCandidate) -> MotionModel | None:
     """Return the model of a joint that hardly accelerates."""
-    if "load.inertia" not in model.free:
+    model = best.model
+    if not _is_small(best, "load.inertia", best.log.motion.acceleration / model.drive.gear.kinematics.ratio**2):
         return None
     drive = model.drive.replace({"load.inertia": NO_INERTIA})
     return replace(model, name=f"{model.name}, no inertia", drive=drive, free=_without(model.free, "inertia"))
 
 
-def _without_viscous(model: MotionModel) -> MotionModel | None:
+def _without_viscous(best: MotionCandidate) -> MotionModel | None:
     """Return the model of a joint that moves at one speed, where Coulomb's friction stands for all of it."""
-    if f"{INPUT}viscous" not in model.free:
+    model = best.model
+    if not _is_small(best, f"{INPUT}viscous", best.log.motion.speed):
         return None
     drive = model.drive.replace({f"{INPUT}viscous": 0.0})
     return replace(model, name=f"{model.name}, no viscous part", drive=drive, free=_without(model.free, "viscous"))
@@ -297,12 +393,9 @@ def _curved(model: MotionModel) -> MotionModel | None:
 def _falling(model: MotionModel) -> MotionModel | None:
     """With friction that falls at low speed."""
     law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
-    if isinstance(law, friction.LuGre) and names[0] not in model.free:
-        falling: Any = law.replace(breakaway=1.3 * law.coulomb, stribeck_speed=3.0)
-    elif isinstance(law, friction.Coulomb):
-        falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
-    else:
+    if not isinstance(law, friction.Coulomb):
         return None
+    falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
     ties = {path: other for path, other in model.ties.items() if path not in FOLLOWS}
     return replace(model, ties=ties).having("a fall at low speed", *names, friction_input=falling)
 
@@ -316,53 +409,53 @@ def _lossy(model: MotionModel) -> MotionModel | None:
     return replace(model, ties=ties).having("a loss under load", LOSSES[0], friction_mesh=lossy)
 
 
-def _bristled(model: MotionModel) -> MotionModel | None:
-    """With a bristle that bends at reversals, from the bend that predicts best."""
-    law = model.law
-    if not isinstance(law, friction.Coulomb | friction.Stribeck) or law.coulomb <= 0.0:
-        return None
-    speed = law.stribeck_speed if isinstance(law, friction.Stribeck) else 1.0
-    model = replace(model, log=model.log.in_full_band())
-    nuisances, rows = np.array([each.start for each in model.log.nuisances]), moving(model.log)
+def _is_sensible(candidate: MotionCandidate) -> bool:
+    """True unless a part was fitted that the motion does not show: a delay longer than a clock makes it, a fall of the friction
+    that is none, or beyond the fastest motion."""
+    log, law = candidate.log, candidate.model.law
+    delay = next((each.start for each in log.nuisances if each.name == "delay"), 0.0)
+    falls = f"{INPUT}stribeck_speed" in candidate.model.free
+    sensible = not falls or (law.stribeck_speed < float(np.abs(log.motion.speed).max()) and law.breakaway > law.coulomb)
+    return bool(abs(delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible)
 
-    def bent(bend: float) -> MotionModel:
-        bristle = friction.LuGre(
-            coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=speed,
-            bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=law.viscous,
-        )  # fmt: skip
-        return model.having("a bristle at reversals", f"{INPUT}bristle_stiffness", friction_input=bristle)
+
+# ---- Parts of the prediction alone -----------------------------------------------------------------------------------------
+
+
+def bristled(drive: Drive, bend: float) -> Drive:
+    """Return the drive with bristles that bend at reversals, where its friction at the input has a law with bristles.
+
+    Args:
+        drive: with friction that slides, of Coulomb or Stribeck
+        bend: angle of the input in which they bend [rad]
+    """
+    law: Any = drive.gear.friction_input
+    if not isinstance(law, friction.Coulomb | friction.Stribeck) or law.coulomb <= 0.0:
+        return drive
+    speed = law.stribeck_speed if isinstance(law, friction.Stribeck) else 1.0
+    bristle = friction.LuGre(
+        coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=speed,
+        bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
+    )  # fmt: skip
+    return drive.replace(gear=drive.gear.replace(friction_input=bristle))
+
+
+def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
+    """Return the same with bristles, of the bend that explains most; None if its law of friction has none."""
+    drive, rows = best.model.drive, moving(best.log)
+    if bristled(drive, BENDS[0]) is drive:
+        return None
+    nuisances = np.array([each.start for each in best.log.nuisances])
 
     def error(bend: float) -> float:
-        return float(np.mean(model.log.residual(bent(bend).drive, nuisances)[rows] ** 2))
+        return float(np.mean(best.log.residual(bristled(drive, bend), nuisances)[rows] ** 2))
 
-    return bent(min(BENDS.tolist(), key=error))
-
-
-def _rippled(model: MotionModel) -> MotionModel | None:
-    """With a torque that repeats with the input's rotation."""
-    if any(name.startswith(RIPPLE) for name in model.log.regressors):
-        return None
-    angle, ratio = model.log.motion.angle, abs(model.drive.gear.kinematics.ratio)
-    waves = {
-        f"{RIPPLE} {way} {order:g}": ratio * wave(order * angle)
-        for order in RIPPLE_ORDERS
-        for way, wave in (("sin", np.sin), ("cos", np.cos))
-    }
-    starts = [each.start for each in model.log.nuisances]
-    log = replace(model.log.in_full_band(), regressors={**model.log.regressors, **waves}, starts=(*starts, *[0.0] * len(waves)))
-    return replace(model, name=f"{model.name}, ripple", log=log)
+    return replace(best, bend=min(BENDS.tolist(), key=error)).predicted_anew()
 
 
-def _is_sensible(candidate: MotionCandidate) -> bool:
-    """True unless a part was fitted that the motion does not show: a delay that is none, or longer than a clock makes it; a fall
-    of the friction that is none, or beyond the fastest motion."""
-    found = {each.path.removeprefix(INPUT): each for each in candidate.fit.estimates}
-    if (delay := found.get("delay")) is not None:
-        return MIN_DELAY_SIGMA * delay.sigma < abs(delay.value) < MAX_DELAY_SAMPLES * candidate.log.motion.step
-    if (speed := found.get("stribeck_speed")) is not None:
-        fastest = float(np.abs(candidate.log.motion.speed).max())
-        return speed.value < fastest and found["breakaway"].value > found["coulomb"].value
-    return True
+def _with_ripple(best: MotionCandidate) -> MotionCandidate:
+    """Return the same with a torque that repeats with the input's rotation."""
+    return replace(best, rippled=True).predicted_anew()
 
 
 # ---- Fit -----------------------------------------------------------------------------------------------------------------
@@ -406,37 +499,38 @@ def bands(log: MotionLog, drive: Drive) -> list[MotionLog]:
 
 
 def _candidate(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> MotionCandidate:
+    """Fit a model as nearly as comparisons need, from where it starts."""
     known = {path: prior for path, prior in priors.items() if path in model.free}
-    found = fit(model.drive, model.log, model.free, ties=model.ties, priors=known)
-    return MotionCandidate(model, found, tuple(_held_out(found, model.log, held_out)))
+    asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
+    problem = problem_of(asked, [""], [model.drive], [model.log], [None])
+    x = problem.solve(problem.start(), problem.first_weights(), SQUARED, NEAR, trials=MAX_STEPS)
+    (record,) = problem.records
+    ((predicted, _),) = problem.predict(x)
+    ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
+    unexplained = float(np.std(model.log.measured - predicted) / np.std(model.log.measured))
+    return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended.log, held_out)))
 
 
-def refit(best: MotionCandidate, drive: Drive, priors: Mapping[str, tuple[float, float]]) -> HeldOut:
+def refit(best: MotionCandidate, drive: Drive) -> HeldOut:
     """Return the error on the last 30 % of the motion of the model fitted to what comes before, beside plain least squares."""
-    log, model = best.log, best.ended
-    last = stretches(log)[-1]
-    known = {path: prior for path, prior in priors.items() if path in model.free}
-    training = ~last[log.motion.rows]
-    found = fit(model.drive, model.log, model.free, ties=model.ties, priors=known, training=training)
-    left = log.residual(found.model, nuisances_of(found))[last]
-    (plain,) = held_out_residuals(replace(log, regressors=_of_other_joints(log)), drive, [last])
+    log, last = best.log, best.folds[-1].stretch
+    found = best.fitted_to(~last[log.motion.rows])
+    left = best.left(found.model, nuisances_of(found), ~last)[last]
+    (plain,) = held_out_residuals(log, drive, [last])
+    (part,) = found.parts
+    in_band = float(part.rms(held_out=True)[0] / np.std(log.measured[0, ~part.training])) if not part.training.all() else np.nan
     return HeldOut(
         "last 30 % of the motion", log.effort, log.units[0],
         float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[last])), float(np.sqrt(np.mean(plain**2))), int(last.sum()),
+        in_band,
     )  # fmt: skip
 
 
-def _of_other_joints(log: MotionLog) -> dict[str, Array]:
-    """Return the regressors that are torques of other bodies."""
-    return {name: each for name, each in log.regressors.items() if not name.startswith(RIPPLE)}
-
-
-def _held_out(found: Fit, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Array]:
-    """The residuals of each stretch, by what the rest of the log determines: a step of Gauss and Newton from the whole.
+def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
+    """The model by what the rest of the log determines without each stretch: a step of Gauss and Newton from the whole.
 
     Shapes of the friction curve, in which it is not linear, stay as the whole log has them, and so do numbers at a limit.
     """
-    problem, x = solved_problem(found)
     (record,) = problem.records
     low, high = problem.limits().T
     moves = [
@@ -451,10 +545,20 @@ def _held_out(found: Fit, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[
     size = np.linalg.norm(rows, axis=0)
     size[size == 0.0] = 1.0
     for stretch in held_out:
-        keep = ~stretch[log.motion.rows]
-        system = (np.concatenate([rows[keep], noise * before]) / size)[:, linear]
-        step = np.linalg.lstsq(system, np.concatenate([left[keep], noise * (right - before @ x)]), rcond=MIN_SINGULAR)[0]
+        out = stretch[log.motion.rows]
+        system = (np.concatenate([rows[~out], noise * before]) / size)[:, linear]
         there = x.copy()
-        there[linear] += step / size[linear]
-        there = np.clip(there, low, high)
-        yield log.residual(record.model(there), there[record.nuisances])[stretch]
+        room = ((low - x) * size)[linear], ((high - x) * size)[linear]
+        there[linear] += _bounded(system, np.concatenate([left[~out], noise * (right - before @ x)]), *room) / size[linear]
+        model, nuisances = record.model(there), there[record.nuisances]
+        in_band = (left - rows @ (there - x))[out]
+        yield Fold(stretch, model, nuisances, in_band, log.residual(model, nuisances))
+
+
+def _bounded(system: Array, right: Array, low: Array, high: Array) -> Array:
+    """The unknowns of least squares within limits."""
+    from scipy.optimize import lsq_linear
+
+    orthogonal, triangle = np.linalg.qr(system)
+    found = lsq_linear(triangle, orthogonal.T @ right, (np.minimum(low, 0.0), np.maximum(high, 0.0)), method="bvls", tol=1e-8)
+    return np.asarray(found.x)

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
+STRETCHES = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
+MAX_SPEED_ERROR = 0.98  # of the held-out error along the angle: along a recorded speed it must be less
 TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
 FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
-POWER_BLOCKS = 10  # of the motion, over which the power of friction is averaged
 RCOND = 1e-6  # singular values below this share of the largest are taken as zero
 
 
@@ -35,7 +38,8 @@ class Plain(ComparedByFields):
         phase: of the gravity [rad]
         shares: of other bodies in the torque of the output, as many as the log has regressors [1]
         explained: share of the variation of the torque [1]
-        dissipated: mean power that friction takes from the motion, over its standard deviation by blocks [1]
+        sense: 1 if inertia is positive and friction brakes the motion, -1 if both are the other way round, as of an effort that
+            is counted against the motion; between where they disagree, by their shares in the torque [1]
     """
 
     inertia: float
@@ -46,16 +50,16 @@ class Plain(ComparedByFields):
     phase: float
     shares: tuple[float, ...]
     explained: float
-    dissipated: float
+    sense: float
 
 
 def moving(log: MotionLog) -> Rows:
-    """Return the samples of the grid from the first motion to the last, shape (m,)."""
+    """Return the sound samples of the grid from the first motion to the last, shape (m,)."""
     speed = np.abs(log.motion.speed)
     fast = np.flatnonzero(speed > MIN_SPEED * np.quantile(speed, FAST_QUANTILE))
     rows = np.zeros(len(speed), bool)
     rows[fast[0] : fast[-1] + 1] = True
-    return rows
+    return rows & log.sound
 
 
 def fit_plain(log: MotionLog, drive: Drive) -> Plain:
@@ -66,9 +70,9 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
     columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
     weights = _solved(columns[rows], torque[rows])
     left = (torque - columns @ weights)[rows]
-    power = (columns[:, 1:3] @ weights[1:3] * log.motion.speed)[rows]
-    means = np.array([block.mean() for block in np.array_split(power, POWER_BLOCKS)])
-    spread = float(np.std(means, ddof=1)) / np.sqrt(POWER_BLOCKS)
+    by_inertia, by_friction = columns[rows, 0] * weights[0], columns[rows, 1:3] @ weights[1:3]
+    powers = np.array([np.mean(by_inertia**2), np.mean(by_friction**2)])
+    senses = np.sign([weights[0], np.mean(by_friction * log.motion.speed[rows])])
     inertia, viscous, coulomb, offset = (float(each) for each in weights[:4])
     return Plain(
         inertia, viscous, coulomb, offset,
@@ -76,8 +80,26 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
         float(np.arctan2(weights[5], weights[4])),
         tuple(weights[6:].tolist()),
         1.0 - float(np.var(left) / max(float(np.var(torque[rows])), 1e-300)),
-        float(means.mean() / max(spread, 1e-300)),
+        float(senses @ powers / max(powers.sum(), 1e-300)),
     )  # fmt: skip
+
+
+def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tuple[MotionLog, bool]:
+    """Return the log along its angle or the speed recorded beside it, whichever predicts better; and True for the speed."""
+    measured = log.with_measured_speed(recording, drive.gear.kinematics.ratio)
+    if measured is None:
+        return log, False
+    errors = [float(np.mean(np.concatenate(held_out_residuals(each, drive, stretches(each))) ** 2)) for each in (log, measured)]
+    is_better = errors[1] < MAX_SPEED_ERROR**2 * errors[0]
+    return (measured, True) if is_better else (log, False)
+
+
+def stretches(log: MotionLog) -> list[Rows]:
+    """Return the contiguous stretches of the motion that are held out in turn, the last 30 % at the end, shape (m,) each."""
+    places = np.flatnonzero(moving(log))
+    ends = [places[0] + round(share * (places[-1] + 1 - places[0])) for share in STRETCHES]
+    every = np.arange(len(log.motion.time))
+    return [(every >= begin) & (every < end) & log.sound for begin, end in pairwise(ends)]
 
 
 def held_out_residuals(log: MotionLog, drive: Drive, blocks: Sequence[Rows]) -> list[Array]:
@@ -95,7 +117,8 @@ def _columns(log: MotionLog, drive: Drive) -> Array:
     angle = motion.angle / ratio
     fast = float(np.quantile(np.abs(motion.speed), FAST_QUANTILE))
     sign = np.tanh(motion.speed / max(TURNS_OVER * fast, 1e-300))
-    series = [motion.acceleration, motion.speed, sign, np.ones_like(angle), np.sin(angle) / ratio, np.cos(angle) / ratio]
+    offset = np.full_like(angle, float(log.both_ways))  # which one direction alone does not separate from friction
+    series = [motion.acceleration, motion.speed, sign, offset, np.sin(angle) / ratio, np.cos(angle) / ratio]
     return np.stack([*series, *(each / ratio for each in log.regressors.values())], axis=1)
 
 

@@ -27,7 +27,7 @@ EDGE = 5  # samples of the decimated series that the ends of the filters spoil, 
 GAP = 2.5  # intervals: a longer one is a gap, over which nothing is known
 CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
 SLOW = 0.5  # of the power of the acceleration: of a motion that is slower than vibrations (assumed)
-MAX_FULL_BAND_ROWS = 20_000  # that a fit in the full band compares
+MAX_FULL_BAND_ROWS = 8_000  # that a fit in the full band compares
 FEWEST = 200  # samples that a motion is worked out from
 
 

@@ -25,6 +25,8 @@ Side = Literal["input", "output"]
 EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # what shows the torque, best first
 REVERSAL = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
 MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
+OUTLIER_WINDOW = 101  # samples, over which ripple and noise may grow
+MEDIAN_OF_NORMAL = 1.4826  # standard deviations of a normal distribution in the median of its size
 MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 DIFFERENCE = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
@@ -45,7 +47,8 @@ class MotionLog(ComparedByFields):
         motion: of the input
         effort: what was compared: `current`, `input_torque`, `joint_torque` (the motor's, counted at the output) or `voltage`
         force: the effort on the grid of the motion, without outliers, shape (m,)
-        recorded: the same with them, shape (m,)
+        recorded: the same as it was recorded, shape (m,)
+        sound: False at outliers and clipped samples of the effort, shape (m,)
         extra: torque of other bodies that hold the output back, on the grid of the motion [N.m]; zero if nothing is known
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
         delayed: True if a delay of the effort behind the motion is an unknown
@@ -57,6 +60,7 @@ class MotionLog(ComparedByFields):
     effort: str
     force: Array
     recorded: Array
+    sound: NDArray[np.bool_]
     extra: Array
     regressors: Mapping[str, Array] = field(default_factory=dict)
     delayed: bool = False
@@ -98,10 +102,11 @@ class MotionLog(ComparedByFields):
         values = sensible(recording, effort, EFFORTS[effort])
         sound = ~spoilt(values)
         force = np.asarray(Akima1DInterpolator(time[sound], values[sound], extrapolate=True)(motion.time))  # as the angle is
-        motion = replace(motion, known=motion.known & (on_grid(sound.astype(float)) == 1.0))
+        sound_there = on_grid(sound.astype(float)) == 1.0
+        motion = replace(motion, known=motion.known & sound_there)
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
-            motion, effort, force, on_grid(values), known,
+            motion, effort, force, on_grid(values), sound_there, known,
             {name: on_grid(recording[name]) for name in regressors}, samples=len(recording),
         )  # fmt: skip
 
@@ -186,12 +191,13 @@ class MotionLog(ComparedByFields):
     def residual(self, model: Drive, nuisances: Array) -> Array:
         """Return measured less predicted effort at every instant of the grid, shape (m,).
 
-        At rest friction takes any value up to the one that breaks it away: the residual is what lies beyond.
+        At rest friction takes any value up to the one that breaks it away: the residual is what lies beyond. Outliers and
+        clipped samples have none.
         """
         left: Array = self.recorded - self.whole(model, nuisances)
         hold = _hold(model) * abs(per_torque(model, self.effort))
         held = np.sign(left) * np.maximum(np.abs(left) - hold, 0.0)
-        return np.where(self.motion.resting, held, left)
+        return np.where(self.sound, np.where(self.motion.resting, held, left), 0.0)
 
     def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         """Effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
@@ -310,15 +316,17 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
     """Samples that are outliers among their neighbours, or clipped at the end of the range.
 
     Outliers: farther off the median of seven than six standard deviations of the noise (Hampel 1974). The noise is that of
-    second differences: the median follows both noise and motion, so that what is off it would show too little. Clipped: the
-    largest or smallest level that comes again and again, though an outlier may lie beyond.
+    second differences: the median follows both noise and motion, so that what is off it would show too little. Where ripple
+    grows, as with the speed, the samples around show it. Clipped: the largest or smallest level that comes again and again,
+    though an outlier may lie beyond.
     """
     from scipy import ndimage
 
     clipped = _clipped(values) | _clipped(-values)
     off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
     scale = noise(values[~clipped]) if np.median(off) > 0.0 else np.inf  # without noise extremes look like outliers
-    outliers = off > MAX_OUTLIER_SIGMA * scale
+    around = MEDIAN_OF_NORMAL * ndimage.median_filter(off, OUTLIER_WINDOW, mode="nearest")
+    outliers = off > MAX_OUTLIER_SIGMA * np.maximum(scale, around)
     spoilt_ones: NDArray[np.bool_] = outliers | clipped
     return spoilt_ones
 

@@ -56,7 +56,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
     variants = [log] if in_current else bands(log, drive)
     best, *_ = fit_motion(variants, drive, priors=priors)
-    held_out = refit(best, drive, priors)
+    held_out = refit(best, drive)
     told = list(_of_motion(best, taken))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)

@@ -12,14 +12,13 @@ from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.plain import fit_plain
+from strainwave.identification.candidates.plain import along_best_motion, fit_plain
 from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, rotor_sigma
 from strainwave.messages import as_option, listed
 
-MIN_SIGN_SIGMA = 3.0  # standard deviations by which friction must feed a motion, whose effort is then counted the other way
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
 
@@ -68,10 +67,14 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     log = MotionLog.of(recording, drive, regressors=file.regressors)
     if np.ptp(recording[log.effort]) == 0.0:
         raise ValueError(f"{log.effort} never changes: a set value, a limit, or a channel that was not recorded")
-    if fit_plain(log, drive).dissipated < -MIN_SIGN_SIGMA:
+    if fit_plain(log, drive).sense < 0.0:
         remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
+    log, is_of_speed = along_best_motion(log, recording, drive)
+    remarks += [
+        "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"
+    ] * is_of_speed
     if file.neighbours and not file.regressors:
         log, told = _with_neighbours(file, log, drive)
         remarks += told

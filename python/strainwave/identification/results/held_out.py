@@ -19,6 +19,7 @@ class HeldOut:
         zero: root mean square of the channel about its mean there: the error of a model that predicts nothing
         plain: error of plain least squares there (offset, inertia, gravity, Coulomb and viscous friction); not a number without
         samples: compared
+        in_band: the error over that of the mean in the pass band of the fit, where slow sliding alone is compared [1]
     """
 
     stretch: str
@@ -28,6 +29,7 @@ class HeldOut:
     zero: float
     plain: float = np.nan
     samples: int = 0
+    in_band: float = np.nan
 
     @property
     def relative(self) -> float:

@@ -65,17 +65,17 @@ def test_regression_finds_what_a_motor_without_noise_gave(**scale: float) -> Non
     found = fit_plain(MotionLog.of(record(truth), drive()), drive())
     assert found.inertia == pytest.approx(MOTOR + truth["inertia"] / RATIO**2, rel=2e-3)
     assert found.coulomb == pytest.approx(truth["coulomb"], rel=2e-2)  # which turns over smoothly
-    assert found.viscous == pytest.approx(truth["viscous"], rel=3e-2)
+    assert found.viscous == pytest.approx(truth["viscous"], rel=0.1)
     assert found.gravity == pytest.approx(truth["gravity"], rel=5e-3)
     assert np.exp(1j * found.phase) == pytest.approx(np.exp(1j * truth["phase"]), abs=5e-3)
     assert found.explained > 0.995
-    assert found.dissipated > 3.0
+    assert found.sense > 0.99
 
 
 def test_a_torque_counted_the_other_way_makes_inertia_and_friction_negative() -> None:
     reversed_record = record(TRUTH)
     turned = reversed_record.with_column("current", -reversed_record["current"], "A")
-    assert fit_plain(MotionLog.of(turned, drive()), drive()).dissipated < -3.0
+    assert fit_plain(MotionLog.of(turned, drive()), drive()).sense < -0.99
 
 
 def test_slopes_agree_with_differences() -> None:
