@@ -87,7 +87,7 @@ def test_every_kind_is_thrown_and_a_case_is_the_same_each_time(tmp_path: Path) -
         (raises(ValueError("")), "no message"),
         (raises(ValueError("one line\nand another")), "more than one line, or control characters"),
         (raises(TypeError("\x1b[31mred")), "more than one line, or control characters"),
-        (raises(ValueError("a" * 501)), "a message of more than 500 characters"),
+        (raises(ValueError("a" * 1001)), "a message of more than 1000 characters"),
         (raises(MemoryError("std::bad_alloc")), "a library's words"),
         (raises(TypeError("unhashable type: 'list'")), "a library's words"),
         (raises(OSError(2, "No such\nfile")), "more than one line, or control characters"),
