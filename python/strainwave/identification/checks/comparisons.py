@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.fitting.influence import uncertainty
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.combined_parameter import MAX_DISTANCE, CombinedParameter, distance
+from strainwave.identification.results.combined_parameter import MAX_DISTANCE, CombinedParameter, difference, distance
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.messages import listed
 
@@ -112,31 +113,43 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
     they describe the same friction.
     """
     failed, laws = {file.name for file in files if file.failed}, {file.name: _friction_of(file) for file in files}
+    pairs = dict[tuple[str, str], list[_Contradiction]]()
     for each in parameters:
-        best = each.of_file(each.source)
         for name in each.contradicts:
-            if name in failed or each.source in failed:
-                continue
-            other = each.others[name]
-            part = each.estimate.path.removeprefix("gear.").partition(".")[0]
-            repeatability = REPEATABILITY.get(part, REPEATABILITY_OF_OTHERS) * abs(best.value)
-            apart = distance(best, other)
-            other_law = part == "friction_input" and laws.get(name) != laws.get(each.source)
-            apart_from_run_to_run = abs(best.value - other.value) / float(np.hypot(repeatability, _sigma(best, other)))
-            yield Check(
-                "agreement of files", f"{each.source}, {name}", apart_from_run_to_run, MAX_DISTANCE, "standard deviations",
-                apart_from_run_to_run > MAX_DISTANCE and not other_law,
-                f"{each.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} by {each.source}, "
-                f"{other.value:.4g} ± {other.sigma:.2g} by {name}: {apart:.3g} standard deviations apart",
-                "see whether sides, columns and units of both are right, and compare temperature, load, speed and lubricant; "
-                "leave out the file that is not of this gear as you want it",
-            )  # fmt: skip
+            if not failed & {name, each.source}:
+                one_law = laws.get(name) == laws.get(each.source)
+                pairs.setdefault((each.source, name), []).append(_contradiction(each, name, comparable=one_law))
+    for (one, other), own in pairs.items():
+        found = sorted(own, key=lambda each: -each.apart)
+        more = f", and {len(found) - MAX_LISTED} more" if len(found) > MAX_LISTED else ""
+        yield Check(
+            "agreement of files", f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
+            f"{one} and {other} contradict each other: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}",
+            "see whether sides, columns, units and the ratio are right for both, and compare temperature, load, speed and "
+            "lubricant; leave out the file that is not of this gear as you want it",
+        )  # fmt: skip
+
+
+class _Contradiction(NamedTuple):
+    """A parameter of which two files differ, in words, and how far apart they are beyond what runs of one gear differ by."""
+
+    words: str
+    apart: float
+
+
+def _contradiction(each: CombinedParameter, name: str, *, comparable: bool) -> _Contradiction:
+    best, other = each.of_file(each.source), each.others[name]
+    part = each.estimate.path.removeprefix("gear.").partition(".")[0]
+    repeatability = REPEATABILITY.get(part, REPEATABILITY_OF_OTHERS) * abs(best.value)
+    sigma = float(np.hypot(np.hypot(best.own, other.own), best.common - other.common))
+    apart = abs(difference(best, other)) / float(np.hypot(repeatability, sigma))
+    words = (
+        f"{each.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} "
+        f"{best.unit}, {distance(best, other):.3g} standard deviations apart"
+    )
+    return _Contradiction(words, apart if comparable or part != "friction_input" else 0.0)
 
 
 def _friction_of(file: FileResult) -> str:
     """Return the law of friction that was fitted to a file."""
     return file.model if file.fit is None else str(file.fit.gear.friction_input.name)
-
-
-def _sigma(one: FileEstimate, other: FileEstimate) -> float:
-    return float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
