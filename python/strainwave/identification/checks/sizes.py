@@ -217,7 +217,8 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
     yield Check(
         "stiffness of the start set", source, max(factor, 1.0 / factor), limit, "1", not 1.0 / limit < factor < limit,
         f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({known:.3g} N·m/rad)",
-        f"{nearest(factor, mistakes)[0]}see whether sides and units are right; if they are, --accept",
+        f"{nearest(factor, mistakes)[0]}see whether sides and units are right, and the start set is that of this gear; "
+        "if they are, --accept",
     )  # fmt: skip
 
 
