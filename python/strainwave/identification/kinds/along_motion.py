@@ -10,6 +10,7 @@ import numpy as np
 
 from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit
 from strainwave.identification.candidates.plain import fit_plain
+from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.fitting.estimate import Estimate
@@ -57,13 +58,14 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     variants = [log] if in_current else bands(log, drive)
     best, *_ = fit_motion(variants, drive, priors=priors)
     held_out = refit(best, drive)
-    told = list(_of_motion(best, taken))
+    told, checks = list(_of_motion(best, taken)), list(held_out_error(held_out, file.path.name))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
     between = Between()
     if set(ENCODERS) <= set(recording.names):
-        errors = transmission_error(recording)
-        between = between_encoders(taken, best, errors, known)
+        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
+        between = between_encoders(taken, best, errors, known, file.path.name)
+        checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         surer = {each.path for each in between.estimates}
         told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
         remarks += [*errors.remarks, *between.remarks]
@@ -73,11 +75,11 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
     level = () if in_current else friction_of_log(law, start.friction_input, speed, log.effort, name)
-    checks = (*level, input_speed(speed, name), *_given_inertia(taken, name))
+    checks += [*level, input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
     pictures = (Picture(curves), *between.pictures)
     return (
         FileResult(
-            name, file, best.name, tuple(told), held_out.relative, every, checks, pictures=pictures, held_out=held_out,
+            name, file, best.name, tuple(told), held_out.relative, every, tuple(checks), pictures=pictures, held_out=held_out,
             fit=best.fit,
         ),
         known,
@@ -100,6 +102,15 @@ def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileE
         if part not in known.determined and law != getattr(known.gear_set.gear, part):
             known = known.with_parts({part: law}, sigmas, name)
     return known
+
+
+def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
+    """Yield the check of the torque constant by the voltage that the motor induces, if a log has both."""
+    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
+    if taken.in_current or constant <= 0.0:
+        return
+    speed = np.interp(taken.recording.time, taken.log.motion.time, taken.log.motion.speed)
+    yield from torque_constant_by_voltage(taken.recording, speed, constant, name)
 
 
 def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:

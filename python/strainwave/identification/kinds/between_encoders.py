@@ -14,10 +14,12 @@ from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion import MotionCandidate
+from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.prepared_log import PreparedLog
+from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
 from strainwave.identification.results.file_result import FileEstimate, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of
@@ -26,7 +28,6 @@ from strainwave.parameters import gear_numbers
 
 Array = NDArray[np.float64]
 
-APART = 3.0  # standard deviations, beyond which two values are not one
 LATE = 2.5  # standard deviations, beyond which a delay is there
 SURER = 3.0  # times as sure as gravity an inertia must be known to be what torques count from
 UNTOLD = 0.5  # of its value: a number whose standard deviation exceeds that is not told
@@ -43,6 +44,7 @@ class Between:
         remarks: what to know of them
         pictures: the angle between the shafts as measured and as modelled; none if nothing was fitted
         found: the model; None likewise
+        checks: of the numbers that it determines in a second way
         parts: those of the gear that it tells in units of a gear; none but the kinematic error where torques are in A
     """
 
@@ -51,6 +53,7 @@ class Between:
     pictures: tuple[Picture, ...] = ()
     found: ElasticCandidate | None = None
     parts: tuple[str, ...] = ("stiffness", "hysteresis", "damping", "kinematic_error")
+    checks: tuple[Check, ...] = ()
 
     def known(self, known: GearSoFar, name: str) -> GearSoFar:
         """What is known after it: parts of the gear that no earlier file has told."""
@@ -69,7 +72,9 @@ class Between:
         return _with_sources_kept(known.with_parts(new, sigmas, name), known, new, sigmas, name)
 
 
-def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: TransmissionError, known: GearSoFar) -> Between:
+def between_encoders(
+    taken: PreparedLog, best: MotionCandidate, errors: TransmissionError, known: GearSoFar, source: str
+) -> Between:
     """Spring, hysteresis, damping and kinematic error of the gear in a log of both encoders, or why they are not told.
 
     Args:
@@ -77,6 +82,7 @@ def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: Transmis
         best: the fit along its motion
         errors: orders of the kinematic error, from which the fit starts
         known: before the log
+        source: name of the log
     """
     drive, estimates = best.fit.parts[0].model, {each.path: each for each in best.fit.estimates}
     try:
@@ -87,9 +93,10 @@ def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: Transmis
     except (ValueError, FloatingPointError) as error:
         return Between(remarks=(f"stiffness and hysteresis are not told: {error}",))
     told = tuple(_told(found, scale, known, taken.in_current))
-    remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), taken))
+    remarks = tuple(_remarks(found, scale, taken))
     picture = Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name)
-    between = Between(told, remarks, (picture,), found)
+    checks = tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source))
+    between = Between(told, remarks, (picture,), found, checks=checks)
     return replace(between, parts=("kinematic_error",)) if taken.in_current else between
 
 
@@ -212,9 +219,24 @@ def _law_of(path: str, found: ElasticCandidate) -> str:
     return str(getattr(gear, part).name) if part in ("stiffness", "kinematic_error") else ""
 
 
-def _remarks(found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, taken: PreparedLog) -> Iterator[str]:
+def _inertias(
+    found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, taken: PreparedLog, source: str
+) -> Iterator[Check]:
+    """Yield the check of the inertia of the load by how it winds the gear up and by the torque of the motor.
+
+    The first is taken: it needs neither the inertia of the motor nor a current that is a mean.
+    """
+    if scale.path != GRAVITY or rigid is None or not taken.motor_known:
+        return
+    places = {each.path: place for place, each in enumerate(found.fit.estimates)}
+    own, sigma = found.fit.estimates[places[INERTIA]].value, float(found.sigmas[places[INERTIA]])
+    by_torque = rigid.value, float(np.hypot(rigid.sigma, taken.rotor))
+    yield inertias_of_load((own, sigma), by_torque, "A·s²/rad" if taken.in_current else "kg·m²", source)
+
+
+def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iterator[str]:
     estimates = {each.path: (each, float(sigma)) for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)}
-    torque, mass = ("A", "A·s²/rad") if taken.in_current else ("N·m", "kg·m²")
+    torque = "A" if taken.in_current else "N·m"
     of = "gravity" if scale.path == GRAVITY else "inertia of the load"
     yield (
         f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
@@ -226,13 +248,6 @@ def _remarks(found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, tak
             f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
             "that the model lacks, and its numbers may be off by more than they say"
         )
-    if scale.path == GRAVITY and rigid is not None and taken.motor_known:
-        own, sigma = estimates[INERTIA]
-        if abs(own.value - rigid.value) > APART * float(np.linalg.norm([sigma, rigid.sigma, taken.rotor])):
-            yield (
-                f"inertia of the load: {own.value:.4g} {mass} by how it winds the gear up and vibrates, {rigid.value:.4g} by "
-                "the torque of the motor. The first is told: it needs neither inertia of the motor nor a current that is a mean"
-            )
     delay, sigma = estimates["output_angle_delay"]
     if abs(delay.value) > LATE * sigma:
         yield (

@@ -27,7 +27,9 @@ class TwoEncoders(Kind):
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""
-        found, name = transmission_error(file.recording), file.path.name
+        given = file.constants.get("ratio")
+        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=…")
+        name = file.path.name
         remarks, pictures = (*file.remarks, *found.remarks), (Picture(curves_of_orders(found)),)
         result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), np.nan, remarks, pictures=pictures)
         return result, with_error(known, found, name)

@@ -1,0 +1,110 @@
+"""Checks of a log of a drive: its error on data held out, and numbers that it determines in two ways."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive
+from strainwave.files.recording import Recording
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.held_out import HeldOut
+from strainwave.orders.shaft_pair import Ratio
+
+Array = NDArray[np.float64]
+
+MAX_UNEXPLAINED = 0.5  # of what varies on data held out
+MAX_OF_PLAIN = 1.02  # of the held-out error of plain least squares
+MIN_RATIO_SIGMA = 3.0  # standard deviations beyond which a measured ratio is another one
+MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by less
+MAX_CONSTANT_DIFFERENCE = 0.1  # relative, of a torque constant by the voltage: a resistance changes as much as a motor warms up
+MAX_CONSTANT_SIGMA = 0.03  # relative: a voltage that determines the constant less well is no check of it
+MAX_INERTIA_FACTOR = 1.4  # between the inertias of a load by its winding up and by the torque of the motor
+MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
+BLOCKS = 10  # of a record, over which what is left of the voltage scatters
+
+
+def held_out_error(held_out: HeldOut, source: str) -> Iterator[Check]:
+    """Yield the checks that a model predicts data held out, and no worse than plain least squares."""
+    unit = held_out.unit
+    yield Check(
+        "unexplained on data held out", source, held_out.relative, MAX_UNEXPLAINED, "1", held_out.relative > MAX_UNEXPLAINED,
+        f"the model leaves {held_out.error:.3g} {unit} of {held_out.channel} on the {held_out.stretch}, where it varies by "
+        f"{held_out.zero:.3g} {unit}: {100.0 * held_out.relative:.0f} % is unexplained",
+        "other joints may move (give their angles as other_angles, or their torque as rigid_torque), the motion may be too "
+        "small or at one speed only, or columns, units or sides are not what they are taken for",
+    )  # fmt: skip
+    if np.isfinite(held_out.plain):
+        share = held_out.error / max(held_out.plain, 1e-300)
+        yield Check(
+            "plain least squares", source, share, MAX_OF_PLAIN, "1", share > MAX_OF_PLAIN,
+            f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
+            "record longer, at several speeds and both ways: the record does not determine more than its mean friction",
+        )  # fmt: skip
+
+
+def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check]:
+    """Yield the check that the ratio of two measured angles is that of the gear."""
+    if ratio.in_joint_units:
+        return
+    expected = abs(drive.gear.kinematics.ratio)
+    off, limit = abs(abs(ratio.value) - expected), max(MIN_RATIO_SIGMA * ratio.sigma, MIN_RATIO_DIFFERENCE * expected)
+    yield Check(
+        "ratio of two encoders", source, off, limit, "1", off > limit,
+        f"the angles of input and output have the ratio {abs(ratio.value):.5g} ± {ratio.sigma:.2g}, the gear {expected:.6g}",
+        f"if the ratio of the gear is that of the angles, give --constant ratio={abs(ratio.used):.6g}; a belt or pulley before "
+        "the gear is part of it; else see whether both angles are in the units they are taken for",
+    )  # fmt: skip
+
+
+def torque_constant_by_voltage(recording: Recording, speed: Array, constant: float, source: str) -> Iterator[Check]:
+    """Yield the check that a torque constant agrees with the voltage that the motor induces: u = R i + K w + u_0.
+
+    Args:
+        recording: with voltage and current
+        speed: of the motor at each row [rad/s], shape (n,)
+        constant: torque constant [N.m/A], which is the voltage per speed of the same motor in SI units
+        source: name of the file
+    """
+    if not {"voltage", "current"} <= set(recording.names):
+        return
+    columns = np.stack([recording["current"], speed, np.ones_like(speed)], axis=1)
+    size = np.linalg.norm(columns, axis=0)
+    if not (size > 0.0).all():
+        return
+    found = np.linalg.lstsq(columns / size, recording["voltage"], rcond=1e-8)[0]
+    left = recording["voltage"] - columns / size @ found
+    blocks = [float(np.mean(each)) for each in np.array_split(left * columns[:, 1] / size[1], BLOCKS)]
+    sigma = float(np.std(blocks, ddof=1)) * len(left) / np.sqrt(BLOCKS) / size[1]
+    induced = float(found[1] / size[1])
+    if not sigma < MAX_CONSTANT_SIGMA * abs(induced):
+        return
+    off = abs(abs(induced) / constant - 1.0)
+    yield Check(
+        "torque constant by the voltage", source, off, MAX_CONSTANT_DIFFERENCE, "1", off > MAX_CONSTANT_DIFFERENCE,
+        f"the motor induces {abs(induced):.4g} ± {sigma:.1g} V·s/rad, which is its torque constant in N·m/A, but "
+        f"{constant:.4g} N·m/A is taken",
+        f"give --constant torque_constant={abs(induced):.4g} if voltage and current are those of a DC motor or of one phase "
+        "in the rotating frame; else see the data sheet",
+    )  # fmt: skip
+
+
+def inertias_of_load(by_spring: tuple[float, float], by_torque: tuple[float, float], unit: str, source: str) -> Check:
+    """Return the check that a load has the same inertia by how it winds the gear up and by the torque of the motor.
+
+    Args:
+        by_spring, by_torque: the inertia and its standard deviation, in `unit`
+        unit: of both
+        source: name of the file
+    """
+    (one, of_one), (other, of_other) = by_spring, by_torque
+    apart = abs(one - other) / max(float(np.hypot(of_one, of_other)), 1e-300)
+    factor = max(one, other) / max(min(one, other), 1e-300)
+    return Check(
+        "inertia of the load in two ways", source, factor, MAX_INERTIA_FACTOR, "1",
+        factor > MAX_INERTIA_FACTOR and apart > MIN_INERTIA_SIGMA,
+        f"the load has an inertia of {one:.3g} {unit} by how it winds the gear up, and {other:.3g} by the torque of the motor",
+        "see whether torque constant, ratio, motor_inertia and the side of the torque are right",
+    )  # fmt: skip
