@@ -46,9 +46,9 @@ def read_loop(
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "loop.csv")
-    ...     _ = path.write_text("input_angle [deg],input_torque [N.m]\\n1,0.3\\n0,0\\n-1,-0.3\\n")
+    ...     _ = path.write_text("input_angle [deg],input_torque [N.m]\\n2,0.6\\n1,0.3\\n0,0\\n-1,-0.3\\n")
     ...     read_loop(path).torque.tolist()
-    [0.3, 0.0, -0.3]
+    [0.6, 0.3, 0.0, -0.3]
     """
     recording, remarks = _recording(path, side, columns, units)
     try:
