@@ -22,7 +22,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.plain import Plain, fit_plain, held_out_residuals, moving, stretches
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
-from strainwave.identification.fitting.fit import Fit, fit, problem_of
+from strainwave.identification.fitting.fit import Fit, fit, problem_of, solved_problem
 from strainwave.identification.fitting.loss import LOSSES as COSTS
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
@@ -47,6 +47,7 @@ MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is c
 MAX_DELAY_SAMPLES = 5.0  # of the log
 SQUARED = COSTS["linear"]
 NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
+JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MAX_STEPS = 8  # of a fit while models are compared
 SHAPES = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
 MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
@@ -526,33 +527,55 @@ def refit(best: MotionCandidate, drive: Drive) -> HeldOut:
     )  # fmt: skip
 
 
-def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
-    """The model by what the rest of the log determines without each stretch: a step of Gauss and Newton from the whole.
+def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
+    """Return the standard deviations of the numbers of a fit by how they move without each block of the motion, by path.
 
-    Shapes of the friction curve, in which it is not linear, stay as the whole log has them, and so do numbers at a limit.
+    The jackknife (Quenouille1956, Tukey1958) over contiguous blocks: it takes no model of the noise, and sees what differs from
+    one part of a record to another. Numbers at a limit have none.
+    """
+    problem, x = solved_problem(best.fit)
+    rows = np.arange(len(best.log.motion.rows))
+    blocks = [(rows >= each[0]) & (rows <= each[-1]) for each in np.array_split(rows, JACKKNIFE_BLOCKS)]
+    without = np.array(list(_without_rows(problem, x, blocks, ())))
+    spread = np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(without, axis=0))
+    return {each.path: float(sigma) for each, sigma in zip(problem.plan.unknowns, spread, strict=False)}
+
+
+def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
+    """The model by what the rest of the log determines without each stretch; shapes of friction stay as the whole has them."""
+    (record,) = problem.records
+    ((predicted, slopes),) = problem.predict(x)
+    out = [stretch[log.motion.rows] for stretch in held_out]
+    for stretch, rows, there in zip(held_out, out, _without_rows(problem, x, out, SHAPES), strict=True):
+        model, nuisances = record.model(there), there[record.nuisances]
+        in_band = (log.measured - predicted)[0, rows] - slopes[:, 0, rows].T @ (there - x)
+        yield Fold(stretch, model, nuisances, in_band, log.residual(model, nuisances))
+
+
+def _without_rows(problem: Problem, x: Array, outs: Sequence[Rows], kept: Sequence[str]) -> Iterator[Array]:
+    """The unknowns without some of the samples compared: a step of Gauss and Newton from the whole.
+
+    Numbers at a limit, and those of the names kept, stay as all samples have them.
     """
     (record,) = problem.records
     low, high = problem.limits().T
     moves = [
-        each.path.rpartition(".")[2] not in SHAPES and not each.at_limit(value)
+        each.path.rpartition(".")[2] not in kept and not each.at_limit(value)
         for each, value in zip(problem.plan.unknowns, x.tolist(), strict=False)
     ]
-    linear = np.array(moves + [True] * len(log.nuisances))
+    linear = np.array(moves + [True] * len(record.experiment.nuisances))
     ((predicted, slopes),) = problem.predict(x)
-    left, rows = (log.measured - predicted)[0], slopes[:, 0].T
+    left, rows = (record.measured - predicted)[0], slopes[:, 0].T
     before, right = problem.prior_rows()
     noise = float(np.std(left))
     size = np.linalg.norm(rows, axis=0)
     size[size == 0.0] = 1.0
-    for stretch in held_out:
-        out = stretch[log.motion.rows]
+    for out in outs:
         system = (np.concatenate([rows[~out], noise * before]) / size)[:, linear]
         there = x.copy()
         room = ((low - x) * size)[linear], ((high - x) * size)[linear]
         there[linear] += _bounded(system, np.concatenate([left[~out], noise * (right - before @ x)]), *room) / size[linear]
-        model, nuisances = record.model(there), there[record.nuisances]
-        in_band = (left - rows @ (there - x))[out]
-        yield Fold(stretch, model, nuisances, in_band, log.residual(model, nuisances))
+        yield there
 
 
 def _bounded(system: Array, right: Array, low: Array, high: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit
+from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit, spread_by_blocks
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
@@ -137,11 +137,13 @@ def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstima
         beside["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
+    spread = spread_by_blocks(best)
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.said:
             continue
         law = encoder if estimate.path == "load.gravity_phase" else ""
-        told = FileEstimate(estimate.path, estimate.unit, estimate.value, estimate.sigma, law)
+        sigma = max(estimate.sigma, spread.get(estimate.path, 0.0))
+        told = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
         told = told.resting_on(taken.relative, beside.get(estimate.path, 0.0))
         told = told.sharing(taken.rotor) if estimate.path == "load.inertia" else told
         told = replace(told, why=_untold(estimate, told.sigma, best))
