@@ -86,7 +86,7 @@ def found(folder: Path, seed: int) -> tuple[Identified, dict[str, float]]:
 
 def distances(told: Identified, truth: dict[str, float]) -> Iterator[tuple[str, str, float]]:
     """File, number and distance from the truth [1], of each number of each file."""
-    for finding in told.findings:
+    for finding in told.files:
         known = truth | OTHER_LOADS.get(finding.name, {})
         for each in finding.estimates:
             if not each.why and each.path in NAMES:
