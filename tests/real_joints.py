@@ -1,0 +1,350 @@
+"""Recordings of real joints beside plain least squares of another program: `python -m tests.real_joints`.
+
+Each file of `data/arms` (STRAINWAVE_DATA points to `data`) is identified by one command. Its error on the last 30 % of the
+motion, in the full band at every sample, stands beside the best one of `tools/yardstick` (STRAINWAVE_YARDSTICK), which shares
+nothing with this package: it must not be larger by more than 2 %, and over joints that move alone its median must be 10 %
+smaller. Then both halves of each record of a joint that moves alone are identified by themselves: 85 % of the numbers that both
+determine must lie within two standard deviations of their difference.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from strainwave.commands.file_options import mapping_from_options
+from strainwave.files.recording import Recording
+from strainwave.identification.identify import Identified, identify
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
+from strainwave.identification.reading.source import measurement_files
+from strainwave.identification.results.combined_parameter import difference
+from strainwave.identification.results.file_result import FileEstimate
+
+Array = NDArray[np.float64]
+SHARED = Path(__file__).parents[2] / "shared"
+ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
+YARDSTICK = Path(os.environ.get("STRAINWAVE_YARDSTICK", SHARED / "tools" / "yardstick"))
+START = "csg-20-100"
+MAX_SHARE = 1.02  # of the error of plain least squares, of any file
+MAX_MEDIAN_SHARE = 0.9  # likewise, over joints alone
+MAX_DISTANCE = 2.0  # standard deviations between two halves
+MIN_WITHIN = 0.85  # share of numbers whose halves are no further apart
+KUKA_RATIOS = ("1798/7", "267.429", "252.333", "221", "239.619", "154.323")
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A joint of a file.
+
+    Attributes:
+        file: its path below `data/arms`; a folder whose files are one record
+        options: of `strainwave identify csg-20-100 FILE`
+        yardstick: arguments of the yardstick
+        alone: True if no other joint moves
+    """
+
+    file: str
+    options: str
+    yardstick: str
+    alone: bool = True
+
+    @property
+    def name(self) -> str:
+        joint = re.search(r"--joint (\S+)", self.options)
+        return f"{self.file} {joint.group(1)}" if joint and not self.alone else self.file
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The held-out error of a trial beside that of the yardstick.
+
+    Attributes:
+        trial: the joint
+        model: chosen
+        error: on the last 30 % of the motion; not a number if the file was refused
+        plain: of plain least squares on the same samples
+        unit: of both
+        relative: the error over that of a model that predicts nothing
+        best: smallest error of the yardstick
+        failed: messages of failed checks, or why the file was refused
+        seconds: taken
+    """
+
+    trial: Trial
+    model: str
+    error: float
+    plain: float
+    unit: str
+    relative: float
+    best: float
+    failed: tuple[str, ...]
+    seconds: float
+
+    @property
+    def share(self) -> float:
+        """The error over the best of the yardstick."""
+        return self.error / self.best
+
+
+def trials() -> Iterator[Trial]:
+    """Yield every joint of every log, those that move alone first."""
+    for joint in (1, 2, 4, 5):
+        yield Trial(f"ur10e/ur-20_01_22-joint_{joint}.csv", _ur(joint), _ur_columns(joint))
+    for joint in (1, 2, 4, 5, 6, 7):
+        yield Trial(f"kinova-gen3/joint_{joint}_trapez.csv", "", _kinova_columns(joint))
+    idle = ("left-hip-pitch/idle", "left-hip-pitch/ref", "right-ankle-roll/Idle", "right-knee/idle", "right-knee/ref")
+    for name in idle:
+        yield Trial(
+            f"icub/{name}.mat", "--kind log --side output --column joint_torque=block3",
+            "--rate 100 --degrees --angle 0 --speed 1 --effort 2",
+        )  # fmt: skip
+    for name in ("20_01_17-ptp_10_points", "20_02_05-20sec_12harm", "20_02_19_14harm50secLoad"):
+        for joint in range(1, 7):
+            yield Trial(f"ur10e/ur-{name}.csv", _ur(joint), _ur_columns(joint, others=6), alone=False)
+    for name in ("RunTrajectory1", "Trajectory1"):
+        for joint in range(1, 8):
+            yield Trial(
+                f"kinova-gen3/{name}.csv", f"--joint {joint}", _kinova_columns(joint, others=7), alone=False
+            )  # fmt: skip
+    for run in (1, 3):
+        for joint in range(1, 8):
+            yield Trial(f"kinova-gen3-split/*_{run}.csv", f"--joint {joint}", _block_columns(joint, 7), alone=False)
+    for joint, ratio in enumerate(KUKA_RATIOS, 1):
+        value = "256.857142857" if "/" in ratio else ratio
+        options = f"--joint {joint} --column input_torque=rec.act_torque_abs_nm --constant ratio={value}"
+        yield Trial("kuka-kr300/FF_A.mat", options, f"{_block_columns(joint, 6)} --degrees", alone=False)
+
+
+def _ur(joint: int) -> str:
+    return f"--joint {joint} --column current=block3 --constant ratio=101"
+
+
+def _ur_columns(joint: int, others: int = 0) -> str:
+    return f"--time 0 --angle {joint} --speed {joint + 6} --effort {joint + 12}{_others(map(str, _except(joint, others)))}"
+
+
+def _kinova_columns(joint: int, others: int = 0) -> str:
+    names = (f"Position{other}" for other in _except(joint, others))
+    return f"--rate 1000 --angle Position{joint} --speed Velocity{joint} --effort TorqueCur{joint}{_others(names)}"
+
+
+def _block_columns(joint: int, count: int) -> str:
+    """Return the columns of a table of time and, of `count` joints each, angle, speed and torque."""
+    columns = f"--time 0 --angle {joint} --speed {joint + count} --effort {joint + 2 * count}"
+    return columns + _others(map(str, _except(joint, count)))
+
+
+def _except(joint: int, count: int) -> list[int]:
+    return [other for other in range(1, count + 1) if other != joint]
+
+
+def _others(names: Any) -> str:
+    found = ",".join(names)
+    return f" --others {found}" if found else ""
+
+
+# ---- One trial -------------------------------------------------------------------------------------------------------
+
+
+def outcome(trial: Trial) -> Outcome:
+    """Return the held-out error of a trial beside that of the yardstick."""
+    begun = time.perf_counter()
+    try:
+        found = identified(trial)
+    except ValueError as refused:
+        return Outcome(trial, "refused", np.nan, np.nan, "", np.nan, best_of_yardstick(trial), (str(refused),), 0.0)
+    (result, *_) = found.files
+    seconds, held_out = time.perf_counter() - begun, result.held_out
+    failed = tuple(f"{check.name}: {check.message}" for check in found.failed)
+    if held_out is None:
+        failed = (*failed, result.refused or "nothing held out")
+        return Outcome(trial, result.model, np.nan, np.nan, "", np.nan, best_of_yardstick(trial), failed, seconds)
+    return Outcome(
+        trial, result.model, held_out.error, held_out.plain, held_out.unit, held_out.relative, best_of_yardstick(trial), failed,
+        seconds,
+    )  # fmt: skip
+
+
+def identified(trial: Trial) -> Identified:
+    """Return the result of the command of a trial."""
+    return identify(START, paths(trial), mapping=mapping(trial))
+
+
+def paths(trial: Trial) -> list[Path]:
+    """Return the files of a trial."""
+    return sorted(ARMS.glob(trial.file))
+
+
+def mapping(trial: Trial) -> Any:
+    """Return what the options of a trial state of its files."""
+    given = shlex.split(trial.options)
+    values: dict[str, list[str]] = {}
+    for name, value in zip(given[::2], given[1::2], strict=True):
+        values.setdefault(name, []).append(value)
+    one = {name: values.get(f"--{name}", [None])[0] for name in ("side", "joint", "kind")}
+    opened = measurement_files(paths(trial)).files
+    return mapping_from_options(
+        None, values.get("--column"), values.get("--unit"), values.get("--constant"), one["side"], one["joint"], one["kind"],
+        files=opened,
+    )  # fmt: skip
+
+
+def best_of_yardstick(trial: Trial) -> float:
+    """Return the smallest error of the yardstick's models."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = _readable(trial, Path(folder))
+        words = [sys.executable, str(YARDSTICK), file, *trial.yardstick.split()]
+        printed = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+    return min(float(value) for value in re.findall(r"(?:CV|curved|load) (\S+?)(?:;|\s|$)", printed))
+
+
+def _readable(trial: Trial, folder: Path) -> str:
+    """Return the file of a trial as the yardstick reads it: one table of time, angles, speeds and torques of all joints."""
+    if trial.file.startswith("icub"):
+        return f"{ARMS / trial.file}:out"
+    if trial.file.startswith("kuka"):
+        from scipy.io import loadmat
+
+        record = loadmat(ARMS / trial.file)["rec"][0, 0]
+        names = ("time_cont", "act_pos_se_deg", "act_vel_se_deg_per_s", "act_torque_abs_nm")
+        blocks = [record[name].T for name in names]
+    elif "*" in trial.file:
+        blocks = [
+            np.loadtxt(ARMS / trial.file.replace("*", f"{name}_downsampled"), ndmin=2) for name in ("t", "q", "q_d", "tau")
+        ]
+        blocks[0] = blocks[0].reshape(-1, 1)
+    else:
+        return str(ARMS / trial.file)
+    np.savetxt(folder / "table.csv", np.hstack(blocks), delimiter=",")
+    return str(folder / "table.csv")
+
+
+# ---- Halves ----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A number by both halves of a record.
+
+    Attributes:
+        file: the record
+        one, other: by each half
+        one_model: True if both halves have the same law of friction
+    """
+
+    file: str
+    one: FileEstimate
+    other: FileEstimate
+    one_model: bool
+
+    @property
+    def apart(self) -> float:
+        """Standard deviations of the difference."""
+        return abs(difference(self.one, self.other)) / float(np.hypot(self.one.sigma, self.other.sigma))
+
+
+def halves(trial: Trial) -> Iterator[Pair]:
+    """Yield the numbers that both halves of the motion of a record determine."""
+    file = recognise(measurement_files(paths(trial)).files[0], mapping(trial)(paths(trial)[0]))
+    said = FileMapping(constants={name: value for name, value in file.constants.items() if name != "rate"})
+    results = []
+    for half in cut(file.recording):
+        try:
+            results.append(identify(START, {"log": half}, mapping=said).files[0])
+        except ValueError as error:
+            print(f"  {trial.name}: a half is refused: {error}")
+            return
+    one, other = ({each.label: each for each in result.estimates if not each.why} for result in results)
+    laws = [{path for path in each if "friction" in path} for each in (one, other)]
+    for label in sorted(one.keys() & other.keys()):
+        yield Pair(trial.file, one[label], other[label], laws[0] == laws[1])
+
+
+def cut(recording: Recording) -> tuple[Recording, Recording]:
+    """Return both halves of the motion of a record, its rest before and behind left out."""
+    angle = recording[next(name for name in recording.names if name.endswith("angle"))]
+    moved = np.flatnonzero(np.abs(np.gradient(angle)) > 1e-3 * np.ptp(angle) / len(angle))
+    first, last = int(moved[0]), int(moved[-1]) + 1
+    middle = (first + last) // 2
+    return _rows(recording, first, middle), _rows(recording, middle, last)
+
+
+def _rows(recording: Recording, first: int, last: int) -> Recording:
+    columns = {name: recording[name][first:last] for name in recording.names}
+    return Recording(columns, {name: recording.unit(name) for name in recording.names})
+
+
+# ---- Report ----------------------------------------------------------------------------------------------------------
+
+
+def line(each: Outcome) -> str:
+    """Return an outcome in a line, with its failed checks below."""
+    words = (
+        f"{each.trial.name:48} {each.error:9.4g} {each.plain:9.4g} {each.best:9.4g} {each.unit:5} {100.0 * each.relative:6.1f} % "
+        f"{each.share:6.3f} {each.seconds:5.1f} s  {each.model}"
+    )
+    return "\n".join([words, *(f"    in doubt: {message[:230]}" for message in each.failed)])
+
+
+def main(given: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="a part of the names of the files (all)")
+    parser.add_argument("--alone", action="store_true", help="joints that move alone")
+    parser.add_argument("--no-halves", action="store_true", help="whole records only")
+    wanted = parser.parse_args(given)
+    chosen = [each for each in trials() if wanted.only in each.name and (each.alone or not wanted.alone)]
+    print(f"{'file, joint':48} {'error':>9} {'plain':>9} {'yardstick':>9} {'':5} {'of rms':>8} {'share':>6} {'time':>7}  model")
+    outcomes = []
+    for trial in chosen:
+        outcomes.append(outcome(trial))
+        print(line(outcomes[-1]), flush=True)
+    bad = verdict(outcomes)
+    if not wanted.no_halves:
+        bad |= verdict_of_halves([pair for trial in chosen if trial.alone for pair in halves(trial)])
+    return int(bad)
+
+
+def verdict(outcomes: Sequence[Outcome]) -> bool:
+    """Print what all outcomes show together; return True if it is not what must be reached."""
+    alone = [each.share for each in outcomes if each.trial.alone and np.isfinite(each.share)]
+    worse = [each for each in outcomes if each.share > MAX_SHARE]
+    silent = [each.trial.name for each in worse if not each.failed]
+    median = float(np.median(alone)) if alone else np.nan
+    print(f"median over {len(alone)} joints alone: {median:.3f} of the yardstick's best row")
+    print(f"worse than {MAX_SHARE} of it: {len(worse)}, without a failed check: {len(silent)}: {', '.join(silent)}")
+    return bool(silent) or median > MAX_MEDIAN_SHARE
+
+
+def verdict_of_halves(pairs: Sequence[Pair]) -> bool:
+    """Print the share of numbers whose halves agree; return True if it is too small."""
+    for pair in sorted(pairs, key=lambda pair: -pair.apart):
+        one, other = pair.one, pair.other
+        print(
+            f"{pair.apart:6.1f} σ  {one.label:40} {one.value:10.4g} ± {one.sigma:<8.2g} {other.value:10.4g} ± {other.sigma:<8.2g} "
+            f"{one.unit:10} {pair.file}{'' if pair.one_model else '  (other law of friction)'}"
+        )
+    same = [pair.apart < MAX_DISTANCE for pair in pairs if pair.one_model or "friction" not in pair.one.path]
+    every = [pair.apart < MAX_DISTANCE for pair in pairs]
+    share = float(np.mean(same)) if same else np.nan
+    print(
+        f"halves: {100.0 * share:.0f} % of {len(same)} numbers within {MAX_DISTANCE:g} standard deviations; with friction of two "
+        f"laws {100.0 * float(np.mean(every)) if every else np.nan:.0f} % of {len(every)}"
+    )
+    return share < MIN_WITHIN
+
+
+if __name__ == "__main__":
+    sys.exit(main())
