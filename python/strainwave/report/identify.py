@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import KINDS, kind_named
@@ -74,6 +75,7 @@ def identify_report(
             "comparisons": list(_comparisons(found)),
             "undetermined": _undetermined(found),
             "kept": _kept(found),
+            "absent": _absent(found),
             "given": [_constant(name, value) for name, value in given.items()],
             "files": [_file(each, anchors[id(each)], given) for each in alone],
             "sections": list(_sections(found, given)),
@@ -272,9 +274,15 @@ def _kept(found: Identified) -> dict[str, list[str]]:
     """Return the numbers of the gear that no file determines, by the reason."""
     kept: dict[str, list[str]] = {}
     for each in found.states:
-        if each.state == "kept":
+        if each.state == "kept" and not each.why.endswith(NOT_GIVEN):
             kept.setdefault(each.why or "as in the start set", []).append(_kept_number(each))
     return kept
+
+
+def _absent(found: Identified) -> str:
+    """Return the parts that the model does without, as neither the set nor a file has anything of them."""
+    parts = [each.path.rpartition(".")[0] for each in found.states if each.why.endswith(NOT_GIVEN)]
+    return ", ".join(part.removeprefix("gear.").replace("_", " ") for part in dict.fromkeys(parts))
 
 
 def _kept_number(each: ParameterState) -> str:

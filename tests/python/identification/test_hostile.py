@@ -209,6 +209,8 @@ def test_a_table_with_a_failed_check_is_used_if_it_is_accepted(tmp_path: Path) -
     assert found.gear_set.gear.friction_input.coulomb == pytest.approx(50.0)
     assert "867 times" in found.accepted.note
     assert refused.gear_set.gear == START.gear
+    state = next(each for each in refused.states if each.path == "gear.friction_input.coulomb")
+    assert (state.state, state.why.partition(";")[0]) == ("kept", "a check of table.csv failed")
     assert next(each.estimate.value for each in found.parameters if "coulomb" in each.estimate.path) == pytest.approx(50.0)
     said = identify(START, [path], mapping=lambda _: FileMapping(side="input"))
     assert not said.failed

@@ -44,12 +44,15 @@ def states_of(
     """Yield the state of every number of a gear."""
     before = gear_numbers(start.gear)
     combined = {each.estimate.path: each for each in reversed(parameters)}
+    in_doubt = {file.name for file in files if file.failed}
     undetermined = {estimate.path: estimate for file in files for estimate in file.estimates if estimate.why}
     for path, (value, unit) in gear_numbers(gear_set.gear).items():
         entry, known = gear_set.sources.get(path), before.get(path, (np.nan, ""))[0]
         source = "" if entry is None else entry.source
         if path in start.sources and start.sources[path] == entry and value == known:
-            yield ParameterState(path, unit, known, value, np.nan, "kept", f"no file determines it; {source}")
+            failed = (each := combined.get(path)) is not None and each.source in in_doubt
+            why = f"a check of {each.source} failed" if each is not None and failed else "no file determines it"
+            yield ParameterState(path, unit, known, value, np.nan, "kept", f"{why}; {source}")
         elif source.startswith("assumed"):
             yield ParameterState(path, unit, known, value, np.nan, "kept", source.removeprefix("assumed: "))
         elif (each := combined.get(plain(path))) is not None or source.startswith("identified from"):
