@@ -392,13 +392,13 @@ def _curved(model: MotionModel) -> MotionModel | None:
 
 
 def _falling(model: MotionModel) -> MotionModel | None:
-    """With friction that falls at low speed."""
+    """With friction that is higher, or lower, at low speed."""
     law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
     if not isinstance(law, friction.Coulomb):
         return None
     falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
     ties = {path: other for path, other in model.ties.items() if path not in FOLLOWS}
-    return replace(model, ties=ties).having("a fall at low speed", *names, friction_input=falling)
+    return replace(model, ties=ties).having("another friction at low speed", *names, friction_input=falling)
 
 
 def _lossy(model: MotionModel) -> MotionModel | None:
@@ -411,12 +411,12 @@ def _lossy(model: MotionModel) -> MotionModel | None:
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:
-    """True unless a part was fitted that the motion does not show: a delay longer than a clock makes it, a fall of the friction
-    that is none, or beyond the fastest motion."""
+    """True unless a part was fitted that the motion does not show: a delay longer than a clock makes it, or a change of the
+    friction at speeds beyond the fastest motion."""
     log, law = candidate.log, candidate.model.law
     delay = next((each.start for each in log.nuisances if each.name == "delay"), 0.0)
     falls = f"{INPUT}stribeck_speed" in candidate.model.free
-    sensible = not falls or (law.stribeck_speed < float(np.abs(log.motion.speed).max()) and law.breakaway > law.coulomb)
+    sensible = not falls or (law.stribeck_speed < float(np.abs(log.motion.speed).max()))
     return bool(abs(delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible)
 
 
