@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, friction, loads
 from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import Plain, fit_plain, held_out_residuals, moving, stretches
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -512,19 +513,33 @@ def _candidate(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str
     return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended.log, held_out)))
 
 
-def refit(best: MotionCandidate, drive: Drive) -> HeldOut:
-    """Return the error on the last 30 % of the motion of the model fitted to what comes before, beside plain least squares."""
+def refit(best: MotionCandidate, drive: Drive) -> tuple[HeldOut, Recording]:
+    """Return the error on the last 30 % of the motion of the model fitted to what comes before, and its prediction of all.
+
+    Returns:
+        the error, beside that of plain least squares; and time, effort, `modelled` and `held_out`, 1 in the stretch held out, as
+        they are drawn, from the first motion to the last
+    """
     log, last = best.log, best.folds[-1].stretch
     found = best.fitted_to(~last[log.motion.rows])
-    left = best.left(found.model, nuisances_of(found), ~last)[last]
+    residual = best.left(found.model, nuisances_of(found), ~last)
+    left, rows = residual[last], moving(log)
     (plain,) = held_out_residuals(log, drive, [last])
     (part,) = found.parts
     in_band = float(part.rms(held_out=True)[0] / np.std(log.measured[0, ~part.training])) if not part.training.all() else np.nan
-    return HeldOut(
+    held_out = HeldOut(
         "last 30 % of the motion", log.effort, log.units[0],
         float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[last])), float(np.sqrt(np.mean(plain**2))), int(last.sum()),
         in_band,
     )  # fmt: skip
+    columns = {
+        "time": log.motion.time,
+        log.effort: log.recorded,
+        "modelled": log.recorded - residual,
+        "held_out": last.astype(float),
+    }
+    units = {"time": "s", log.effort: log.units[0], "modelled": log.units[0], "held_out": "1"}
+    return held_out, Recording({name: values[rows] for name, values in columns.items()}, units)
 
 
 def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:

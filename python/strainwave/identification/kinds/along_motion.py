@@ -21,7 +21,6 @@ from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.messages import listed
@@ -57,7 +56,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
     variants = [log] if in_current else bands(log, drive)
     best, *_ = fit_motion(variants, drive, priors=priors)
-    held_out = refit(best, drive)
+    held_out, predicted = refit(best, drive)
     told, checks = list(_of_motion(best, taken)), list(held_out_error(held_out, file.path.name))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
@@ -71,12 +70,12 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(between.known(known, file.path.name), errors, file.path.name)
     remarks += _shares(best.fit, file.regressors)
-    every, curves = (*file.remarks, *remarks), curves_of(best.fit)
+    every = (*file.remarks, *remarks)
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
     level = () if in_current else friction_of_log(law, start.friction_input, speed, log.effort, name)
     checks += [*level, input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
-    pictures = (Picture(curves), *between.pictures)
+    pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(
             name, file, best.name, tuple(told), held_out.relative, every, tuple(checks), pictures=pictures, held_out=held_out,
