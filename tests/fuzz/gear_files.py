@@ -10,6 +10,7 @@ import strainwave as sw
 from numpy.random import Generator
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import CATALOGUE
+from strainwave.files.identified_tables import Covariance, Validation
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import encoded, mutated, picked
@@ -43,7 +44,12 @@ def _texts() -> tuple[str, ...]:
     rated = sw.GearSet.of(preisach, name="rated", source="assumed").replace(
         ratings={"peak_torque": Quantity(source="assumed", value=50.0, unit="N.m")}
     )
-    return tuple(_written(gear_set) for gear_set in (*gear_sets, rated))
+    numbers = ("load.inertia", "gear.damping")
+    identified = whole.replace(
+        covariance=Covariance(numbers, ((1e-4, 1e-5), (1e-5, 1e-4))),
+        validation=(Validation("log.csv", "current", "A", 0.1, 0.5, 0.12, 0.4),),
+    )
+    return tuple(_written(gear_set) for gear_set in (*gear_sets, rated, identified))
 
 
 def _written(gear_set: sw.GearSet) -> str:

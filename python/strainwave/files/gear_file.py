@@ -19,6 +19,14 @@ from strainwave.files.budget import MAX_DEPTH, MAX_TEXT_BYTES, RefusedFile, read
 from strainwave.files.described import ParameterField, PartField, all_paths, default_of, own_paths, parameters, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
 from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
+from strainwave.files.identified_tables import (
+    Covariance,
+    Validation,
+    covariance_table,
+    read_covariance,
+    read_validation,
+    validation_tables,
+)
 from strainwave.files.writing import replacing
 from strainwave.messages import one_line, quoted
 
@@ -34,6 +42,10 @@ class Contents(Protocol):
     def sources(self) -> Mapping[str, Entry]: ...
     @property
     def ratings(self) -> Mapping[str, Quantity]: ...
+    @property
+    def covariance(self) -> Covariance | None: ...
+    @property
+    def validation(self) -> tuple[Validation, ...]: ...
 
 
 _TEXTS = ("name", "maker", "note")
@@ -47,8 +59,12 @@ def read(content: Mapping[str, Any]) -> dict[str, Any]:
     models, sources = _read_models(content)
     with at("[ratings]"):
         ratings = _read_ratings(content.get("ratings", {}))
+    with at("[covariance]"):
+        covariance = None if content.get("covariance") is None else read_covariance(content["covariance"])
+    with at("[[validation]]"):
+        validation = read_validation(content.get("validation", ()))
     texts = {key: content[key] for key in _TEXTS if key in content}
-    return {"sources": sources, "ratings": ratings, **texts, **models}
+    return {"sources": sources, "ratings": ratings, "covariance": covariance, "validation": validation, **texts, **models}
 
 
 def write(gear_set: Contents, path: Path) -> None:
@@ -243,7 +259,9 @@ def at(place: str) -> Iterator[None]:
 def _head_form() -> Form:
     """The texts and tables of a file."""
     keys: dict[str, Any] = dict.fromkeys(_TEXTS, (str, "")) | {"name": (str, ...), "ratings": (dict[str, Any], {})}
+    keys |= {"covariance": (dict[str, Any] | None, None), "validation": (list[dict[str, Any]], [])}
     examples = {key: f'{key} = "…"' for key in _TEXTS} | {"ratings": "[ratings]"}
+    examples |= {"covariance": "[covariance]", "validation": "[[validation]]"}
     for table in _tables():
         keys[table.name] = (dict[str, Any], ... if table.required else {})
         examples[table.name] = f"[{table.name}]{_with_model(table)}"
@@ -307,6 +325,10 @@ def text(gear_set: Contents) -> str:
         ratings = document["ratings"] = tomlkit.table()
         for name, rating in gear_set.ratings.items():
             ratings.add(name, inline(rating.value, rating.unit, rating))
+    if gear_set.covariance is not None:
+        document["covariance"] = covariance_table(gear_set.covariance)
+    if gear_set.validation:
+        document["validation"] = validation_tables(gear_set.validation)
     return tomlkit.dumps(document)
 
 

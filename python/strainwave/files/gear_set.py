@@ -22,6 +22,7 @@ from strainwave._core import Gear
 from strainwave.files import gear_file
 from strainwave.files.described import all_paths, default_of, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
+from strainwave.files.identified_tables import Covariance, Validation, check_identified
 from strainwave.files.tables import FORMATS
 from strainwave.messages import quoted, shortened, unquoted
 
@@ -68,9 +69,12 @@ class GearSet:
         ratings: what the maker allows, by name; no part of the model
         motor, control, load, sensors, thermal, meter: the rest of a drive, models of `sw.motor`, `sw.control`, `sw.loads`,
             `sw.thermal` and `sw.meter`, and `sw.Sensors`; None if not known
+        covariance: of the numbers that were identified; None if not known
+        validation: errors of the model on the files that it was identified from
 
     Raises:
-        ValueError: a number has no source, a source has no number, or name or maker is no line of text
+        ValueError: a number has no source, a source has no number, a covariance is of other numbers, or name or maker is no
+            line of text
         TypeError: a text is none, a model is of the wrong family, or a source or rating not of its type
 
     >>> gear_set = GearSet.read("csg-20-100")
@@ -92,6 +96,8 @@ class GearSet:
     sensors: Any = None
     thermal: Any = None
     meter: Any = None
+    covariance: Covariance | None = field(default=None, repr=False)
+    validation: tuple[Validation, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         _check_texts(self.name, self.maker, self.note)
@@ -103,6 +109,7 @@ class GearSet:
             raise ValueError(f"{self.name}: {bare[0]} has no source")
         if extra := self.sources.keys() - set(paths):
             raise ValueError(f"{self.name}: sources name {unquoted(min(extra))}, which is no number of the set")
+        check_identified(self.covariance, self.validation, paths)
         object.__setattr__(self, "sources", _frozen(self.sources, Entry))
         object.__setattr__(self, "ratings", _frozen(self.ratings, Quantity))
 
@@ -260,7 +267,8 @@ class GearSet:
         kept = {path: entry for path, entry in self.sources.items() if not path.startswith(old)}
         _drive({"gear": self.gear} | added)  # refuses what is no model of its family
         paths = list(_paths(added))
-        alike = self.replace(**added, sources=kept | dict.fromkeys(paths, Entry(source)))
+        covariance = None if self.covariance is None else self.covariance.among(kept)
+        alike = self.replace(**added, sources=kept | dict.fromkeys(paths, Entry(source)), covariance=covariance)
         return alike.replace(sources=kept | {path: _unless_default(alike, path) for path in paths})
 
     def save(self, path: str | Path) -> None:

@@ -17,9 +17,9 @@ LAWS = (
     'or "mixed_lubrication" or "curved_viscous" or "angle_speed_map" or "torque_efficiency" or "asymmetric"'
 )
 PARTS = (
-    "name, maker, note, ratings, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, friction_input, "
-    "friction_mesh, friction_output, softening, stiffness_variation, structure, gear, motor, control, load, sensors, "
-    "thermal, meter"
+    "name, maker, note, ratings, covariance, validation, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, "
+    "friction_input, friction_mesh, friction_output, softening, stiffness_variation, structure, gear, motor, control, load, "
+    "sensors, thermal, meter"
 )
 HYSTERESIS = """
 [hysteresis]
@@ -218,6 +218,34 @@ REFUSED |= {
         f'my.toml [stiffness] {words}; write a1 = {{ value = …, unit = "N.m/rad", source = "…" }}'
     )
     for value, words in ENTRY.items()
+}
+
+
+COVARIANCE = {
+    "numbers = ['gear.stiffness.a1']": "matrix is missing; write matrix = [[…], …]",
+    "numbers = 'a'\nmatrix = [[1.0]]": "numbers = 'a' must be a list; write numbers = [\"load.inertia\", …]",
+    "numbers = ['load.inertia']\nmatrix = [[1.0, 2.0]]": "matrix must have 1 rows of 1 numbers, one for each of the numbers",
+    "numbers = ['a', 'a']\nmatrix = [[1.0]]": "numbers must be 1 to 200 different paths; there are 2, 1 different",
+    "numbers = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]": "matrix has a correlation beyond 1: it is no covariance",
+    "numbers = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]": "matrix must be symmetric",
+    "numbers = ['a']\nmatrix = [[0.0]]": "matrix must have variances above 0 on its diagonal, and finite numbers",
+    "numbers = ['a', 'b']\nmatrix = [[1e-300, 1e300], [1e300, 1e-300]]": (
+        "matrix has a correlation beyond 1: it is no covariance"
+    ),
+    "numbers = []\nmatrix = []\nunit = 'N.m'": "unit: not a key of a covariance; it has numbers, matrix",
+}
+REFUSED |= {f"{BASE}\n[covariance]\n{text}": f"my.toml [covariance] {message}" for text, message in COVARIANCE.items()}
+REFUSED[f"{BASE}\n[covariance]\nnumbers = ['load.inertia']\nmatrix = [[1.0]]"] = (
+    "my.toml covariance names load.inertia, which is no number of the set"
+)
+VALIDATED = "file = 'a'\nchannel = 'torque'\nunit = 'N.m'\nvaries = 1.0\nheld_out = 0.1\nheld_out_varies = 1.0\n"
+REFUSED |= {
+    f"{BASE}\n[[validation]]\n{VALIDATED}{text}": f"my.toml [[validation]] {message}"
+    for text, message in {
+        "": "error is missing; write error = …",
+        "error = -1.0": "error = -1.0 N.m must lie in [0, inf)",
+        "error = 'x'": "error = 'x' must be a number; write error = …",
+    }.items()
 }
 
 

@@ -20,6 +20,7 @@ from hypothesis import given, settings
 from strainwave import _core
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, catalogue, load, save
+from strainwave.files.identified_tables import Covariance, Validation
 
 from tests.samples import sample
 from tests.strategies import drives, made
@@ -322,6 +323,8 @@ def changed(gear_set: GearSet, member: str) -> dict[str, Any]:
         "motor": gear_set.motor.replace(resistance=5.0),
         "control": sw.control.OpenLoop(gain=3.0),
         "load": sw.loads.Inertia(inertia=4.0),
+        "covariance": Covariance(("gear.damping",), ((1e-6,),)),
+        "validation": (Validation("log.csv", "current", "A", 0.1, 0.5, 0.12, 0.4),),
     }
     without_numbers = {"sensors": sw.Sensors(), "thermal": sw.thermal.Isothermal(), "meter": sw.meter.EnergyMeter()}
     if member in without_numbers:  # and so without sources
@@ -335,6 +338,22 @@ def test_sets_that_differ_in_one_member_are_different(member: str) -> None:
     whole = whole_set()
     assert whole.replace(**{member: getattr(whole, member)}) == whole
     assert whole.replace(**changed(whole, member)) != whole
+
+
+def test_a_covariance_and_the_errors_on_its_files_survive_writing(tmp_path: Path) -> None:
+    numbers, matrix = ("load.inertia", "gear.damping"), ((1e-4, -3e-5), (-3e-5, 0.1 + 0.2))
+    validated = (Validation("a.csv", "current", "A", 0.1, 0.5, 0.12, 0.4, -0.01, 2e-3), Validation("b", "q", "N.m", 0, 0, 0, 0))
+    whole = whole_set().replace(covariance=Covariance(numbers, matrix), validation=validated)
+    whole.save(tmp_path / "set.toml")
+    assert GearSet.read(tmp_path / "set.toml") == whole
+    other_load = whole.with_parts(load=sw.loads.Inertia(inertia=1.0), source="x")
+    assert other_load.covariance == Covariance(("gear.damping",), ((0.1 + 0.2,),))
+
+
+@pytest.mark.parametrize(("member", "value"), [("covariance", "x"), ("validation", ["x"]), ("validation", "x")])
+def test_a_covariance_and_validations_have_their_types(member: str, value: object) -> None:
+    with pytest.raises(TypeError, match=f"{member} must be"):
+        whole_set().replace(**{member: value})
 
 
 def test_the_sets_of_the_catalogue_are_all_different_though_some_gears_are_equal() -> None:
