@@ -517,7 +517,7 @@ def refit(best: MotionCandidate, drive: Drive) -> tuple[HeldOut, Recording]:
     """Return the error on the last 30 % of the motion of the model fitted to what comes before, and its prediction of all.
 
     Returns:
-        the error, beside that of plain least squares; and time, effort, `modelled` and `held_out`, 1 in the stretch held out, as
+        the error, beside that of plain least squares; and time, effort, `modelled` and `held_out` (1 in the stretch), as
         they are drawn, from the first motion to the last
     """
     log, last = best.log, best.folds[-1].stretch

@@ -197,7 +197,7 @@ def motion_of(
     known = ~stands & ~_in_gap(time, grid, step, every)
     known[: EDGE * every] = known[-EDGE * every :] = False
     turning = _turning(regular, speed, slid) | near_rest(regular, every, noise)
-    return Motion(grid, quick, speed, acceleration, known, turning, stands, every, cutoff)
+    return Motion(grid, smooth, speed, acceleration, known, turning, stands, every, cutoff)
 
 
 def _every(cutoff: float, step: float) -> int:
