@@ -34,6 +34,7 @@ def identify(
     joint: Joint = None,
     kind: Kind = None,
     accept: Annotated[bool, typer.Option("--accept", help="Use files and write the gear although a check fails.")] = False,
+    name: Annotated[str | None, typer.Option(help="Name of the gear; by default that of its files.")] = None,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the gear and the numbers.")] = Path("out/identify"),
 ) -> None:
     """Determine the type of measurement files, and the gear that they show.
@@ -55,7 +56,7 @@ def identify(
     read = [part.path for file in opened.files for part in file.parts or (file,)]
     said = mapping_from_options(mapping, column, unit, constant, side, joint, kind, opened.files)
     if joint == ALL:
-        _every_joint(gear, opened, read, said, accept, out)
+        _every_joint(gear, opened, read, said, accept, name, out)
         return
     columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     console = Console(stderr=True)
@@ -68,15 +69,28 @@ def identify(
             done += 1
             bar.update(task, description=name, completed=min(done, len(read)))
 
-        found = identified(gear, opened, mapping=said, accept=accept, progress=turn)
+        found = identified(gear, opened, mapping=said, accept=accept, name=name, progress=turn)
         bar.update(task, description="report", completed=len(read))
         files = files_to_write(found, Provenance.of_this_command(read), accept=accept)
         write_folder(out, files)
     print("\n".join(summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    if "gear.toml" in files:
+        print(f"gear.toml: {contents(found)}")
     if found.failed and not accept:
         print("no gear is written while a check fails: settle it, or --accept writes it")
         raise typer.Exit(FAILED)
+
+
+def contents(found: Identified) -> str:
+    """Return what the gear file of an identification contains, in words."""
+    from strainwave.identification.results.drive import why_no_load
+
+    gear_set = found.gear_set
+    if gear_set.load is not None:
+        return f"{gear_set.name}, with load and motor: strainwave predict compares it with later recordings"
+    why = why_no_load(found.files)
+    return f"{gear_set.name}, without a load" + (f": {why}" if why else "")
 
 
 def files_to_write(
@@ -98,7 +112,13 @@ def files_to_write(
 
 
 def _every_joint(
-    gear: str, opened: MeasurementFiles, read: list[Path], said: Callable[[Path], FileMapping], accept: bool, out: Path
+    gear: str,
+    opened: MeasurementFiles,
+    read: list[Path],
+    said: Callable[[Path], FileMapping],
+    accept: bool,
+    name: str | None,
+    out: Path,
 ) -> None:
     """All joints of an arm: a folder for each, and one page and one table of all."""
     from rich.console import Console
@@ -109,11 +129,11 @@ def _every_joint(
     from strainwave.report.provenance import Provenance
 
     with Console(stderr=True).status("reading") as status:
-        joints = identify_joints(gear, opened, mapping=said, accept=accept, progress=status.update)
+        joints = identify_joints(gear, opened, mapping=said, accept=accept, name=name, progress=status.update)
         status.update("report")
         provenance = Provenance.of_this_command(read)
-        for name, found in joints.found.items():
-            write_folder(out / folder_of(name), files_to_write(found, provenance, accept=accept))
+        for joint, found in joints.found.items():
+            write_folder(out / folder_of(joint), files_to_write(found, provenance, accept=accept))
         write_folder(out, {"joints.csv": joints_csv(joints), "report.html": joints_report(joints, provenance)})
     print("\n".join(joints_summary(joints)))
     folders = ", ".join(map(folder_of, joints.found))

@@ -1,4 +1,4 @@
-"""Tables of a gear file that hold for a whole gear: covariance of identified numbers, and errors on the files they came from."""
+"""Tables of a gear file for a whole gear: covariance of its identified numbers, and its errors on the files they came from."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from strainwave.equality import ComparedByFields
-from strainwave.files.entries import Entry
+from strainwave.files.entries import Entry, check_line
 from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
@@ -24,8 +24,10 @@ from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
 from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.identification.readings import decided
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
+from strainwave.identification.results.drive import drive_set
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.parameter_state import ParameterState, states_of
@@ -43,8 +45,9 @@ class Identified(ComparedByFields):
         start: the set it started from
         files: the result of each file, in the order given; then what several files determine only together
         parameters: every parameter determined: the mean of the files that agree about it
-        gear_set: the set with the laws of the files that determine them best, and their numbers. A file with a failed check
-            changes nothing of it, unless it was accepted
+        gear_set: the set with the laws of the files that determine them best, and their numbers, the load and motor of the
+            log that determines its load best, their covariance, and the errors of this drive on each file. A file with a failed
+            check changes nothing of it, unless it was accepted
         checks: consistency checks of all files, and of files with each other and with the start set
     """
 
@@ -80,6 +83,7 @@ def identify(
     *,
     mapping: Mapped = None,
     accept: bool = False,
+    name: str | None = None,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Identified:
     """Determine the type of each file of measurements, fit it, and combine the estimates of all to one gear.
@@ -91,6 +95,7 @@ def identify(
             each, as "friction" or "torsion", to a path or a recording
         mapping: what a person states of all files, or a function that returns it for the path of each
         accept: whether files are used although a check of them fails
+        name: of the gear, one line of text; by default that of its files, as `gear of joint_5`
         progress: called with the name of each file as its turn comes
 
     Returns:
@@ -109,18 +114,22 @@ def identify(
     ('friction', 0.05, ())
     """
     check_arguments(files, mapping)
+    if name is not None:
+        check_line("name", name)
     opened = measurement_files(files)
     read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
-    in_one_reading = consistent(_only_read(read), {file.path: file for file in opened.files})
-    read |= {each.path: _unless_asked(each) for each in in_one_reading}
+    sources = {file.path: file for file in opened.files}
+    in_one_reading = consistent(_only_read(read), sources)
+    start = with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), in_one_reading)
+    read |= {each.path: _decided(each, sources[each.path], GearSoFar(start, start)) for each in in_one_reading}
     for link in opened.links:
         read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
     check_one_joint(_only_read(read))
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
-    start = with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
-    fits = _Fits(GearSoFar(start, start), same_as(recognised), mapping, accept, progress)
+    before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
+    fits = _Fits(GearSoFar(before, start), same_as(recognised), mapping, accept, progress)
     fits.fit_all(recognised)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
@@ -131,7 +140,9 @@ def identify(
     checks += _nothing_determined(results)
     failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
     checks += [*with_start_set(start, parameters, failed), *between_files(parameters, results)]
-    return Identified(start, results, parameters, with_means(fits.known, parameters), tuple(checks))
+    counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
+    gear_set = drive_set(start, with_means(fits.known, parameters), counted or results, parameters, name)
+    return Identified(start, results, parameters, gear_set, tuple(checks))
 
 
 def check_arguments(files: object, mapping: object) -> None:
@@ -269,8 +280,9 @@ def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised
     return [each for each in files.values() if isinstance(each, Recognised)]
 
 
-def _unless_asked(file: Recognised) -> Recognised | FileResult:
-    """Return a file, or its question if nothing determines how to read it."""
+def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised | FileResult:
+    """Return a file as it is read, or its question if neither its names nor a fit determine how."""
+    file = decided(file, source, with_ratio(known, file))
     if not file.question:
         return file
     return FileResult(file.path.name, file, refused=_without_name(file.question, file.path))

@@ -38,6 +38,7 @@ def identify_joints(
     *,
     mapping: Callable[[Path], FileMapping] | None = None,
     accept: bool = False,
+    name: str | None = None,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Joints:
     """Finds out what files tell of every joint that moves in them.
@@ -46,6 +47,7 @@ def identify_joints(
         start: the set to start from, for each joint
         files: logs of an arm; of a folder all files that may be such
         mapping, accept: as of `identify`
+        name: of the arm; each gear has that of its joint behind it
         progress: called with the name of each joint as its turn comes
 
     Raises:
@@ -77,8 +79,11 @@ def identify_joints(
     found, refused = dict[str, Identified](), dict[str, str]()
     for joint, own in by_joint.items():
         progress(f"joint {joint}")
+        of_joint = None if name is None else f"{name}, joint {joint}"
         try:
-            found[joint] = identify(start, MeasurementFiles(own, []), mapping=_of_joint(said, joint), accept=accept)
+            found[joint] = identify(
+                start, MeasurementFiles(own, []), mapping=_of_joint(said, joint), accept=accept, name=of_joint
+            )
         except ValueError as error:
             refused[joint] = str(error)
     if not found:

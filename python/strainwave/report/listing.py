@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from math import tau
 
 import numpy as np
@@ -19,6 +20,7 @@ from strainwave.files.recording import Recording
 from strainwave.messages import one_line
 
 Row = Sequence[str]
+MIN_CORRELATION = 0.5  # smaller ones are not listed
 _NONE = 1e-7  # a frequency beside others, or a damping ratio: a double zero is told to the root of the rounding
 _ROUNDING = 1e-12  # of the largest value of a column: what is smaller is rounding
 
@@ -39,6 +41,7 @@ def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> s
     for part in parts(Drive()):
         if (model := getattr(gear_set, part.name)) is not None:
             lines += ["", *_numbers(gear_set, part.name, model)]
+    lines += [*_covariance(gear_set), *_validation(gear_set)]
     return "\n".join([*lines, *_vibration(gear_set), *_ratings(gear_set), *_checks(gear_set, runs or {})])
 
 
@@ -136,6 +139,29 @@ def _rows(gear_set: GearSet, path: str, model: object) -> Iterator[Row]:
             spread = "" if entry.spread is None else f", spread {100.0 * entry.spread:g} %"
             sigma = "" if entry.uncertainty is None else f", ± {entry.uncertainty:.2g} {field.unit}"
             yield name, f"{number:.10g}", "" if field.unit == "1" else field.unit, f"{entry.source}{spread}{sigma}"
+
+
+def _covariance(gear_set: GearSet) -> Iterator[str]:
+    """Yield the larger correlations of identified numbers, the largest first."""
+    if gear_set.covariance is None:
+        return
+    paths = gear_set.covariance.paths
+    pairs = {(one, other): gear_set.covariance.correlation(one, other) for one, other in combinations(paths, 2)}
+    large = sorted((pair for pair in pairs if abs(pairs[pair]) > MIN_CORRELATION), key=lambda pair: -abs(pairs[pair]))
+    yield from ["", f"[covariance] of {len(paths)} numbers; correlations beyond {MIN_CORRELATION:g}:"]
+    yield from _indented(aligned([(*pair, f"{pairs[pair]:+.2f}") for pair in large], "<<>") if large else iter(["none"]))
+
+
+def _validation(gear_set: GearSet) -> Iterator[str]:
+    """Yield the errors of a set on the files that it was identified from."""
+    if not gear_set.validation:
+        return
+    rows: list[Row] = [("", "channel", "unit", "error", "held out", "of what varies")]
+    for each in gear_set.validation:
+        share = f"{100.0 * each.relative:.3g} %"
+        rows.append((each.file, each.channel, each.unit, f"{each.error:.4g}", f"{each.held_out:.4g}", share))
+    yield from ["", "[validation] root mean square errors on the files that it was identified from"]
+    yield from _indented(aligned(rows, "<<<>>>"))
 
 
 def _vibration(gear_set: GearSet) -> Iterator[str]:

@@ -79,7 +79,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     return (
         FileResult(
             name, file, best.name, tuple(told), held_out.relative, every, tuple(checks), pictures=pictures, held_out=held_out,
-            fit=best.fit,
+            fit=best.fit, bend=best.bend,
         ),
         known,
     )  # fmt: skip

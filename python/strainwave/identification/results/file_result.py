@@ -130,6 +130,7 @@ class FileResult(ComparedByFields):
         held_out: error on data that took no part in the fit; None if nothing was held out
         candidates: name of each model tried and its error on data held out, in the unit of the fit, best first
         fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
+        bend: angle of the input in which bristles of its friction bend at reversals [rad]; 0 if it does not show them
     """
 
     name: str
@@ -147,6 +148,7 @@ class FileResult(ComparedByFields):
     held_out: HeldOut | None = None
     candidates: tuple[tuple[str, float], ...] = ()
     fit: Fit | None = None
+    bend: float = 0.0
 
     @property
     def failed(self) -> tuple[Check, ...]:

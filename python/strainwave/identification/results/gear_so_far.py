@@ -72,7 +72,7 @@ class GearSoFar:
             if not is_of(path, parts):
                 continue
             if path in fitted:
-                sources[path] = _source(fitted[path], name)
+                sources[path] = source_of(fitted[path], name)
             elif path in before and value == before[path][0] and path in self.gear_set.sources:
                 sources[path] = self.gear_set.sources[path]
             else:
@@ -163,7 +163,7 @@ def plain(path: str) -> str:
     return ".".join(part for part in path.split(".") if part != "law")
 
 
-def _source(estimate: FileEstimate, name: str) -> Entry:
+def source_of(estimate: FileEstimate, name: str) -> Entry:
     """Return the source of an estimated number."""
     words = {"identified": "identified from {name}", "identified in combination": "identified in combination: {why}"}
     said = words.get(estimate.state, "fitted but not identified: {why}").format(name=name, why=estimate.why)

@@ -1,0 +1,287 @@
+"""The drive that files determine: their gear with the load and motor of a log, their covariance, and its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, loads, motor
+from strainwave.files.described import own_paths
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
+from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
+from strainwave.identification.candidates.motion import bristled, nuisances_of
+from strainwave.identification.candidates.plain import moving
+from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.results.combined_parameter import CombinedParameter, distance
+from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.gear_so_far import is_of, plain, source_of
+from strainwave.messages import listed, one_line
+
+Array = NDArray[np.float64]
+
+MAX_NAME = 60  # letters of the name of a gear that is made of those of its files
+MIN_LOAD_DIFFERENCE = 3.0  # standard deviations: two logs that differ by more carry different loads
+NO_LOAD = (
+    "the load is not written: the torque constant is not known, and its numbers are in A; give --constant torque_constant=…"
+)
+
+
+def drive_set(
+    start: GearSet, gear_set: GearSet, files: Sequence[FileResult], parameters: Sequence[CombinedParameter], name: str | None
+) -> GearSet:
+    """Return the set of an identified gear under a name of its own, with load and motor of the log that determines them best.
+
+    Args:
+        start: the set that the identification started from
+        gear_set: with the numbers that files determine
+        files: results of the files that count
+        parameters: that they determine
+        name: of the gear; of the files if None
+    """
+    logs = [each for each in files if _has_load(each)]
+    best = min(logs, key=_load_sigma, default=None)
+    whole = replace(
+        gear_set, name=name or name_of_files(files), maker="", note=_note(start, files, logs, best), covariance=None,
+        validation=(),
+    )  # fmt: skip
+    if best is not None:
+        whole = _with_bristles(_with_motor(_with_load(whole, best), best), files)
+    unchanged = {path for path, entry in start.sources.items() if whole.sources.get(path) == entry}
+    before = None if start.covariance is None else start.covariance.among(unchanged)
+    ordered = sorted(files, key=lambda each: each is not best)
+    return replace(
+        whole, covariance=_covariance(whole, parameters, files, before), validation=tuple(_validation(whole, ordered))
+    )
+
+
+def name_of_files(files: Sequence[FileResult]) -> str:
+    """Return a name for the gear of some files, as `gear of joint_5`."""
+    first = next((each for each in files if each.estimates), files[0])
+    stem = one_line(Path(first.name).stem)[:MAX_NAME]
+    joint = first.recognised.joint if first.recognised is not None else ""
+    of = f"joint {joint} of {stem}" if joint and joint not in stem else stem
+    return f"gear of {of}" + (f" and {len(files) - 1} more" if len(files) > 1 else "")
+
+
+def _note(start: GearSet, files: Sequence[FileResult], logs: Sequence[FileResult], best: FileResult | None) -> str:
+    """Return from which files and which set a gear comes, and whose load it carries."""
+    maker = f" of {start.maker}" if start.maker else ""
+    notes = [
+        f"Identified from {listed(each.name for each in files)}, starting from {start.name}{maker}: numbers that no file "
+        "determines, and ratings, are of that set."
+    ]
+    if best is not None and (others := [each for each in logs if each is not best and _differs(best, each)]):
+        carried = (f"{each.name} ({_load_in_words(each)})" for each in others)
+        notes.append(f"Its load is that of {best.name}; other logs carry other loads: {', '.join(carried)}.")
+    if best is None and (why := why_no_load(files)):
+        notes.append(f"{why[0].upper()}{why[1:]}.")
+    return " ".join(notes)
+
+
+def why_no_load(files: Sequence[FileResult]) -> str:
+    """Return why the load of logs is not written; empty if it is, or if there are none."""
+    return NO_LOAD if any(map(_in_current, files)) and not any(map(_has_load, files)) else ""
+
+
+# ---- Load and motor --------------------------------------------------------------------------------------------------
+
+
+def _drive_of(result: FileResult) -> Drive | None:
+    """Return the drive fitted to a file; None if it was no drive."""
+    model = None if result.fit is None else result.fit.parts[0].model
+    return model if isinstance(model, Drive) else None
+
+
+def _loads_of(result: FileResult) -> dict[str, FileEstimate]:
+    return {each.path: each for each in result.estimates if each.path.startswith("load.")}
+
+
+def _in_current(result: FileResult) -> bool:
+    return any(each.law == "in A" for each in _loads_of(result).values())
+
+
+def _has_load(result: FileResult) -> bool:
+    """True if a file determines a number of the load, in its unit, or was fitted with one that a person gave."""
+    given = result.recognised is not None and "load_inertia" in result.recognised.constants
+    determined = any(not each.why for each in _loads_of(result).values())
+    return _drive_of(result) is not None and (determined or given) and not _in_current(result)
+
+
+def _load_sigma(result: FileResult) -> float:
+    """Return the smallest relative standard deviation of the inertia of a load, or of its gravity without one [1]."""
+    own = {path: each for path, each in _loads_of(result).items() if not each.why and not each.is_phase}
+    number = own.get("load.inertia") or next(iter(own.values()), None)
+    return np.inf if number is None else number.sigma / max(abs(number.value), 1e-300)
+
+
+def _differs(one: FileResult, other: FileResult) -> bool:
+    """True if two logs carry different loads."""
+    first, second = _loads_of(one), _loads_of(other)
+    shared = [path for path in first.keys() & second.keys() if first[path].law == second[path].law]
+    return any(distance(first[path], second[path]) > MIN_LOAD_DIFFERENCE for path in shared)
+
+
+def _load_in_words(result: FileResult) -> str:
+    numbers = [each for each in _loads_of(result).values() if not each.why and not each.is_phase]
+    return ", ".join(f"{each.path.removeprefix('load.').replace('_', ' ')} {each.value:.4g} {each.unit}" for each in numbers)
+
+
+def _with_load(whole: GearSet, log: FileResult) -> GearSet:
+    """Return the set with the load of a log; numbers that the log does not determine state so."""
+    drive, own = _drive_of(log), _loads_of(log)
+    assert drive is not None
+    given = {} if log.recognised is None else log.recognised.constants
+    load: Any = drive.load
+    if isinstance(load, loads.Pendulum) and load.gravity_torque == 0.0:
+        load = loads.Inertia(inertia=load.inertia)
+    sources = {}
+    for path in own_paths("load", load):
+        if path in own:
+            sources[path] = source_of(own[path], log.name)
+        elif path == "load.inertia" and "load_inertia" in given:
+            sources[path] = Entry(f"given with {log.name}")
+        else:
+            sources[path] = Entry(f"assumed: {log.name} does not determine it")
+    return _with_part(whole, "load", load, sources)
+
+
+def _with_motor(whole: GearSet, log: FileResult) -> GearSet:
+    """Return the set with the motor of a log: with its torque constant if that is known, else one that gives a torque."""
+    given, drive = ({} if log.recognised is None else log.recognised.constants), _drive_of(log)
+    assert drive is not None
+    fitted: Any = drive.motor
+    if whole.motor is not None:
+        names = {field["name"] for field in whole.motor.fields}
+        numbers = {"torque_constant": "torque_constant", "resistance": "resistance", "inertia": "motor_inertia"}
+        changed = {name: given[key] for name, key in numbers.items() if key in given and name in names}
+        sources = {path: entry for path, entry in whole.sources.items() if path.startswith("motor.")}
+        sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in changed}
+        return _with_part(whole, "motor", whole.motor.replace(**changed), sources)
+    known: Any = fitted
+    if "torque_constant" not in given:
+        known = motor.TorqueSource(inertia=fitted.inertia)
+    inertia = given.get("motor_inertia")
+    known = known.replace(inertia=0.0 if inertia is None and whole.gear.input_inertia > 0.0 else known.inertia)
+    sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", known)}
+    sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in given}
+    if "motor.back_emf" in sources and "torque_constant" in given:
+        sources["motor.back_emf"] = Entry(f"torque constant given with {log.name}")
+    inside = Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")
+    sources["motor.inertia"] = inside if inertia is None else Entry(f"given with {log.name}")
+    return _with_part(whole, "motor", known, {path: sources[path] for path in own_paths("motor", known)})
+
+
+def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
+    """Return the set with bristles that bend at reversals, if its friction is that of a log which shows how they bend."""
+    source = whole.sources.get("gear.friction_input.coulomb", Entry("not given")).source
+    log = next(
+        (each for each in files if each.bend > 0.0 and source.startswith("identified from") and each.name in source), None
+    )
+    if log is None:
+        return whole
+    before: Any = whole.gear.friction_input
+    law = bristled(Drive(gear=whole.gear, motor=motor.TorqueSource()), log.bend).gear.friction_input
+    if law is before:
+        return whole
+    fitted = Entry(f"fitted to reversals of {log.name}; a presliding loop determines it")
+    unused = Entry("assumed: friction does not fall at low speed")
+    sources = {path: whole.sources.get(path, unused) for path in own_paths("gear.friction_input", law)}
+    sources |= {
+        "gear.friction_input.bristle_stiffness": fitted,
+        "gear.friction_input.bristle_damping": Entry("assumed: none, as sliding damps as well"),
+        "gear.friction_input.damping_fading": Entry("assumed: none"),
+    }
+    kept = {path: entry for path, entry in whole.sources.items() if not is_of(path, {"friction_input"})}
+    return replace(whole, gear=whole.gear.replace(friction_input=law), sources=kept | sources)
+
+
+def _with_part(whole: GearSet, part: str, model: Any, sources: Mapping[str, Entry]) -> GearSet:
+    kept = {path: entry for path, entry in whole.sources.items() if not path.startswith(f"{part}.")}
+    changes: dict[str, Any] = {part: model, "sources": {**kept, **sources}}
+    return whole.replace(**changes)
+
+
+# ---- Covariance and errors -------------------------------------------------------------------------------------------
+
+
+def _covariance(
+    whole: GearSet, parameters: Sequence[CombinedParameter], files: Sequence[FileResult], before: Covariance | None
+) -> Covariance | None:
+    """Return the covariance of the identified numbers of a set, with that of numbers kept from before.
+
+    Estimates of one file correlate as its fit has it; what files share, as the torque constant, correlates all of them.
+    """
+    paths, estimates, sources = list[str](), list[FileEstimate](), list[str]()
+    for path, each in _identified(whole, parameters):
+        if each.estimate.sigma > 0.0 and len(paths) < MAX_NUMBERS:
+            paths.append(path)
+            estimates.append(each.estimate)
+            sources.append(each.source)
+    kept = {} if before is None else {path: place for place, path in enumerate(before.paths) if path not in paths}
+    if not paths and not kept:
+        return None
+    own, common = np.array([each.own for each in estimates]), np.array([_signed_common(each) for each in estimates])
+    n, every = len(paths), min(len(paths) + len(kept), MAX_NUMBERS)
+    matrix = np.zeros((every, every))
+    if n:
+        matrix[:n, :n] = np.outer(own, own) * _correlation(estimates, sources, files) + np.outer(common, common)
+    if before is not None and kept:
+        places = list(kept.values())[: every - n]
+        matrix[n:, n:] = before.array[np.ix_(places, places)]
+    return Covariance.of([*paths, *list(kept)[: every - n]], matrix)
+
+
+def _identified(whole: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[tuple[str, CombinedParameter]]:
+    """Yield the path of each number of a set that was identified, with the parameter that determines it."""
+    for path, entry in whole.sources.items():
+        if not entry.source.startswith("identified") or entry.uncertainty is None:
+            continue
+        own = [each for each in parameters if each.estimate.path in (path, plain(path)) and each.estimate.law != "in A"]
+        of_file = [each for each in own if each.source in entry.source]
+        if own:
+            yield path, (of_file or own)[0]
+
+
+def _signed_common(estimate: FileEstimate) -> float:
+    """Return the part of a standard deviation that files share, with the sign of the number: all grow with the constant."""
+    return float(np.copysign(estimate.common, estimate.value)) if estimate.is_of_torque else estimate.common
+
+
+def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], files: Sequence[FileResult]) -> Array:
+    """Return the correlation of estimates by the fits of their files, shape (n, n); 0 between files."""
+    found = np.eye(len(estimates))
+    for file in files:
+        if file.fit is None:
+            continue
+        prefix = "" if isinstance(file.fit.model, Drive) else "gear."
+        places = {prefix + each.path: place for place, each in enumerate(file.fit.estimates)}
+        own = [k for k, source in enumerate(sources) if source == file.name and estimates[k].path in places]
+        at = [places[estimates[k].path] for k in own]
+        block = file.fit.correlation[np.ix_(at, at)]
+        if own and np.isfinite(block).all():
+            found[np.ix_(own, own)] = block
+    return found
+
+
+def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validation]:
+    """Yield the errors of the saved model on the files that it was identified from."""
+    for each in files:
+        held_out, drive = each.held_out, _drive_of(each)
+        if held_out is None or _in_current(each) or not np.isfinite([held_out.error, held_out.zero]).all():
+            continue
+        error, varies, zero, delay = held_out.error, held_out.zero, 0.0, 0.0
+        if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):
+            unknown = dict(zip([part.name for part in log.nuisances], nuisances_of(each.fit).tolist(), strict=True))
+            rows = moving(log)
+            left = log.residual(drive.replace(gear=whole.gear), nuisances_of(each.fit))[rows]
+            error, varies = float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[rows]))
+            zero, delay = unknown.get(f"{log.effort}_zero", 0.0), unknown.get("delay", 0.0)
+        yield Validation(
+            one_line(each.name), held_out.channel, held_out.unit, error, varies, held_out.error, held_out.zero, zero, delay
+        )
