@@ -22,6 +22,8 @@ MAX_SPEED_ERROR = 0.98  # of the held-out error along the angle: along a recorde
 TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
 FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
+MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction begins, which plain least squares does not describe
+BLOCKS = 10  # of each stretch, over which what is left of it scatters
 RCOND = 1e-6  # singular values below this share of the largest are taken as zero
 
 
@@ -110,6 +112,25 @@ def held_out_residuals(log: MotionLog, drive: Drive, blocks: Sequence[Rows]) -> 
         weights = _solved(columns[rows & ~block], torque[rows & ~block])
         found.append(scale * (torque - columns @ weights)[block])
     return found
+
+
+def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
+    """Return the sum of squares of what plain least squares leaves of each block of the motion, and the samples of each block.
+
+    Samples of sliding alone are fitted and compared; each stretch is predicted by the others. Squares are over the variance of
+    the effort, so that they compare whatever its unit and sign, shape (blocks,) each.
+    """
+    columns, torque, speed = _columns(log, drive), _torque(log, drive), np.abs(log.motion.speed)
+    rows = moving(log) & (speed > MIN_SLIDING_SPEED * np.quantile(speed, FAST_QUANTILE))
+    variance = max(float(np.var(torque[moving(log)])), 1e-300)
+    squares, samples = list[float](), list[int]()
+    for stretch in stretches(log):
+        others = rows & ~stretch
+        left = (torque - columns @ _solved(columns[others], torque[others])) ** 2 / variance
+        for block in np.array_split(np.flatnonzero(stretch), BLOCKS):
+            squares.append(float(left[block[rows[block]]].sum()))
+            samples.append(int(rows[block].sum()))
+    return np.array(squares), np.array(samples)
 
 
 def _columns(log: MotionLog, drive: Drive) -> Array:

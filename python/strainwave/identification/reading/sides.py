@@ -18,6 +18,7 @@ JOINT_SPEED, JOINT_RANGE = 400.0, 720.0  # deg/s and deg: what is no larger may 
 FAST = 60.0  # rad/s, 570 1/min: what turns faster is a motor, and no output of a strain wave gear
 ALIKE = (0.5, 2.0)  # between the speed of one channel and of another: they are of one side
 APART = 10.0  # times: of two angles of which one runs so much further it is that of the input
+SAID = "was said to be at the"
 OFTEN = 0.9  # of the time: a motor that is taken for one by its speed is slower for that share
 
 
@@ -62,7 +63,7 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
     if column.channel.side is not None:
         return column.channel.side, ""
     if said is not None:
-        return said, f"{column.name} was said to be at the {said}"
+        return said, f"{column.name} {SAID} {said}"
     if column.robot:
         why = "what robots call a channel of a joint" if _is_word_of_robots(column) else "a channel of one of several joints"
         return "output", f"{column.name} is {why}: it is taken to be at the output"
@@ -110,7 +111,7 @@ def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple
     if column.channel.side is not None:
         return column.channel.side, ""
     if said is not None:
-        return said, f"{column.name} was said to be at the {said}"
+        return said, f"{column.name} {SAID} {said}"
     if " of " in (column.unit or ""):
         return "input", f"{column.name} is a share of a rated torque, which is that of the motor"
     if column.robot:

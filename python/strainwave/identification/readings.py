@@ -1,0 +1,155 @@
+"""The reading of a log, if names and numbers of its file leave several open: the one that leaves least unexplained.
+
+Each reading is fitted by plain least squares to a part of the motion, and predicts the rest. A wrong unit or side scales
+inertia and friction, which absorb it, but not the angle in the sine of gravity. Samples of sliding are compared, as plain least
+squares does not describe how friction begins. If several readings remain, nothing in the file separates them: `decided` asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.identification.candidates.plain import fit_plain, sliding_squares
+from strainwave.identification.checks.sizes import input_speed
+from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
+from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.sides import SAID
+from strainwave.identification.reading.source import MeasurementFile
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.messages import listed, one_line
+
+Array = NDArray[np.float64]
+
+MAX_UNEXPLAINED = 0.5  # of what varies: a reading that leaves more decides nothing
+MAX_OF_ANOTHER = 0.95  # of the error of another reading: what leaves more is no better
+MAX_OF_USUAL = 0.7  # of the error of the usual reading, which nothing but the fit puts in question
+MIN_GAIN_SIGMA = 3.0  # standard deviations of the difference of squares over the blocks of the motion
+MAX_GAIN = 3.0  # times the upper quartile of the differences of blocks: a larger one counts as that
+MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction drives the motion
+TORQUES = ("joint_torque", "input_torque")
+
+
+@dataclass(frozen=True, eq=False)
+class _Reading:
+    """One way to read a log, and what it leaves unexplained.
+
+    Attributes:
+        file: read so
+        options: to read it so, on the command line
+        squares: sum of squares of what plain least squares leaves, over the variance of the effort, of each block of the motion
+        samples: of sliding, of each block
+        doubt: why no gear moves so; empty if one may
+    """
+
+    file: Recognised
+    options: str
+    squares: Array
+    samples: Array
+    doubt: str
+
+    @property
+    def error(self) -> float:
+        """Root mean square over what varies, on data held out [1]."""
+        return float(np.sqrt(self.squares.sum() / max(self.samples.sum(), 1.0)))
+
+    def is_better_than(self, other: _Reading, share: float) -> bool:
+        """True if it leaves at most this share of what another one leaves, and less over the whole motion, beyond chance."""
+        gains = other.squares - self.squares
+        limit = MAX_GAIN * float(np.quantile(np.abs(gains), 0.75))  # so that a single event decides nothing
+        gains = np.clip(gains, -limit, limit)
+        is_sure = float(gains.sum()) > MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(len(gains))
+        return is_sure and self.error < share * other.error
+
+
+def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
+    """Return a log in the reading that leaves least unexplained; with its question, if several leave as little.
+
+    The usual reading of a log without a question is kept unless another one leaves far less.
+
+    Args:
+        file: as it is usually read
+        source: to read it again
+        known: the gear before the file is fitted
+    """
+    if file.kind != "log" or not file.alternatives:
+        return file
+    others = [(recognise(source, each.mapping), each.options) for each in file.alternatives]
+    tried = [_tried(each, options, known) for each, options in ((file, _options_of(file)), *others) if each.kind == "log"]
+    readings = [each for each in tried if each is not None]
+    sensible = [each for each in readings if not each.doubt] or readings
+    if not sensible:
+        return file
+    best = min(sensible, key=lambda each: each.error)
+    remaining = [each for each in sensible if each is best or not best.is_better_than(each, MAX_OF_ANOTHER)]
+    usual = next((each for each in readings if each.file is file), None)
+    if best.error < MAX_UNEXPLAINED and len(remaining) == 1:
+        is_clear = usual is None or usual.doubt or best.is_better_than(usual, MAX_OF_USUAL)
+        if file.question or best is usual or is_clear:
+            taken = _report(best, [each for each in readings if each is not best])
+            why = tuple(each for each in best.file.why if not (file.question and SAID in each))
+            return replace(best.file, question="", alternatives=(), why=why, remarks=(taken, *best.file.remarks))
+    return replace(file, question=_asked(file.question, remaining)) if file.question else file
+
+
+def _tried(file: Recognised, options: str, known: GearSoFar) -> _Reading | None:
+    """Return a reading with what it leaves; None if it is no log that can be fitted."""
+    try:
+        log = log_of(replace(file, neighbours={}).at_ratio(known.gear_set.gear.kinematics.ratio), known)
+        squares, samples = sliding_squares(log.log, log.drive)
+    except (ValueError, FloatingPointError):
+        return None
+    return _Reading(file, options, squares, samples, _doubt(log))
+
+
+def _doubt(log: PreparedLog) -> str:
+    """Return why no gear moves so; empty if one may."""
+    speed = input_speed(log.log.motion.speed, "")
+    if speed.failed:
+        return f"its input would turn at {speed.value:.3g} {speed.unit}"
+    return (
+        "its inertia would be negative, or friction would drive it" if fit_plain(log.log, log.drive).sense < MIN_SENSE else ""
+    )
+
+
+def _report(best: _Reading, others: Sequence[_Reading]) -> str:
+    """Return which reading is taken, and what each leaves."""
+    effort = next(name for name in ("current", *TORQUES, "voltage") if name in best.file.columns)
+    least = f"read as {_described(best)}, which leaves {_percent(best)} of {best.file.columns[effort]} unexplained"
+    return f"{least} on data held out; {'; '.join(f'{_described(each)}: {_left(each)}' for each in others)}"
+
+
+def _asked(question: str, remaining: Sequence[_Reading]) -> str:
+    """Return a question with what each reading that remains leaves, and the options for each."""
+    if len(remaining) < 2:
+        return question
+    ways = " or ".join(f"{each.options} ({_described(each)}: {_percent(each)})" for each in remaining)
+    head, _, _ = question.partition("; say it")
+    return one_line(f"{head}: the fit leaves as much in each reading, so say which: {ways}")
+
+
+def _options_of(file: Recognised) -> str:
+    """Return the options with which a file is read as it was."""
+    units = {name: file.units[name] for each in file.alternatives for name in each.mapping.units if name in file.units}
+    side = [f"--side {file.side}"] if file.side is not None else []
+    return " ".join([*side, *(f"--unit {name}={unit}" for name, unit in units.items())])
+
+
+def _described(reading: _Reading) -> str:
+    """Return side and units of the motions; their channels and that of the torque, if they are not of one side."""
+    file, torques = reading.file, [name for name in TORQUES if name in reading.file.units]
+    motions = [name for name in file.units if name.endswith(("_angle", "_speed"))]
+    if file.side is not None:
+        return f"{listed(file.units[name] for name in motions)} at the {file.side}"
+    return listed(f"{name} in {file.units[name]}" for name in (*motions, *torques))
+
+
+def _left(reading: _Reading) -> str:
+    return f"{_percent(reading)}{f', and {reading.doubt}' if reading.doubt else ''}"
+
+
+def _percent(reading: _Reading) -> str:
+    return f"{100.0 * reading.error:.2g} %"
