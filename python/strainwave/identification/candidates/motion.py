@@ -44,6 +44,7 @@ MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves mor
 MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
 MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
+MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 MAX_DELAY_SAMPLES = 5.0  # of the log
 SQUARED = COSTS["linear"]
@@ -238,7 +239,9 @@ def fit_motion(
     Raises:
         ValueError: no model can be fitted
     """
-    search = _Search(drive, stretches(logs[0]), priors or {})
+    held_out = stretches(logs[0])
+    _check_compared(logs[0], held_out)
+    search = _Search(drive, held_out, priors or {})
     logs = [each for each in logs if len(each.motion.rows) >= MIN_SLIDING] or [logs[0].in_full_band()]
     simple = _simple(logs[0], drive, inertia)
     best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
@@ -250,6 +253,21 @@ def fit_motion(
         best = added if added is not None and added.is_better_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
     return best, *sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
+
+
+def _check_compared(log: MotionLog, held_out: Sequence[Rows]) -> None:
+    """
+    Raises:
+        ValueError: the motion is too short to hold a stretch of it out, or the effort does not vary
+    """
+    fewest = min(int(each.sum()) for each in held_out)
+    if fewest < MIN_STRETCH:
+        raise ValueError(
+            f"the motion lasts {int(moving(log).sum())} sound samples: a third of it must be held out, and {fewest} of "
+            f"{MIN_STRETCH} are left for that; record longer or faster"
+        )
+    if np.std(log.force) == 0.0:
+        raise ValueError(f"{log.effort} does not vary where the shaft moves: a set value, or a channel that was not recorded")
 
 
 class _Search:
@@ -300,14 +318,16 @@ class _Search:
         return best
 
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
-        """Return the best model, or inertia, gravity, Coulomb and viscous friction in the full band if these predict better."""
+        """Return the best model; if plain least squares predicts better, with bristles, or plain in the full band, if that helps."""
         log = best.log
         left = held_out_residuals(log, self.drive, self.held_out)
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
         if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
             return best
-        simple = self.tried(model)
-        return simple if simple is not None and simple.errors[-1] < MAX_RELATIVE_ERROR * best.errors[-1] else best
+        for other in (_with_bristles(best), self.tried(model)):  # the first leaves the estimates where they are
+            if other is not None and other.errors[-1] < MAX_RELATIVE_ERROR * best.errors[-1] and other.error < best.error:
+                return other
+        return best
 
 
 def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
@@ -432,7 +452,7 @@ def bristled(drive: Drive, bend: float) -> Drive:
         bend: angle of the input in which they bend [rad]
     """
     law: Any = drive.gear.friction_input
-    if not isinstance(law, friction.Coulomb | friction.Stribeck) or law.coulomb <= 0.0:
+    if not isinstance(law, friction.Coulomb | friction.Stribeck) or min(law.coulomb, law.breakaway) <= 0.0:
         return drive
     speed = law.stribeck_speed if isinstance(law, friction.Stribeck) else 1.0
     bristle = friction.LuGre(
@@ -509,7 +529,7 @@ def _candidate(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str
     (record,) = problem.records
     ((predicted, _),) = problem.predict(x)
     ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
-    unexplained = float(np.std(model.log.measured - predicted) / np.std(model.log.measured))
+    unexplained = float(np.std(model.log.measured - predicted) / max(float(np.std(model.log.measured)), 1e-300))
     return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended.log, held_out)))
 
 
@@ -526,7 +546,8 @@ def refit(best: MotionCandidate, drive: Drive) -> tuple[HeldOut, Recording]:
     left, rows = residual[last], moving(log)
     (plain,) = held_out_residuals(log, drive, [last])
     (part,) = found.parts
-    in_band = float(part.rms(held_out=True)[0] / np.std(log.measured[0, ~part.training])) if not part.training.all() else np.nan
+    spread = float(np.std(log.measured[0, ~part.training])) if not part.training.all() else 0.0
+    in_band = float(part.rms(held_out=True)[0]) / spread if spread > 0.0 else np.nan
     held_out = HeldOut(
         "last 30 % of the motion", log.effort, log.units[0],
         float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[last])), float(np.sqrt(np.mean(plain**2))), int(last.sum()),

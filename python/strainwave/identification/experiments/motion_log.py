@@ -94,7 +94,6 @@ class MotionLog(ComparedByFields):
         if np.ptp(angle) == 0.0:
             raise ValueError("the angle never changes: only a shaft that moves shows inertia and friction")
         motion = motion_of(time, angle, cutoff, REVERSAL)
-        _check_moves(motion)
 
         def on_grid(values: Array) -> Array:
             return np.interp(motion.time, time, values)
@@ -104,6 +103,7 @@ class MotionLog(ComparedByFields):
         force = np.asarray(Akima1DInterpolator(time[sound], values[sound], extrapolate=True)(motion.time))  # as the angle is
         sound_there = on_grid(sound.astype(float)) == 1.0
         motion = replace(motion, known=motion.known & sound_there)
+        _check_moves(motion)
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
             motion, effort, force, on_grid(values), sound_there, known,
