@@ -318,7 +318,7 @@ class _Search:
         return best
 
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
-        """Return the best model; if plain least squares predicts better, with bristles, or plain in the full band, if that helps."""
+        """Return the best model; if plain least squares predicts better, with bristles, or fitted in the full band."""
         log = best.log
         left = held_out_residuals(log, self.drive, self.held_out)
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
@@ -544,14 +544,15 @@ def refit(best: MotionCandidate, drive: Drive) -> tuple[HeldOut, Recording]:
     found = best.fitted_to(~last[log.motion.rows])
     residual = best.left(found.model, nuisances_of(found), ~last)
     left, rows = residual[last], moving(log)
+    before = float(np.mean(log.recorded[rows & ~last]))
     (plain,) = held_out_residuals(log, drive, [last])
     (part,) = found.parts
     spread = float(np.std(log.measured[0, ~part.training])) if not part.training.all() else 0.0
     in_band = float(part.rms(held_out=True)[0]) / spread if spread > 0.0 else np.nan
     held_out = HeldOut(
         "last 30 % of the motion", log.effort, log.units[0],
-        float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[last])), float(np.sqrt(np.mean(plain**2))), int(last.sum()),
-        in_band,
+        float(np.sqrt(np.mean(left**2))), float(np.sqrt(np.mean((log.recorded[last] - before) ** 2))),
+        float(np.sqrt(np.mean(plain**2))), int(last.sum()), in_band,
     )  # fmt: skip
     columns = {
         "time": log.motion.time,

@@ -32,7 +32,7 @@ def held_out_error(held_out: HeldOut, source: str) -> Iterator[Check]:
     yield Check(
         "unexplained on data held out", source, held_out.relative, MAX_UNEXPLAINED, "1", held_out.relative > MAX_UNEXPLAINED,
         f"the model leaves {held_out.error:.3g} {unit} of {held_out.channel} on the {held_out.stretch}, where it varies by "
-        f"{held_out.zero:.3g} {unit}: {100.0 * held_out.relative:.0f} % is unexplained",
+        f"{held_out.zero:.3g} {unit} about its mean before: {100.0 * held_out.relative:.0f} % is unexplained",
         "other joints may move (give their angles as other_angles, or their torque as rigid_torque), the motion may be too "
         "small or at one speed only, or columns, units or sides are not what they are taken for",
     )  # fmt: skip

@@ -16,7 +16,7 @@ class HeldOut:
         channel: that is predicted
         unit: of all errors
         error: root mean square of measured less predicted, at rest of what no friction that holds makes up for
-        zero: root mean square of the channel about its mean there: the error of a model that predicts nothing
+        zero: error of the mean of the channel in the rest of the motion: of a model that predicts nothing
         plain: error of plain least squares there (offset, inertia, gravity, Coulomb and viscous friction); not a number without
         samples: compared
         in_band: the error over that of the mean in the pass band of the fit, where slow sliding alone is compared [1]
