@@ -125,7 +125,7 @@ def trials() -> Iterator[Trial]:
     for joint, ratio in enumerate(KUKA_RATIOS, 1):
         value = "256.857142857" if "/" in ratio else ratio
         options = f"--joint {joint} --column input_torque=rec.act_torque_abs_nm --constant ratio={value}"
-        yield Trial("kuka-kr300/FF_A.mat", options, f"{_block_columns(joint, 6)} --degrees", alone=False)
+        yield Trial("kuka-kr300/FF_A.mat", options, f"--degrees {_block_columns(joint, 6)}", alone=False)
 
 
 def _ur(joint: int) -> str:
@@ -203,11 +203,13 @@ def mapping(trial: Trial) -> Any:
 
 
 def best_of_yardstick(trial: Trial) -> float:
-    """Return the smallest error of the yardstick's models."""
+    """Return the smallest error of the yardstick's models, with the terms of other joints and without."""
+    printed = ""
     with tempfile.TemporaryDirectory() as folder:
         file = _readable(trial, Path(folder))
-        words = [sys.executable, str(YARDSTICK), file, *trial.yardstick.split()]
-        printed = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+        for words in {trial.yardstick, trial.yardstick.partition(" --others")[0]}:
+            command = [sys.executable, str(YARDSTICK), file, *words.split()]
+            printed += subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return min(float(value) for value in re.findall(r"(?:CV|curved|load) (\S+?)(?:;|\s|$)", printed))
 
 
@@ -293,8 +295,8 @@ def _rows(recording: Recording, first: int, last: int) -> Recording:
 def line(each: Outcome) -> str:
     """Return an outcome in a line, with its failed checks below."""
     words = (
-        f"{each.trial.name:48} {each.error:9.4g} {each.plain:9.4g} {each.best:9.4g} {each.unit:5} {100.0 * each.relative:6.1f} % "
-        f"{each.share:6.3f} {each.seconds:5.1f} s  {each.model}"
+        f"{each.trial.name:48} {each.error:9.4g} {each.plain:9.4g} {each.best:9.4g} {each.unit:5} "
+        f"{100.0 * each.relative:6.1f} % {each.share:6.3f} {each.seconds:5.1f} s  {each.model}"
     )
     return "\n".join([words, *(f"    in doubt: {message[:230]}" for message in each.failed)])
 
@@ -333,15 +335,15 @@ def verdict_of_halves(pairs: Sequence[Pair]) -> bool:
     for pair in sorted(pairs, key=lambda pair: -pair.apart):
         one, other = pair.one, pair.other
         print(
-            f"{pair.apart:6.1f} σ  {one.label:40} {one.value:10.4g} ± {one.sigma:<8.2g} {other.value:10.4g} ± {other.sigma:<8.2g} "
-            f"{one.unit:10} {pair.file}{'' if pair.one_model else '  (other law of friction)'}"
+            f"{pair.apart:6.1f} σ  {one.label:40} {one.value:10.4g} ± {one.sigma:<8.2g} {other.value:10.4g} ± "
+            f"{other.sigma:<8.2g} {one.unit:10} {pair.file}{'' if pair.one_model else '  (other law of friction)'}"
         )
     same = [pair.apart < MAX_DISTANCE for pair in pairs if pair.one_model or "friction" not in pair.one.path]
     every = [pair.apart < MAX_DISTANCE for pair in pairs]
     share = float(np.mean(same)) if same else np.nan
     print(
-        f"halves: {100.0 * share:.0f} % of {len(same)} numbers within {MAX_DISTANCE:g} standard deviations; with friction of two "
-        f"laws {100.0 * float(np.mean(every)) if every else np.nan:.0f} % of {len(every)}"
+        f"halves: {100.0 * share:.0f} % of {len(same)} numbers within {MAX_DISTANCE:g} standard deviations; with friction of "
+        f"two laws {100.0 * float(np.mean(every)) if every else np.nan:.0f} % of {len(every)}"
     )
     return share < MIN_WITHIN
 

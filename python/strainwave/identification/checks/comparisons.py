@@ -130,6 +130,11 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
         )  # fmt: skip
 
 
+def repeatability(path: str) -> float:
+    """Return the relative standard deviation of a parameter from run to run of one gear, by its path."""
+    return REPEATABILITY.get(path.removeprefix("gear.").partition(".")[0], REPEATABILITY_OF_OTHERS)
+
+
 class _Contradiction(NamedTuple):
     """A parameter of which two files differ, in words, and how far apart they are beyond what runs of one gear differ by."""
 
@@ -138,16 +143,15 @@ class _Contradiction(NamedTuple):
 
 
 def _contradiction(each: CombinedParameter, name: str, *, comparable: bool) -> _Contradiction:
-    best, other = each.of_file(each.source), each.others[name]
-    part = each.estimate.path.removeprefix("gear.").partition(".")[0]
-    repeatability = REPEATABILITY.get(part, REPEATABILITY_OF_OTHERS) * abs(best.value)
+    best, other, path = each.of_file(each.source), each.others[name], each.estimate.path
+    spread = repeatability(path) * abs(best.value)
     sigma = float(np.hypot(np.hypot(best.own, other.own), best.common - other.common))
-    apart = abs(difference(best, other)) / float(np.hypot(repeatability, sigma))
+    apart = abs(difference(best, other)) / float(np.hypot(spread, sigma))
     words = (
         f"{each.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} "
         f"{best.unit}, {distance(best, other):.3g} standard deviations apart"
     )
-    return _Contradiction(words, apart if comparable or part != "friction_input" else 0.0)
+    return _Contradiction(words, apart if comparable or not path.startswith("gear.friction_input.") else 0.0)
 
 
 def _friction_of(file: FileResult) -> str:

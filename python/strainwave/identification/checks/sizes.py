@@ -30,6 +30,7 @@ MAX_FRICTION_SHARE = 0.8  # of the torque at the ends of a loop: a twisted gear 
 MAX_CLIPPED_SHARE = 0.05  # of the range of the angle, over which a torque stays at the end of its range
 MIN_CLIPPED_SAMPLES = 5
 EQUAL = 1e-9  # relative: torques that are one
+REST_SPEED = 0.01  # rad/s of the input, at which friction is that of a shaft about to slide
 MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
 
 
@@ -66,6 +67,26 @@ def friction_level(law: Any, start: Any, speed: float, source: str, remedy: str)
         f"its friction is {found:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
         f"({before:.3g} N·m)",
         remedy,
+    )  # fmt: skip
+
+
+def friction_at_rest(torque: float, start: Gear, source: str) -> Iterator[Check]:
+    """Yield the check that a torque at which the input still rests is no more than friction of the start set may hold.
+
+    Args:
+        torque: at the input, at which it does not slide yet [N.m]
+        start: the gear of the start set
+        source: name of the file
+    """
+    law: Any = start.friction_input
+    held = float(law.hold(1.0)) if hasattr(law, "hold") else float(law.steady(REST_SPEED))
+    if abs(start.kinematics.ratio) < MIN_RATIO or held <= 0.0:
+        return
+    factor = torque / held
+    yield Check(
+        "friction at rest", source, factor, MAX_FACTOR, "1", factor > MAX_FACTOR,
+        f"its input would rest against {torque:.3g} N·m, {times(factor)} the friction of the start set ({held:.3g} N·m)",
+        "see whether units and side are right; if the other side of the gear was locked, it is a torsion loop: --kind torsion",
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit, spread_by_blocks
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
+from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.fitting.estimate import Estimate
@@ -75,6 +76,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     name, speed = file.path.name, log.motion.speed
     level = () if in_current else friction_of_log(law, start.friction_input, speed, log.effort, name)
     checks += [*level, input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
+    checks += checks_of_motion(best, drive, recording, held_out.error, name)
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(

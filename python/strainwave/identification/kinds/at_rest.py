@@ -10,6 +10,7 @@ import numpy as np
 from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.presliding import PreslidingCandidate, breakaway_torque, fit_presliding
+from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.experiments.presliding import PreslidingLoop, breakaways
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.recognise import Recognised
@@ -67,7 +68,10 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     units = {"small_angle": "rad", "torque": "N.m", "modelled": "N.m"}
     curves = Recording({name: values[begun] for name, values in compared.items()}, units)
     picture = Picture(curves, "loop", "torque at the input")
-    return FileResult(file.path.name, file, _in_words(best), estimates, error, tuple(remarks), pictures=(picture,)), after
+    checks = tuple(friction_at_rest(0.5 * float(np.ptp(loop.torque)), known.initial.gear, file.path.name))
+    return FileResult(
+        file.path.name, file, _in_words(best), estimates, error, tuple(remarks), checks, pictures=(picture,)
+    ), after  # fmt: skip
 
 
 def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:
@@ -129,7 +133,8 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
             remarks.append(
                 f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
             )
-    return FileResult(file.path.name, file, "breakaway of each ramp", estimates, np.nan, tuple(remarks)), after
+    checks = tuple(friction_at_rest(both.value, known.initial.gear, file.path.name))
+    return FileResult(file.path.name, file, "breakaway of each ramp", estimates, np.nan, tuple(remarks), checks), after
 
 
 def _has_breakaway(known: GearSoFar) -> bool:

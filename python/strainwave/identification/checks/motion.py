@@ -1,0 +1,196 @@
+"""Checks of a log by the motion itself: gravity against the angle and the inertia, the signs of its parts, and its halves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion import MotionCandidate
+from strainwave.identification.candidates.plain import fit_plain, moving
+from strainwave.identification.checks.comparisons import repeatability
+from strainwave.identification.checks.mistakes import wrong_units
+from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.reading.missing_units import JOINT
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.combined_parameter import MAX_DISTANCE
+
+Array = NDArray[np.float64]
+
+GRAVITATION = 9.81  # m/s2
+MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
+MIN_GAIN_SIGMA = 3.0  # standard deviations of that gain over the blocks of the motion
+BLOCKS = 10  # of the motion
+MIN_ROWS_PER_BLOCK = 5
+# A body that is wider than a centimetre has a pendulum length above 2 cm, twice its radius of gyration. Arms have some metres;
+# counterweights and rotors make it longer. A wrong unit of time, as minutes or milliseconds, is a factor of 3600 or 1e6.
+MIN_PENDULUM_LENGTH, MAX_PENDULUM_LENGTH = 0.02, 200.0  # m
+MIN_LENGTH_SIGMA = 3.0  # standard deviations of its logarithm
+MAX_NEGATIVE_PART = 1.0  # of the held-out error: a larger part of the effort is there, with its sign
+MAX_RELATIVE_SIGMA = 0.5  # of an estimate that a half of the motion determines
+
+
+def checks_of_motion(best: MotionCandidate, drive: Drive, recording: Recording, error: float, source: str) -> Iterator[Check]:
+    """Yield the checks of a log by its own motion.
+
+    Args:
+        best: the model fitted
+        drive: as far as it was known before
+        recording: of the log, with its angle in the unit of the file
+        error: on data held out, in the unit of the effort
+        source: name of the file
+    """
+    alone = not best.log.regressors
+    if alone and not np.any(best.log.extra):
+        yield from angle_in_gravity(best, drive, recording, source)
+    if alone:
+        yield from pendulum_length(best.fit.estimates, source)
+    yield from negative_parts(best.log, drive, error, source)
+    yield from halves(best, source)
+
+
+# ---- Gravity ---------------------------------------------------------------------------------------------------------
+
+
+def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, source: str) -> Iterator[Check]:
+    """Yield the check that gravity goes with the sine of the angle in the unit and of the side that are taken for it.
+
+    A wrong unit or side of an angle scales inertia and friction, which absorb it. Gravity of a joint that moves far enough
+    shows the angle itself. The pass band is compared, by least squares with inertia and friction of any curve beside.
+    """
+    log, ratio = best.log, abs(drive.gear.kinematics.ratio)
+    delay = next((each.value for each in best.fit.estimates if each.path == "delay"), 0.0)
+    usual = _squares(log, drive, 1.0, delay)
+    if len(usual) < BLOCKS * MIN_ROWS_PER_BLOCK:
+        return
+    share, found = 1.0, ""
+    for what, factor in _mistakes(recording, ratio).items():
+        if np.ptp(log.motion.angle) * factor / ratio > JOINT:
+            continue
+        other = _squares(log, drive, factor, delay)
+        gains = np.array([block.sum() for block in np.array_split(usual - other, BLOCKS)])
+        is_sure = gains.sum() > MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(BLOCKS)
+        gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))
+        if is_sure and gain > share:
+            share, found = gain, what
+    yield Check(
+        "angle in the sine of gravity", source, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
+        f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}",
+        "see whether unit and side of the angle are right, and state them: --unit or --column input_angle= or output_angle=",
+    )  # fmt: skip
+
+
+def _mistakes(recording: Recording, ratio: float) -> dict[str, float]:
+    """Return likely mistakes of the angle, and the true angle over the one that is taken."""
+    name = "input_angle" if "input_angle" in recording else "output_angle"
+    wrong = {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(name)).items()}
+    if name == "input_angle":
+        return {**wrong, "it is that of the output": ratio}
+    return {**wrong, "it is that of the input": 1.0 / ratio}
+
+
+def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array:
+    """Return the squares that least squares leaves in the pass band with the angle times a factor, shape (n,)."""
+    motion = log.motion
+    speed, angle = motion.speed, factor * motion.angle / drive.gear.kinematics.ratio
+    sign = np.sign(speed)
+    series = np.stack(
+        [
+            motion.acceleration, speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)),
+            np.sin(angle), np.cos(angle),
+        ]
+    )  # fmt: skip
+    columns = motion.filtered(motion.late(series, delay)[0] if delay else series).T
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    measured = log.measured[0]
+    left = measured - columns / size @ np.linalg.lstsq(columns / size, measured, rcond=1e-6)[0]
+    return np.asarray(left**2)
+
+
+def pendulum_length(estimates: tuple[Estimate, ...], source: str) -> Iterator[Check]:
+    """Yield the check that inertia and gravity of a load are those of a body: J g / G is the length of a pendulum."""
+    found = {each.path: each for each in estimates}
+    inertia, gravity = found.get("load.inertia"), found.get("load.gravity_torque")
+    if inertia is None or gravity is None or min(inertia.value, gravity.value) <= 0.0:
+        return
+    relative = float(np.hypot(inertia.sigma / inertia.value, gravity.sigma / gravity.value))
+    if relative > MAX_RELATIVE_SIGMA:
+        return
+    length = GRAVITATION * inertia.value / gravity.value
+    off = max(float(np.log(MIN_PENDULUM_LENGTH / length)), float(np.log(length / MAX_PENDULUM_LENGTH)))
+    yield Check(
+        "gravity against inertia", source, length, MIN_PENDULUM_LENGTH if length < 1.0 else MAX_PENDULUM_LENGTH, "m",
+        off > MIN_LENGTH_SIGMA * relative,
+        f"inertia and gravity of the load are those of a pendulum of {length:.3g} m; joints have {MIN_PENDULUM_LENGTH:g} to "
+        f"{MAX_PENDULUM_LENGTH:g} m",
+        "see whether the unit of time, or the rate of the rows, is right",
+    )  # fmt: skip
+
+
+# ---- Signs and halves ------------------------------------------------------------------------------------------------
+
+
+def negative_parts(log: MotionLog, drive: Drive, error: float, source: str) -> Iterator[Check]:
+    """Yield the check that inertia and Coulomb friction are not clearly negative by plain least squares.
+
+    A model has neither: its fit ends at the bound, and its other numbers make up for what is missing.
+    """
+    plain, rows = fit_plain(log, drive), moving(log)
+    scale = abs(per_torque(drive, log.effort))
+    parts = {
+        "inertia": (plain.inertia, float(np.std(log.motion.acceleration[rows])), "kg·m²"),
+        "Coulomb friction": (plain.coulomb, 1.0, "N·m"),
+    }
+    made = {name: -scale * value * unit for name, (value, unit, _) in parts.items()}
+    name = max(made, key=lambda each: made[each])
+    share = max(made[name], 0.0) / max(error, 1e-300)
+    value, _, unit = parts[name]
+    effort = log.units[0]
+    yield Check(
+        "estimates at bounds", source, share, MAX_NEGATIVE_PART, "1", share > MAX_NEGATIVE_PART,
+        f"plain least squares has a negative {name} of {value:.3g} {unit} at the input: it makes {made[name]:.3g} {effort}, "
+        f"more than the {error:.3g} {effort} left on data held out",
+        "see whether the signs of angle and effort fit each other, whether the effort comes with a delay, and whether another "
+        "drive or a hand moves the joint",
+    )  # fmt: skip
+
+
+def halves(best: MotionCandidate, source: str) -> Iterator[Check]:
+    """Yield the check that both halves of the motion determine the same numbers, as runs of one gear do."""
+    count = len(best.log.motion.rows)
+    first = np.arange(count) < count // 2
+    try:
+        pair = [_determined(best, rows) for rows in (first, ~first)]
+    except (ValueError, FloatingPointError):  # a half that does not move both ways, or not enough
+        return
+    apart, words = 0.0, ""
+    for path in pair[0].keys() & pair[1].keys():
+        one, other = (each[path] for each in pair)
+        spread = repeatability(path) * max(abs(one.value), abs(other.value))
+        distance = abs(one.value - other.value) / float(np.linalg.norm([spread, one.sigma, other.sigma]))
+        if distance > apart:
+            apart = distance
+            words = f"{path} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}"
+    yield Check(
+        "halves of the record", source, apart, MAX_DISTANCE, "1", apart > MAX_DISTANCE,
+        f"the first half of the motion has {words}: {apart:.2g} times what runs of one gear and chance differ by",
+        "see whether load, temperature or controller changed on the way, or an encoder slipped; give the parts as files of "
+        "their own",
+    )  # fmt: skip
+
+
+def _determined(best: MotionCandidate, rows: NDArray[np.bool_]) -> Mapping[str, Estimate]:
+    """Return the numbers of the drive that some of the samples determine, by path."""
+    found = best.fitted_to(rows)
+    nuisances = {nuisance.name for part in found.parts for nuisance in part.experiment.nuisances}
+    return {
+        each.path: each
+        for each in found.estimates
+        if each.path not in nuisances and each.path not in best.model.ties and not each.path.endswith("_phase")
+        and each.sigma < MAX_RELATIVE_SIGMA * abs(each.value)
+    }  # fmt: skip
