@@ -21,6 +21,7 @@ from strainwave.commands.identify import identify
 from strainwave.commands.models import models
 from strainwave.commands.orders import orders
 from strainwave.commands.plan_experiments import plan_experiments
+from strainwave.commands.predict import predict
 from strainwave.commands.rank import rank
 from strainwave.commands.rig import rig
 from strainwave.commands.show import show
@@ -29,8 +30,23 @@ from strainwave.commands.study import study
 from strainwave.messages import one_line, with_options
 
 REFUSED = 2  # exit code for input that cannot be used
-VERBS = (identify, rank, orders, plan_experiments, demo, simulate, compare, show, gears, drives, models, cache, compile)
-WITH_COLUMNS = {"identify", "rank", "orders"}  # verbs with the options --column and --unit
+VERBS = (
+    identify,
+    predict,
+    rank,
+    orders,
+    plan_experiments,
+    demo,
+    simulate,
+    compare,
+    show,
+    gears,
+    drives,
+    models,
+    cache,
+    compile,
+)
+WITH_COLUMNS = {"identify", "predict", "rank", "orders"}  # verbs with the options --column and --unit
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 

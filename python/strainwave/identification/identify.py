@@ -27,7 +27,7 @@ from strainwave.identification.reading.source import BAG, Measurement, Measureme
 from strainwave.identification.readings import decided
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
-from strainwave.identification.results.drive import drive_set
+from strainwave.identification.results.drive import drive_set, name_of_files
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.parameter_state import ParameterState, states_of
@@ -117,13 +117,7 @@ def identify(
     if name is not None:
         check_line("name", name)
     opened = measurement_files(files)
-    read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
-    sources = {file.path: file for file in opened.files}
-    in_one_reading = consistent(_only_read(read), sources)
-    start = with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), in_one_reading)
-    read |= {each.path: _decided(each, sources[each.path], GearSoFar(start, start)) for each in in_one_reading}
-    for link in opened.links:
-        read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
+    read, start = read_measurements(opened, mapping, start if isinstance(start, GearSet) else GearSet.read(start))
     check_one_joint(_only_read(read))
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
@@ -141,7 +135,7 @@ def identify(
     failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
     checks += [*with_start_set(start, parameters, failed), *between_files(parameters, results)]
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
-    gear_set = drive_set(start, with_means(fits.known, parameters), counted or results, parameters, name)
+    gear_set = drive_set(start, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
     return Identified(start, results, parameters, gear_set, tuple(checks))
 
 
@@ -220,7 +214,7 @@ class _Fits:
         try:
             result, after = kind.fit(file, before)
         except (ValueError, FloatingPointError) as error:
-            result, after = FileResult(file.path.name, file, refused=_without_name(str(error), file.path)), before
+            result, after = FileResult(file.path.name, file, refused=without_name(str(error), file.path)), before
         self.results[file.path] = result
         if str(file.path) not in self.copies and (self.accept or not result.failed):
             self.known = with_kinematics(after, self.known.gear_set)
@@ -261,6 +255,20 @@ def _named_apart(results: Sequence[FileResult], paths: Sequence[Path], copies: M
 # ---- Files -----------------------------------------------------------------------------------------------------------
 
 
+def read_measurements(
+    opened: MeasurementFiles, mapping: Mapped, start: GearSet
+) -> tuple[dict[Path, Recognised | FileResult], GearSet]:
+    """Return each file as it is read, or why it is refused, by its path; and the set with the ratio given with all files."""
+    read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
+    sources = {file.path: file for file in opened.files}
+    in_one_reading = consistent(_only_read(read), sources)
+    start = with_ratio_of_all(start, in_one_reading)
+    read |= {each.path: _decided(each, sources[each.path], GearSoFar(start, start)) for each in in_one_reading}
+    for link in opened.links:
+        read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
+    return read, start
+
+
 def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
     path = file.path
     if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
@@ -273,7 +281,7 @@ def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognise
     except (ValueError, OSError) as error:
         if file.recording is not None:
             raise
-        return FileResult(path.name, refused=_without_name(str(error), path))
+        return FileResult(path.name, refused=without_name(str(error), path))
 
 
 def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised]:
@@ -285,10 +293,10 @@ def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Rec
     file = decided(file, source, with_ratio(known, file))
     if not file.question:
         return file
-    return FileResult(file.path.name, file, refused=_without_name(file.question, file.path))
+    return FileResult(file.path.name, file, refused=without_name(file.question, file.path))
 
 
-def _without_name(message: str, path: Path) -> str:
+def without_name(message: str, path: Path) -> str:
     """Return a message about a file without its name, which stands before it."""
     for name in (str(path), path.name):
         for end in (": ", " "):

@@ -144,6 +144,11 @@ def _kind(line: RippleLine) -> str:
     return f"{' or '.join(['order', *others] if line.kind == 'either' else [line.kind])} line"
 
 
+def line_words(line: RippleLine) -> str:
+    """Return a line of a spectrum in words, as `order line 2.00`."""
+    return f"{_kind(line)}{_place(line)}"
+
+
 def _parts(line: RippleLine, of: str) -> Iterator[str]:
     """Return the parts of a line, the largest first; parts that noise explains are left out."""
     words = {"constant": "constant", "direction": "with the direction", "load": "with the load"}

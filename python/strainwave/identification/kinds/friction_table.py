@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
@@ -34,7 +35,16 @@ from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import Fitted
+from strainwave.identification.results.prediction import (
+    Prediction,
+    changes_of,
+    friction_directions,
+    judged,
+    model_error,
+    slopes_by_numbers,
+)
 
+Array = NDArray[np.float64]
 UNITS = {"speed": "rad/s", "torque": "N.m"}
 MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
 
@@ -47,10 +57,24 @@ class SteadyFriction(Kind):
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the laws of steady friction that a table may show."""
-        table, uncertain = with_torque(file, known.gear_set)
-        ratio = abs(known.gear_set.gear.kinematics.ratio)
-        table, remarks = with_load(_unloaded(table, file, known.gear_set), ratio, file.side)
+        table, uncertain, remarks = _with_torque_and_load(file, known.gear_set)
         return fit_table(replace(file, remarks=(*file.remarks, *remarks)), table, uncertain, known)
+
+    def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
+        """Compare the torque at each speed with that of a saved gear."""
+        recording, _, remarks = _with_torque_and_load(file, gear_set)
+        table, gear = _table_of(recording, file.side, gear_set.gear), gear_set.gear
+        left = table.torque - _at(table, gear)
+        directions = list(friction_directions(gear, lambda other: _at(table, other)))
+        slopes, covariance = slopes_by_numbers(gear_set, gear, lambda other: _at(table, other), "gear.friction_")
+        changes, explained = changes_of(left, directions, slopes, covariance, model_error(gear_set, "torque"))
+        curves = {"speed": table.speed, "torque": table.torque, "predicted": table.torque - left, "residual": left}
+        found = Prediction(
+            file.path.name, gear_set.name, file.kind, "torque", "N.m", _rms(left), float(np.std(table.torque)),
+            samples=len(left), changes=changes, error_with_changes=_rms(left - explained),
+            curves=Recording(curves, dict.fromkeys(curves, "N.m") | {"speed": "rad/s"}), remarks=(*file.remarks, *remarks),
+        )  # fmt: skip
+        return judged(found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes, covariance, slopes))))
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error where each speed is predicted from the others."""
@@ -106,6 +130,22 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         return result, known
     parts = {"friction_input", "friction_mesh"} if "load" in table else {"friction_input"}
     return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("friction_input", estimates)
+
+
+def _with_torque_and_load(file: Recognised, gear_set: GearSet) -> tuple[Recording, float, tuple[str, ...]]:
+    """Return a table with torque and load of the input, the uncertainty of its torque constant, and what was assumed."""
+    table, uncertain = with_torque(file, gear_set)
+    ratio = abs(gear_set.gear.kinematics.ratio)
+    table, remarks = with_load(_unloaded(table, file, gear_set), ratio, file.side)
+    return table, uncertain, remarks
+
+
+def _at(table: FrictionTable, gear: Any) -> Array:
+    return np.asarray(table.predict(gear, [], np.zeros(0))[0][0])
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def _table_of(recording: Recording, side: str | None, gear: Any) -> FrictionTable:

@@ -9,6 +9,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from strainwave.files.gear_set import GearSet
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kinds import ColumnRoles
@@ -16,6 +17,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.prediction import Prediction
 
 
 @dataclass(frozen=True)
@@ -107,3 +109,12 @@ class Kind(ABC):
         """
         ranked = "tables of friction, torsion loops, presliding loops and logs have models to rank"
         raise ValueError(f"only {ranked}; strainwave orders finds orders")
+
+    def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
+        """Return a file compared with what a saved gear or drive predicts.
+
+        Raises:
+            ValueError: files of this kind are not predicted, or the saved gear lacks what a prediction needs
+        """
+        known = "only logs and tables of friction are predicted; identify compares the estimates of other files"
+        raise ValueError(f"it is {self.title}: {known}")

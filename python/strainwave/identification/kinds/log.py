@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion
 from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.kinds.along_motion import fit_log
 from strainwave.identification.kinds.kind import Kind, Ranked
+from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kinds import ColumnRoles, log_roles
@@ -17,6 +19,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.prediction import Prediction
 
 
 class Log(Kind):
@@ -36,6 +39,10 @@ class Log(Kind):
         found = log_of(file, known)
         unit = found.log.units[0]
         return tuple(_ranked(each, unit) for each in fit_motion([found.log], found.drive))
+
+    def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
+        """Compare the torque along the motion with that of a saved drive."""
+        return predict_log(file, gear_set)
 
 
 def _ranked(each: MotionCandidate, unit: str) -> Ranked:

@@ -61,7 +61,7 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     """
     drive, remarks, in_current = _drive(file, known.gear_set)
     recording = _loaded(file)
-    if not in_current and "current" in recording and "torque_constant" not in file.constants and known.gear_set.motor is None:
+    if not in_current and "current" in recording and not _constant_known(file, known.gear_set):
         remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
         recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive, regressors=file.regressors)
@@ -88,6 +88,10 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
     relative = 0.0 if constant is None else constant.relative
     return PreparedLog(log, drive, recording, tuple(remarks), in_current, said, relative, rotor)
+
+
+def _constant_known(file: Recognised, gear_set: GearSet) -> bool:
+    return "torque_constant" in file.constants or hasattr(gear_set.motor, "torque_constant")
 
 
 def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[MotionLog, list[str]]:

@@ -33,21 +33,21 @@ NO_LOAD = (
 
 
 def drive_set(
-    start: GearSet, gear_set: GearSet, files: Sequence[FileResult], parameters: Sequence[CombinedParameter], name: str | None
+    start: GearSet, gear_set: GearSet, files: Sequence[FileResult], parameters: Sequence[CombinedParameter], name: str
 ) -> GearSet:
     """Return the set of an identified gear under a name of its own, with load and motor of the log that determines them best.
 
     Args:
         start: the set that the identification started from
         gear_set: with the numbers that files determine
-        files: results of the files that count
-        parameters: that they determine
-        name: of the gear; of the files if None
+        files: results of the files that count: those without a failed check, or all if these were accepted
+        parameters: that files determine
+        name: of the gear
     """
     logs = [each for each in files if _has_load(each)]
     best = min(logs, key=_load_sigma, default=None)
     whole = replace(
-        gear_set, name=name or name_of_files(files), maker="", note=_note(start, files, logs, best), covariance=None,
+        gear_set, name=name, maker="", note=_note(start, files, logs, best), covariance=None,
         validation=(),
     )  # fmt: skip
     if best is not None:
@@ -73,8 +73,8 @@ def _note(start: GearSet, files: Sequence[FileResult], logs: Sequence[FileResult
     """Return from which files and which set a gear comes, and whose load it carries."""
     maker = f" of {start.maker}" if start.maker else ""
     notes = [
-        f"Identified from {listed(each.name for each in files)}, starting from {start.name}{maker}: numbers that no file "
-        "determines, and ratings, are of that set."
+        f"Identified from {listed(each.name for each in files) or 'no file'}, starting from {start.name}{maker}: numbers that "
+        "no file determines, and ratings, are of that set."
     ]
     if best is not None and (others := [each for each in logs if each is not best and _differs(best, each)]):
         carried = (f"{each.name} ({_load_in_words(each)})" for each in others)

@@ -1,0 +1,215 @@
+"""A log of a drive compared with what a saved drive predicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive
+from strainwave.equality import ComparedByFields
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.plain import fit_plain, moving
+from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.prediction import (
+    DRY,
+    GRAVITY,
+    INERTIA,
+    MIN_CHANGE,
+    MIN_SAMPLES,
+    TEMPERATURE,
+    VISCOUS,
+    ZERO,
+    Direction,
+    Prediction,
+    changes_of,
+    friction_directions,
+    judged,
+    slopes_by_numbers,
+)
+from strainwave.messages import listed
+from strainwave.orders.ripple import RippleLine, ripple
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+MIN_TEMPERATURE_RANGE = 2.0  # K: over a smaller one friction does not change measurably
+MAX_LINES = 8  # of the residual that are listed
+SPEED_BINS = 20  # of equally many samples, over which the error of a law of friction is averaged
+OF_RIGID_DRIVE = ("gear.friction_", "load.", "motor.")  # beginnings of paths of numbers that a rigid drive has
+OTHER = "share of "  # a term of other joints, whose size no saved drive contains
+
+
+def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
+    """Return a log compared with what a saved drive predicts.
+
+    Raises:
+        ValueError: the saved set has no load, or the log cannot be compared with it
+    """
+    if gear_set.load is None:
+        raise ValueError(
+            f"{gear_set.name} has no [load], without which no torque along a motion is predicted; identify it from a log, with "
+            "--constant torque_constant=… if the log contains a current: a rough one will do to predict currents"
+        )
+    taken = log_of(file, GearSoFar(gear_set))
+    if taken.in_current:
+        raise ValueError(f"{gear_set.name} has no torque constant: give --constant torque_constant=…")
+    return judged(*_Compared.of(taken, gear_set).prediction(file, gear_set))
+
+
+@dataclass(frozen=True, eq=False)
+class _Compared(ComparedByFields):
+    """A log beside what a saved drive predicts for it.
+
+    Attributes:
+        taken: the log as `identify` prepares it
+        log: the same with the delay of the saved drive, less the zero
+        drive: the saved one, with the motor of the log
+        zero: of the effort, as saved
+        delay: of the effort, as saved [s]
+    """
+
+    taken: PreparedLog
+    log: MotionLog
+    drive: Drive
+    zero: float
+    delay: float
+
+    @classmethod
+    def of(cls, taken: PreparedLog, gear_set: GearSet) -> _Compared:
+        """Return a log beside a saved drive."""
+        log, drive = taken.log, taken.drive.replace(load=gear_set.load)
+        saved = next((each for each in gear_set.validation if each.channel == log.effort), None)
+        zero, delay = (0.0, 0.0) if saved is None else (saved.zero, saved.delay)
+        log = replace(log, recorded=log.recorded - zero, force=log.force - zero)
+        return cls(taken, log.with_delay() if delay else log, drive, zero, delay)
+
+    @property
+    def nuisances(self) -> Array:
+        """The unknowns of the measurement as saved; terms of other joints are none of the drive."""
+        return np.array([self.delay if each.name == "delay" else 0.0 for each in self.log.nuisances])
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Samples from the first motion to the last, shape (m,)."""
+        return moving(self.log)
+
+    @cached_property
+    def sliding(self) -> Rows:
+        """Samples that show changes: of sliding, also near reversals if there are few, shape (m,)."""
+        sliding = self.rows & ~self.log.motion.resting
+        away = sliding & ~self.log.motion.turning
+        return away if away.sum() >= MIN_SAMPLES else sliding
+
+    def at(self, drive: Drive) -> Array:
+        """Return the effort that a drive predicts, shape (m,)."""
+        return self.log.whole(drive, self.nuisances)
+
+    def prediction(self, file: Recognised, gear_set: GearSet) -> tuple[Prediction, GearSet, float]:
+        """Return the comparison, the saved set, and the mean variance of what it predicts."""
+        log, rows, sliding = self.log, self.rows, self.sliding
+        residual, directions = log.residual(self.drive, self.nuisances), list(self._directions())
+        slopes, covariance = slopes_by_numbers(gear_set, self.drive, self.at, OF_RIGID_DRIVE)
+        asked = [replace(each, effect=each.effect[sliding]) for each in directions]
+        left, speed = residual[sliding], log.motion.speed[sliding]
+        _, explained = changes_of(left, asked, slopes[sliding], covariance)
+        changes, _ = changes_of(left, asked, slopes[sliding], covariance, _by_speed(left - explained, speed))
+        effects = {each.name: each.effect for each in directions}
+        by_change = {each.name: (each.value - each.unchanged) * _effect(each.name, effects) for each in changes}
+        resting = log.motion.resting
+        others = sum((each for name, each in by_change.items() if name.startswith(OTHER)), np.zeros_like(residual))
+        own = sum((each for name, each in by_change.items() if not name.startswith(OTHER)), np.zeros_like(residual))
+        residual = np.where(resting, residual, residual - others)
+        channel, unit, measured = log.effort, log.units[0], log.recorded + self.zero
+        lines, about_lines = self._lines(residual, file)
+        found = Prediction(
+            file.path.name, gear_set.name, file.kind, channel, unit, _rms(residual[rows]), float(np.std(measured[rows])),
+            self._plain_error(), samples=int(rows.sum()),
+            changes=tuple(each for each in changes if not each.name.startswith(OTHER)),
+            error_with_changes=_rms(np.where(resting, residual, residual - own)[rows]),
+            lines=lines,
+            curves=Recording(
+                {"time": log.motion.time, channel: measured, "predicted": measured - residual, "residual": residual},
+                {"time": "s", channel: unit, "predicted": unit, "residual": unit},
+            ),
+            remarks=(*file.remarks, *self.taken.remarks, *self._remarks(), *about_lines),
+        )  # fmt: skip
+        return found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes[rows], covariance, slopes[rows])))
+
+    def _directions(self) -> Iterator[Direction]:
+        """Yield how the effort changes with each part that may have changed."""
+        log, drive = self.log, self.drive
+        friction = list(friction_directions(drive.gear, lambda gear: self.at(drive.replace(gear=gear))))
+        yield from friction
+        if log.both_ways:
+            varies = float(np.std(log.recorded[self.rows]))
+            yield Direction(ZERO, log.units[0], self.zero, np.ones_like(log.recorded), MIN_CHANGE * varies)
+        for name, number in ((INERTIA, "inertia"), (GRAVITY, "gravity_torque")):
+            value = float(getattr(drive.load, number, 0.0))
+            if value != 0.0:
+                less = drive.replace({f"load.{number}": 0.5 * value})
+                yield Direction(name, "1", 1.0, 2.0 * (self.at(drive) - self.at(less)))
+        if (warmer := self._temperature()) is not None:
+            total = friction[0].effect + friction[1].effect
+            yield Direction(TEMPERATURE, "1/K", 0.0, total * warmer, MIN_CHANGE / float(np.ptp(warmer)))
+        for name in log.regressors:
+            shares = np.array([float(each.name == f"{OTHER}{name}") for each in log.nuisances])
+            yield Direction(f"{OTHER}{name}", "N.m", 0.0, log.whole(drive, self.nuisances + shares) - self.at(drive))
+
+    def _temperature(self) -> Array | None:
+        """Return the temperature about its mean at every sample [K]; None if it was not recorded, or hardly changes."""
+        recording = self.taken.recording
+        if "temperature" not in recording or np.ptp(recording.values("temperature", "K")) < MIN_TEMPERATURE_RANGE:
+            return None
+        found = np.interp(self.log.motion.time, recording.time, recording.values("temperature", "K"))
+        return np.asarray(found - np.mean(found))
+
+    def _plain_error(self) -> float:
+        """Return the error of plain least squares fitted to this log itself, root mean square."""
+        log, drive = self.log, self.drive
+        scale = abs(per_torque(drive, log.effort))
+        torque = log.recorded - log.induced(drive) - scale * log.extra / drive.gear.kinematics.ratio
+        return float(np.std(torque[self.rows])) * float(np.sqrt(max(1.0 - fit_plain(log, drive).explained, 0.0)))
+
+    def _lines(self, residual: Array, file: Recognised) -> tuple[tuple[RippleLine, ...], tuple[str, ...]]:
+        """Return the lines of the spectrum of a residual, or why there is none."""
+        motion = self.log.motion
+        columns = {"time": motion.time, "input_angle": motion.angle, "residual": residual}
+        units = {"time": "s", "input_angle": "rad", "residual": self.log.units[0]}
+        others = {name: f"angle of joint {name}" for name in file.neighbours}
+        for name, column in others.items():
+            columns[column] = np.interp(motion.time, file.recording.time, file.recording[file.neighbours[name]])
+            units[column] = "rad"
+        try:
+            found = ripple(Recording(columns, units), "residual", angle="input_angle", side="input", other_angles=others)
+        except ValueError as error:
+            return (), (f"no orders are looked for in the residual: {error}",)
+        return found.lines[:MAX_LINES], ()
+
+    def _remarks(self) -> Iterator[str]:
+        if self.log.regressors:
+            yield f"terms of other joints are fitted to this recording: {listed(self.log.regressors)}"
+        if self.drive.load.name != "inertia" and self.drive.load.name != "pendulum":
+            yield f"the load is as saved: {self.drive.load.name}"
+
+
+def _effect(name: str, effects: dict[str, Array]) -> Array:
+    """Return the effect of a part; dry and viscous friction together if the recording does not separate them."""
+    return effects[name] if name in effects else effects[DRY] + effects[VISCOUS]
+
+
+def _by_speed(left: Array, speed: Array) -> float:
+    """Return the root mean square of what is left on average at each speed: another motion weighs it otherwise."""
+    parts = np.array_split(left[np.argsort(speed, kind="stable")], SPEED_BINS)
+    return _rms(np.array([float(np.mean(part)) for part in parts if len(part)]))
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

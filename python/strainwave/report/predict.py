@@ -1,0 +1,168 @@
+"""Report of predictions: a verdict for each recording, its error beside other models, and what changed, as lines and a page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from importlib import metadata
+from typing import Any
+
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.results.file_result import FileResult, Picture
+from strainwave.identification.results.prediction import Change, Prediction
+from strainwave.report import figures
+from strainwave.report.identify_figures import file_figure
+from strainwave.report.orders import line_words
+from strainwave.report.page import render
+from strainwave.report.provenance import Provenance
+from strainwave.report.rig_files import results_json
+from strainwave.report.typeset import number, quantity, uncertain, uncertain_quantity
+
+MAX_LINES = 4  # of the spectrum of a residual, on a terminal
+MAX_REMARKS = 5  # of a file on a terminal; the page has all
+NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+
+
+def verdict(found: Prediction) -> str:
+    """Return in one sentence whether a recording agrees with a saved gear, and what changed."""
+    if found.refused:
+        return f"{found.name} cannot be predicted: {found.refused}"
+    of, share = quantity(found.error, found.unit, 3), number(100.0 * found.relative, 2)
+    allowed = quantity(found.allowed, found.unit, 3)
+    if found.contradicts:
+        result = f"{found.name} contradicts {found.gear}: error {of}, {share} % of what varies, where {allowed} is allowed"
+        cause = f"; {_changes(found.changed)}" if found.changed else "; no change of friction, zero or load explains it"
+        return f"{result}{cause}."
+    result = f"{found.name} agrees with {found.gear}: error {of}, {share} % of what varies, of {allowed} allowed"
+    return f"{result}; {f'yet {_changes(found.changed)}' if found.changed else _nothing_changed(found)}."
+
+
+def _changes(changed: Sequence[Change]) -> str:
+    return "; ".join(f"{each.name} is {change_in_words(each)}" for each in changed)
+
+
+def _nothing_changed(found: Prediction) -> str:
+    return "nothing changed significantly" if found.changes else "it does not determine whether anything changed"
+
+
+def change_in_words(change: Change) -> str:
+    """Return a change as `1.31 ± 0.02 times that saved`."""
+    if change.unit == "1":
+        return f"{uncertain(change.value, change.sigma)} times that saved"
+    if change.unit == "1/K":
+        return f"{uncertain(100.0 * change.value, 100.0 * change.sigma)} % per kelvin"
+    return f"{uncertain_quantity(change.value, change.sigma, change.unit)}, saved {quantity(change.unchanged, change.unit, 3)}"
+
+
+def predict_summary(found: Sequence[Prediction]) -> str:
+    """Return the predictions as lines of text, the verdict of each first."""
+    return "\n".join(line for each in found for line in _lines(each)).replace(NO_BREAK_SPACE, " ")
+
+
+def _lines(found: Prediction) -> Iterator[str]:
+    yield verdict(found)
+    if found.refused:
+        return
+    for name, value in _errors(found):
+        yield f"  {name:38} {value}"
+    for change in found.changes:
+        state = "changed" if change.significant else "no significant change"
+        yield f"  {change.name:38} {change_in_words(change)} ({state})"
+    if found.lines:
+        lines = (f"{line_words(each)} {quantity(each.amplitude, found.unit, 2)}" for each in found.lines[:MAX_LINES])
+        yield f"  {'lines of the residual':38} {'; '.join(lines)}"
+    yield from (f"  {check.remedy}" for check in found.checks if check.failed)
+    yield from (f"  note: {remark}" for remark in found.remarks[:MAX_REMARKS])
+
+
+def _errors(found: Prediction) -> Iterator[tuple[str, str]]:
+    """Yield the error and those of other models, each with its name."""
+
+    def share(error: float) -> str:
+        return f"{quantity(error, found.unit, 3)} ({number(100.0 * error / found.varies, 2)} %)" if found.varies > 0.0 else ""
+
+    channel = found.channel.replace("_", " ")
+    yield f"error of {channel}, root mean square", share(found.error)
+    yield "with the changes below", share(found.error_with_changes)
+    if found.plain == found.plain:  # a number
+        yield "plain least squares on this file", share(found.plain)
+    yield "predicting the mean", share(found.varies)
+
+
+def predict_report(found: Sequence[Prediction], gear_set: GearSet, provenance: Provenance | None = None) -> str:
+    """Return the page of predictions, as one HTML file that needs nothing else.
+
+    Args:
+        found: of each recording
+        gear_set: the saved one
+        provenance: command, date and files of the page, if they are to be shown
+    """
+    return render(
+        "predict.html.jinja",
+        {
+            "name": gear_set.name,
+            "note": gear_set.note,
+            "recordings": [_section(each, f"recording-{place}") for place, each in enumerate(found)],
+            "validation": [
+                (each.file, quantity(each.error, each.unit, 3), quantity(each.held_out, each.unit, 3),
+                 f"{number(100.0 * each.relative, 2)} %")
+                for each in gear_set.validation
+            ],
+            "provenance": provenance or Provenance(),
+            "version": metadata.version("strainwave"),
+            "light": figures.variables(figures.LIGHT),
+            "dark": figures.variables(figures.DARK),
+        },
+    )  # fmt: skip
+
+
+def _section(found: Prediction, anchor: str) -> dict[str, Any]:
+    from markupsafe import Markup
+
+    return {
+        "name": found.name,
+        "anchor": anchor,
+        "verdict": verdict(found),
+        "refused": bool(found.refused),
+        "failed": [check for check in found.checks if check.failed],
+        "errors": [] if found.refused else list(_errors(found)),
+        "figure": "" if found.curves is None else Markup(_figure(found, found.curves, anchor)),
+        "changes": [
+            (each.name, change_in_words(each), number(each.significance, 2), each.significant) for each in found.changes
+        ],
+        "lines": [
+            (line_words(each), "" if each.frequency is None else f"{number(each.frequency, 4)} Hz",
+             uncertain_quantity(each.amplitude, each.sigma, found.unit))
+            for each in found.lines
+        ],
+        "remarks": found.remarks,
+    }  # fmt: skip
+
+
+def _figure(found: Prediction, curves: Recording, anchor: str) -> str:
+    over, channel = curves.names[:2]
+    columns = {over: curves[over], channel: curves[channel], "modelled": curves["predicted"]}
+    units = {over: curves.unit(over), channel: found.unit, "modelled": found.unit}
+    picture = Picture(Recording(columns, units), "table" if over == "speed" else "series")
+    return file_figure(FileResult(found.name), picture, f"{anchor}-figure")
+
+
+def predict_files(found: Sequence[Prediction]) -> dict[str, str]:
+    """Return the predictions as JSON, by file name."""
+    made_by = f"strainwave {metadata.version('strainwave')}"
+    return {"results.json": results_json({"made_by": made_by, "files": [_json(each) for each in found]})}
+
+
+def _json(found: Prediction) -> dict[str, Any]:
+    names = (
+        "name", "gear", "kind", "channel", "unit", "error", "varies", "relative", "plain", "allowed", "samples",
+        "error_with_changes", "contradicts", "refused", "remarks",
+    )  # fmt: skip
+    return {
+        **{name: getattr(found, name) for name in names},
+        "verdict": verdict(found).replace(NO_BREAK_SPACE, " "),
+        "changes": [{**asdict(each), "significant": each.significant} for each in found.changes],
+        "lines": [asdict(each) for each in found.lines],
+        "checks": [asdict(check) for check in found.checks],
+    }
