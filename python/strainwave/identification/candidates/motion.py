@@ -36,6 +36,7 @@ QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backd
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
+GRAVITY = ("load.gravity_torque", "load.gravity_phase")
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
 BENDS = np.geomspace(3e-3, 1.0, 16)  # rad of the input, in which bristles bend
 RIPPLE_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, found in every gear measured so far
@@ -324,10 +325,11 @@ class _Search:
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
         if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
             return best
-        for other in (_with_bristles(best), self.tried(model)):  # the first leaves the estimates where they are
-            if other is not None and other.errors[-1] < MAX_RELATIVE_ERROR * best.errors[-1] and other.error < best.error:
-                return other
-        return best
+        bristled, limit = _with_bristles(best), MAX_RELATIVE_ERROR * best.errors[-1]
+        if bristled is not None and bristled.error < best.error and bristled.errors[-1] < limit:  # no estimate moves
+            return bristled
+        simple = self.tried(model)
+        return simple if simple is not None and simple.errors[-1] < limit else best
 
 
 def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
@@ -607,12 +609,24 @@ def _without_rows(problem: Problem, x: Array, outs: Sequence[Rows], kept: Sequen
     noise = float(np.std(left))
     size = np.linalg.norm(rows, axis=0)
     size[size == 0.0] = 1.0
+    paths = [each.path for each in problem.plan.unknowns]
+    gravity = [paths.index(path) for path in GRAVITY] if set(GRAVITY) <= set(paths) else []
+    low = np.where(np.isin(np.arange(len(x)), gravity), -np.inf, low)  # turned round rather than negative
     for out in outs:
         system = (np.concatenate([rows[~out], noise * before]) / size)[:, linear]
         there = x.copy()
         room = ((low - x) * size)[linear], ((high - x) * size)[linear]
         there[linear] += _bounded(system, np.concatenate([left[~out], noise * (right - before @ x)]), *room) / size[linear]
+        if gravity:
+            there[gravity] = _turned(x[gravity], there[gravity])
         yield there
+
+
+def _turned(before: Array, after: Array) -> Array:
+    """Return amplitude and phase of a gravity after a linear step, which is exact in its sine and cosine."""
+    step, turn = after - before
+    moved = complex(before[0] + step, before[0] * turn)
+    return np.array([abs(moved), before[1] + np.angle(moved)])
 
 
 def _bounded(system: Array, right: Array, low: Array, high: Array) -> Array:
