@@ -25,6 +25,11 @@ from strainwave.identification.reading.mapping import FileMapping
 
 from tests.rig import RIG, START
 
+FILES = (
+    "friction.csv", "friction_de.csv", "torsion_input.csv", "torsion_output.csv", "branch.csv", "log.csv", "log_full.csv",
+    "log_link.csv", "log_torque_sign.csv", "log_outliers.csv", "two_loads/light.csv", "two_loads/middle.csv",
+    "two_loads/heavy.csv",
+)  # fmt: skip
 OF_MOTOR = ("log.csv", "log_outliers.csv", "log_full.csv", "two_loads/light.csv", "two_loads/middle.csv", "two_loads/heavy.csv")
 
 
@@ -68,6 +73,7 @@ def wrong() -> Iterator[Case]:
     """Yield wrong assumptions that the files contradict."""
     yield Case("ratio", "100 of a gear of 80, two encoders", ("log_full.csv",), start="csg-20-100")
     yield Case("ratio", "100 of a gear of 80, two encoders, other loads", ("two_loads/heavy.csv",), start="csg-20-100")
+    yield Case("ratio", "100 of a gear of 80, motor encoder", ("log.csv",), start="csg-20-100")
     both = ("torsion_input.csv", "torsion_output.csv")
     yield Case("ratio", "100 of a gear of 80, a loop from both sides", both, start="csg-20-100")
     yield Case("constant", "half, with voltage and speed", ("log_full.csv",), constant=0.5)
@@ -98,14 +104,9 @@ def wrong() -> Iterator[Case]:
 
 def right() -> Iterator[Case]:
     """Yield the right assumptions about each file."""
-    files = (
-        "friction.csv", "friction_de.csv", "torsion_input.csv", "torsion_output.csv", "branch.csv", "log.csv", "log_full.csv",
-        "log_link.csv", "log_torque_sign.csv", "log_outliers.csv", "two_loads/light.csv", "two_loads/middle.csv",
-        "two_loads/heavy.csv",
-    )  # fmt: skip
-    for name in files:
+    for name in FILES:
         yield Case("", name, (name,))
-    yield Case("", "all files", files)
+    yield Case("", "all files", FILES)
 
 
 def made(folder: Path, seed: int) -> dict[str, float]:

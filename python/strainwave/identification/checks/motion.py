@@ -23,7 +23,9 @@ Array = NDArray[np.float64]
 
 GRAVITATION = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
-MIN_GAIN_SIGMA = 3.0  # standard deviations of that gain over the blocks of the motion
+MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
+RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
+MIN_GAIN_SIGMA = 3.0  # standard deviations of a gain over the blocks of the motion
 BLOCKS = 10  # of the motion
 MIN_ROWS_PER_BLOCK = 5
 # A body that is wider than a centimetre has a pendulum length above 2 cm, twice its radius of gyration. Arms have some metres;
@@ -46,7 +48,9 @@ def checks_of_motion(best: MotionCandidate, drive: Drive, recording: Recording, 
     """
     alone = not best.log.regressors
     if alone and not np.any(best.log.extra):
-        yield from angle_in_gravity(best, drive, recording, source)
+        yield from (by_ratio := list(ratio_by_gravity(best, drive, recording, source)))
+        if not any(check.failed for check in by_ratio):
+            yield from angle_in_gravity(best, drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
     yield from negative_parts(best.log, drive, error, source)
@@ -63,7 +67,7 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     shows the angle itself. The pass band is compared, by least squares with inertia and friction of any curve beside.
     """
     log, ratio = best.log, abs(drive.gear.kinematics.ratio)
-    delay = next((each.value for each in best.fit.estimates if each.path == "delay"), 0.0)
+    delay = _delay(best)
     usual = _squares(log, drive, 1.0, delay)
     if len(usual) < BLOCKS * MIN_ROWS_PER_BLOCK:
         return
@@ -72,16 +76,56 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
         if np.ptp(log.motion.angle) * factor / ratio > JOINT:
             continue
         other = _squares(log, drive, factor, delay)
-        gains = np.array([block.sum() for block in np.array_split(usual - other, BLOCKS)])
-        is_sure = gains.sum() > MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(BLOCKS)
         gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))
-        if is_sure and gain > share:
+        if gain > share and _is_less(other, usual):
             share, found = gain, what
     yield Check(
         "angle in the sine of gravity", source, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
         f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}",
         "see whether unit and side of the angle are right, and state them: --unit or --column input_angle= or output_angle=",
     )  # fmt: skip
+
+
+def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, source: str) -> Iterator[Check]:
+    """Yield the check that gravity goes with the sine of the motor's angle over the ratio of the gear.
+
+    With both encoders their ratio is measured; an angle of the output needs none.
+    """
+    from scipy.optimize import minimize_scalar
+
+    if "output_angle" in recording or "input_angle" not in recording:
+        return
+    log, delay = best.log, _delay(best)
+    usual = _squares(log, drive, 1.0, delay)
+    if len(usual) < BLOCKS * MIN_ROWS_PER_BLOCK:
+        return
+
+    def left(logarithm: float) -> float:
+        return float(_squares(log, drive, float(np.exp(logarithm)), delay).sum())
+
+    nearest = min(RATIOS_TRIED, key=left)
+    step = float(RATIOS_TRIED[1] - RATIOS_TRIED[0])
+    off = float(minimize_scalar(left, bounds=(nearest - step, nearest + step), method="bounded").x)
+    ratio = abs(drive.gear.kinematics.ratio)
+    inside = abs(nearest) < float(RATIOS_TRIED[-1])  # at the end of the range nothing but a straight line is left of a sine
+    is_sure = inside and _is_less(_squares(log, drive, float(np.exp(off)), delay), usual)
+    yield Check(
+        "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
+        f"gravity goes with the sine of the motor's angle over about {ratio * np.exp(-off):.3g}, the ratio of the gear is "
+        f"{ratio:.6g}",
+        "see whether the start set is that of this gear, or give its ratio: --constant ratio=…",
+    )  # fmt: skip
+
+
+def _is_less(squares: Array, usual: Array) -> bool:
+    """True if squares are smaller than the usual ones all over the motion, beyond chance."""
+    gains = np.array([block.sum() for block in np.array_split(usual - squares, BLOCKS)])
+    return bool(gains.sum() > MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(BLOCKS))
+
+
+def _delay(best: MotionCandidate) -> float:
+    """Return the delay of the effort that was fitted [s]."""
+    return next((each.value for each in best.fit.estimates if each.path == "delay"), 0.0)
 
 
 def _mistakes(recording: Recording, ratio: float) -> dict[str, float]:
