@@ -99,7 +99,10 @@ ELSEWHERE = {
     "PID": {"control/sampled.hpp": "what it samples by default"},
     "Sampled": {"parameter_drive.hpp": BOUND_TO_ANY},
     "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},
-    "TorqueSource": {"analysis/linear.py": "a motor of which nothing counts but its inertia"},
+    "TorqueSource": {
+        "analysis/linear.py": "a motor of which nothing counts but its inertia",
+        "identification/results/drive.py": "the motor of a log whose torque was measured, and no current",
+    },
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
     "Ideal": {
         "sensor/delayed.hpp": "what it delays by default",
@@ -118,7 +121,7 @@ ELSEWHERE = {
     "StrainWave": {
         "files/datasheet.py": SHEET,
         "identification/identify.py": SAID,
-        "identification/evidence/explain.py": "the ratio that two encoders show, as one of teeth",
+        "identification/checks/unexplained.py": "the ratio that two encoders show, as one of teeth",
     },
     "Stochastic": {"analysis/steady.py": STEADY_RUNNING},
     "LuGre": {

@@ -26,8 +26,8 @@ def predict(
 ) -> None:
     """Compare later recordings with what a saved gear or drive predicts, and report what changed.
 
-    Logs of a drive in motion need a load in the saved file; tables of friction do not. Recordings are read as by identify. If one
-    contradicts the saved gear, the exit code is 3.
+    Logs of a drive in motion need a load in the saved file; tables of friction do not. Recordings are read as by identify. If
+    one contradicts the saved gear, the exit code is 3.
     """
     from rich.console import Console
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, loads, motor
+from strainwave import Drive, motor
 from strainwave.files.described import own_paths
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
@@ -137,18 +137,15 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     drive, own = _drive_of(log), _loads_of(log)
     assert drive is not None
     given = {} if log.recognised is None else log.recognised.constants
-    load: Any = drive.load
-    if isinstance(load, loads.Pendulum) and load.gravity_torque == 0.0:
-        load = loads.Inertia(inertia=load.inertia)
     sources = {}
-    for path in own_paths("load", load):
+    for path in own_paths("load", drive.load):
         if path in own:
             sources[path] = source_of(own[path], log.name)
         elif path == "load.inertia" and "load_inertia" in given:
             sources[path] = Entry(f"given with {log.name}")
         else:
             sources[path] = Entry(f"assumed: {log.name} does not determine it")
-    return _with_part(whole, "load", load, sources)
+    return _with_part(whole, "load", drive.load, sources)
 
 
 def _with_motor(whole: GearSet, log: FileResult) -> GearSet:
@@ -186,7 +183,7 @@ def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     if log is None:
         return whole
     before: Any = whole.gear.friction_input
-    law = bristled(Drive(gear=whole.gear, motor=motor.TorqueSource()), log.bend).gear.friction_input
+    law = bristled(Drive(gear=whole.gear), log.bend).gear.friction_input
     if law is before:
         return whole
     fitted = Entry(f"fitted to reversals of {log.name}; a presliding loop determines it")

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, friction
+from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.motion_log import FRICTIONLESS
 from strainwave.identification.results.check import Check
 from strainwave.orders.ripple import RippleLine
 from strainwave.parameters import every
@@ -30,7 +31,6 @@ MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one hal
 MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own files
 DRY, VISCOUS, FRICTION, ZERO = "dry friction", "viscous friction", "friction", "zero"
 INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
-FRICTIONLESS = friction.Viscous(viscous=0.0)
 PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 
