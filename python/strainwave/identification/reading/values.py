@@ -42,7 +42,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     known, told = _with_units(table, columns, mapping)
     known, counted = with_counts(known, raw)
     told += counted
-    check_units([column for column in known if column.own], raw)
+    check_units([column for column in known if column.own], raw, mapping.constants.get("ratio"))
     try:
         assumed = missing_units([_with_side(column, mapping) for column in known if column.own], raw)
     except ValueError as error:
