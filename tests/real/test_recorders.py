@@ -124,7 +124,7 @@ TRIAL = {
     "lostmotion/lost.csv": ("torsion", {"twist", "torque"}, ""),
     "moteus/output.csv": ("log", {"output_angle", "output_speed", "joint_torque"}, ""),
     "plotjuggler/export.csv": ("log", {"output_angle", "output_speed", "joint_torque"}, ""),
-    "twincat/scope_single.csv": ("log", {"input_angle", "output_angle", "output_speed", "input_torque"}, "counts/16384"),
+    "twincat/scope_single.csv": ("log", {"input_angle", "output_angle", "output_speed", "input_torque"}, "counts/1048576"),
 }
 
 
@@ -143,7 +143,7 @@ def test_turns_and_the_side_of_a_drive_are_among_the_alternatives() -> None:
     found = recognise(TRIALS / "moteus" / "output.csv")
     assert found.question
     ways = {each.options for each in found.alternatives}
-    assert "--unit output_angle=rev --unit output_speed=rev/s" in ways
+    assert "--side output --unit output_angle=rev --unit output_speed=rev/s" in ways
     assert "--side input" in ways
     turns = next(each for each in found.alternatives if each.reason == "in rev, rev/s")
     assert recognise(TRIALS / "moteus" / "output.csv", turns.mapping).units["output_angle"] == "rev"

@@ -145,9 +145,10 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
             for each in _recognised(source, way.mapping).alternatives
         ]
         assumed = f"no name or number determines the side: {first.side} is taken; {ways[0].options} says another one"
+        own = [replace(each, options=f"--side {first.side} {each.options}") for each in found.alternatives]
         return replace(
             found,
-            alternatives=(*found.alternatives, *ways, *of_others),
+            alternatives=(*own, *ways, *of_others),
             question=one_line(str(undecided)),
             remarks=(assumed, *found.remarks),
         )

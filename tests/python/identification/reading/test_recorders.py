@@ -54,9 +54,10 @@ def test_a_scope_of_twincat_with_one_time(tmp_path: Path) -> None:
     share = np.round(TORQUE / RATIO / 0.4e-3)
     columns = [1e3 * TIME, np.degrees(ANGLE), np.degrees(SPEED), counts, share]
     path = written(tmp_path / "scope.csv", header, columns, "\t", ",")
-    with pytest.raises(ValueError, match=r"how many counts .* Motor position and of which rated value Axis1") as asked:
+    lacks = r"how many counts .* Motor position \(1048576 at a ratio of 100, .* and of which rated value Axis1"
+    with pytest.raises(ValueError, match=lacks) as asked:
         recognise(path)
-    assert "--unit 'Motor position=counts/16384'" in str(asked.value)
+    assert "--unit 'Motor position=counts/1048576'" in str(asked.value)
     assert "--unit 'Axis1.ActTorque=permille of 0.4 N.m'" in str(asked.value)
     units = {"Motor position": "counts/1048576", "Axis1.ActTorque": "permille of 0.4 N.m"}
     found = recognise(path, FileMapping(units=units))

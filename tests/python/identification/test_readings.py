@@ -1,0 +1,88 @@
+"""Logs whose names and numbers leave units or side open: read as their motion shows, else asked about."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+from strainwave.commands.file_options import mapping_from_options
+from strainwave.identification.identify import Identified, identify
+from strainwave.identification.reading.source import measurement_files
+
+TURN = 2.0 * np.pi
+RATIO, COULOMB, VISCOUS, INERTIA = 100.0, 0.06, 4e-4, 2.0  # at the input, but for the inertia
+
+
+def log_of_joint(folder: Path, *, gravity: float, unit: float, names: tuple[str, str, str], pace: float = 1.0) -> Path:
+    """A log of a joint with its torque at the output, its motion in numbers of `unit` [rad]."""
+    time = np.arange(0.0, 24.0, 0.005) * pace
+    angle = 1.2 * np.sin(0.9 * time) + 0.3 * np.sin(2.3 * time)
+    speed = 1.08 * np.cos(0.9 * time) + 0.69 * np.cos(2.3 * time)
+    acceleration = -0.972 * np.sin(0.9 * time) - 1.587 * np.sin(2.3 * time)
+    time, speed, acceleration = time / pace, pace * speed, pace**2 * acceleration
+    torque = RATIO * (COULOMB * np.sign(speed) + VISCOUS * RATIO * speed) + INERTIA * acceleration + gravity * np.sin(angle)
+    torque += np.random.default_rng(3).normal(0.0, 0.1, len(time))
+    path = folder / "log.csv"
+    rows = np.column_stack([time, angle / unit, speed / unit, torque])
+    np.savetxt(path, rows, delimiter=",", header=",".join(["time", *names]), comments="", fmt="%.9g")
+    return path
+
+
+def values(found: Identified) -> dict[str, float]:
+    return {each.estimate.path: each.estimate.value for each in found.parameters}
+
+
+def with_options(path: Path, options: str) -> Identified:
+    words = shlex.split(options)
+    given: dict[str, list[str]] = {}
+    for name, value in zip(words[::2], words[1::2], strict=True):
+        given.setdefault(name, []).append(value)
+    files = measurement_files([path])
+    side = given.get("--side", [None])[0]
+    said = mapping_from_options(None, given.get("--column"), given.get("--unit"), None, side, None, files=files.files)
+    return identify("csg-20-100", files, mapping=said)
+
+
+@pytest.mark.parametrize("names", [("position", "velocity", "torque"), ("q", "dq", "tau")])
+def test_revolutions_without_a_unit_are_read_as_the_gravity_shows(tmp_path: Path, names: tuple[str, str, str]) -> None:
+    path = log_of_joint(tmp_path, gravity=25.0, unit=TURN, names=names)
+    found = identify("csg-20-100", [path])
+    assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
+    assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
+    assert not found.failed
+    assert found.files[0].remarks[0].startswith("read as rev, rev/s at the output, which leaves ")
+    assert "rad, rad/s at the output: " in found.files[0].remarks[0]
+
+
+def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
+    path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
+    found = identify("csg-20-100", [path])
+    assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
+    assert found.files[0].recognised is not None
+    assert found.files[0].recognised.units["output_angle"] == "rad"
+
+
+def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp_path: Path) -> None:
+    path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("position", "velocity", "torque"))
+    with pytest.raises(ValueError, match="the fit leaves as much in each reading, so say which: ") as asked:
+        identify("csg-20-100", [path])
+    ways = re.findall(r"(--[^()]*) \(([^:()]*): [\d.e+]+ %\)", str(asked.value))
+    options = {described: way for way, described in ways}
+    assert {"rev, rev/s at the output", "rad, rad/s at the output"} <= options.keys()
+    identified = with_options(path, options["rev, rev/s at the output"])
+    found, of_gear = values(identified), identified.gear_set.gear.input_inertia * RATIO**2
+    assert found["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
+    assert found["gear.friction_input.viscous"] == pytest.approx(VISCOUS, rel=0.02)
+    assert found["load.inertia"] + of_gear == pytest.approx(INERTIA, rel=0.02)
+    assert not with_options(path, options["rad, rad/s at the output"]).files[0].refused
+
+
+def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> None:
+    path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("position", "velocity", "torque"), pace=2.5)
+    with pytest.raises(ValueError, match="say which: ") as asked:
+        identify("csg-20-100", [path])
+    assert "(rad, rad/s at the output: " in str(asked.value)
+    assert "(rev, rev/s at the output: " not in str(asked.value)
