@@ -16,6 +16,7 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.check import Check
+from strainwave.messages import as_option
 
 Array = NDArray[np.float64]
 
@@ -132,7 +133,9 @@ def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> 
     return float(np.abs(np.log(law.steady(ends) / ratio / known.steady(ends * ratio))).max())
 
 
-def friction_of_log(law: Any, start: Any, speeds: Array, effort: str, source: str) -> Iterator[Check]:
+def friction_of_log(
+    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float = 1.0, column: str = "NAME"
+) -> Iterator[Check]:
     """Yield the checks of the friction of a log: that its torque shows some, and its size.
 
     Args:
@@ -141,6 +144,8 @@ def friction_of_log(law: Any, start: Any, speeds: Array, effort: str, source: st
         speeds: of the input while it was measured [rad/s]
         effort: the channel of the torque
         source: name of the file
+        ratio: of the gear, by which friction differs if the torque is counted at the other side
+        column: name of the torque in the file
     """
     speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
     if speed <= 0.0:
@@ -158,10 +163,20 @@ def friction_of_log(law: Any, start: Any, speeds: Array, effort: str, source: st
     unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
     factor = found / before if before > 0.0 and found > 0.0 else 1.0
     near_thousand = abs(abs(np.log(factor)) - np.log(1000.0)) < np.log(MAX_FACTOR_LEFT)
-    mistake = f"a factor of 1000 lies between {unit}; " if near_thousand else ""
+    mistake = f"a factor of 1000 lies between {unit}; " if near_thousand else _other_side(factor, effort, abs(ratio), column)
     remedy = f"{mistake}see whether units, side, ratio and torque constant are right, or start from a set like this gear"
     if (check := friction_level(law, start, speed, source, remedy)) is not None:
         yield check
+
+
+def _other_side(factor: float, effort: str, ratio: float, column: str) -> str:
+    """Return what to give if friction is of the size of the start set with the torque counted at the other side; else empty."""
+    other, there = {"joint_torque": ("input", factor * ratio), "input_torque": ("joint", factor / ratio)}.get(effort, ("", 0.0))
+    if not other or 1.0 / MAX_FACTOR < factor < MAX_FACTOR or abs(np.log(max(there, 1e-300))) >= abs(np.log(factor)):
+        return ""
+    shaft = "motor" if other == "input" else "joint"
+    option = as_option("column", f"{other}_torque", column)
+    return f"counted at the {shaft}, its torque gives {times(there)} the friction of the set: if it is, give {option}; "
 
 
 def _acceleration(recording: Recording, found: Fit, ratio: float, source: str) -> Check:

@@ -74,8 +74,10 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     every = (*file.remarks, *remarks)
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
-    level = () if in_current else friction_of_log(law, start.friction_input, speed, log.effort, name)
-    checks += [*level, input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
+    ratio, column = start.kinematics.ratio, file.columns[log.effort]
+    level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
+    checks += [] if in_current else level
+    checks += [input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
     checks += checks_of_motion(best, drive, recording, held_out.error, name)
     pictures = (Picture(predicted), *between.pictures)
     return (
