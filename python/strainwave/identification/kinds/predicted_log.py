@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,7 +13,9 @@ from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion import bands
 from strainwave.identification.candidates.plain import fit_plain, moving
+from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
@@ -27,6 +29,7 @@ from strainwave.identification.results.prediction import (
     TEMPERATURE,
     VISCOUS,
     ZERO,
+    Change,
     Direction,
     Prediction,
     changes_of,
@@ -102,11 +105,10 @@ class _Compared(ComparedByFields):
         return moving(self.log)
 
     @cached_property
-    def sliding(self) -> Rows:
-        """Samples that show changes: of sliding, also near reversals if there are few, shape (m,)."""
-        sliding = self.rows & ~self.log.motion.resting
-        away = sliding & ~self.log.motion.turning
-        return away if away.sum() >= MIN_SAMPLES else sliding
+    def band(self) -> Motion:
+        """The motion as it shows changes: sliding in the narrowest pass band, as estimates are made; all if there is little."""
+        narrowest = bands(self.log, self.drive)[-1].motion
+        return narrowest if len(narrowest.rows) >= MIN_SAMPLES else self.log.motion.in_full_band()
 
     def at(self, drive: Drive) -> Array:
         """Return the effort that a drive predicts, shape (m,)."""
@@ -114,13 +116,10 @@ class _Compared(ComparedByFields):
 
     def prediction(self, file: Recognised, gear_set: GearSet) -> tuple[Prediction, GearSet, float]:
         """Return the comparison, the saved set, and the mean variance of what it predicts."""
-        log, rows, sliding = self.log, self.rows, self.sliding
+        log, rows = self.log, self.rows
         residual, directions = log.residual(self.drive, self.nuisances), list(self._directions())
         slopes, covariance = slopes_by_numbers(gear_set, self.drive, self.at, OF_RIGID_DRIVE)
-        asked = [replace(each, effect=each.effect[sliding]) for each in directions]
-        left, speed = residual[sliding], log.motion.speed[sliding]
-        _, explained = changes_of(left, asked, slopes[sliding], covariance)
-        changes, _ = changes_of(left, asked, slopes[sliding], covariance, _by_speed(left - explained, speed))
+        changes = self._changes(directions, slopes, covariance)
         effects = {each.name: each.effect for each in directions}
         by_change = {each.name: (each.value - each.unchanged) * _effect(each.name, effects) for each in changes}
         resting = log.motion.resting
@@ -142,6 +141,15 @@ class _Compared(ComparedByFields):
             remarks=(*file.remarks, *self.taken.remarks, *self._remarks(), *about_lines),
         )  # fmt: skip
         return found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes[rows], covariance, slopes[rows])))
+
+    def _changes(self, directions: Sequence[Direction], slopes: Array, covariance: Array) -> tuple[Change, ...]:
+        """Return what the log shows of each part, in its pass band."""
+        band, speed = self.band, self.log.motion.speed[self.band.rows]
+        asked = [replace(each, effect=band.filtered(each.effect)) for each in directions]
+        left, by_numbers = band.filtered(self.log.force - self.at(self.drive)), band.filtered(slopes.T).T
+        _, explained = changes_of(left, asked, by_numbers, covariance)
+        changes, _ = changes_of(left, asked, by_numbers, covariance, _by_speed(left - explained, speed))
+        return changes
 
     def _directions(self) -> Iterator[Direction]:
         """Yield how the effort changes with each part that may have changed."""
