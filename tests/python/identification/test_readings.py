@@ -86,3 +86,16 @@ def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> 
         identify("csg-20-100", [path])
     assert "(rad, rad/s at the output: " in str(asked.value)
     assert "(rev, rev/s at the output: " not in str(asked.value)
+
+
+def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> None:
+    path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    rows[:, 3] /= RATIO
+    np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
+    checks = {each.name: each for each in identify("csg-20-100", [path]).failed}
+    assert "give --column input_torque=tau" in checks["friction of the start set"].remedy
+    found = with_options(path, "--column input_torque=tau")
+    assert not found.failed
+    assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
+    assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
