@@ -18,6 +18,7 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.missing_units import JOINT
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
+from strainwave.identification.results.held_out import HeldOut
 
 Array = NDArray[np.float64]
 
@@ -36,14 +37,16 @@ MAX_NEGATIVE_PART = 1.0  # of the held-out error: a larger part of the effort is
 MAX_RELATIVE_SIGMA = 0.5  # of an estimate that a half of the motion determines
 
 
-def checks_of_motion(best: MotionCandidate, drive: Drive, recording: Recording, error: float, source: str) -> Iterator[Check]:
+def checks_of_motion(
+    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, source: str
+) -> Iterator[Check]:
     """Yield the checks of a log by its own motion.
 
     Args:
         best: the model fitted
         drive: as far as it was known before
         recording: of the log, with its angle in the unit of the file
-        error: on data held out, in the unit of the effort
+        held_out: its error on data held out, beside that of plain least squares
         source: name of the file
     """
     alone = not best.log.regressors
@@ -53,7 +56,7 @@ def checks_of_motion(best: MotionCandidate, drive: Drive, recording: Recording, 
             yield from angle_in_gravity(best, drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
-    yield from negative_parts(best.log, drive, error, source)
+    yield from negative_parts(best.log, drive, float(np.fmin(held_out.error, held_out.plain)), source)
     yield from halves(best, source)
 
 
@@ -182,12 +185,14 @@ def pendulum_length(estimates: tuple[Estimate, ...], source: str) -> Iterator[Ch
 def negative_parts(log: MotionLog, drive: Drive, error: float, source: str) -> Iterator[Check]:
     """Yield the check that inertia and Coulomb friction are not clearly negative by plain least squares.
 
-    A model has neither: its fit ends at the bound, and its other numbers make up for what is missing.
+    A model has neither: its fit ends at the bound, and its other numbers make up for what is missing. `error` is what data
+    held out leave.
     """
     plain, rows = fit_plain(log, drive), moving(log)
     scale = abs(per_torque(drive, log.effort))
+    rotor = drive.motor.inertia + drive.gear.input_inertia
     parts = {
-        "inertia": (plain.inertia, float(np.std(log.motion.acceleration[rows])), "kg·m²"),
+        "inertia of the load": (plain.inertia - rotor, float(np.std(log.motion.acceleration[rows])), "kg·m²"),
         "Coulomb friction": (plain.coulomb, 1.0, "N·m"),
     }
     made = {name: -scale * value * unit for name, (value, unit, _) in parts.items()}

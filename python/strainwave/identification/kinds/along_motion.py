@@ -8,7 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit, spread_by_blocks
+from strainwave.identification.candidates.motion import (
+    MotionCandidate,
+    bands,
+    fit_motion,
+    refit,
+    spread_by_blocks,
+    spread_by_models,
+)
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
 from strainwave.identification.checks.motion import checks_of_motion
@@ -56,9 +63,9 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     log = taken.log
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
     variants = [log] if in_current else bands(log, drive)
-    best, *_ = fit_motion(variants, drive, priors=priors)
+    best, *others = fit_motion(variants, drive, priors=priors)
     held_out, predicted = refit(best, drive)
-    told, checks = list(_of_motion(best, taken)), list(held_out_error(held_out, file.path.name))
+    told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
     between = Between()
@@ -78,7 +85,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
     checks += [] if in_current else level
     checks += [input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
-    checks += checks_of_motion(best, drive, recording, held_out.error, name)
+    checks += checks_of_motion(best, drive, recording, held_out, name)
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(
@@ -131,7 +138,7 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     )  # fmt: skip
 
 
-def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:
+def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[FileEstimate]:
     """The numbers of a log; each as uncertain as the torque constant, besides, and inertia as that of the rotor."""
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
@@ -140,12 +147,12 @@ def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstima
         beside["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
-    spread = spread_by_blocks(best)
+    spread, apart = spread_by_blocks(best), spread_by_models(best, others)
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.said:
             continue
         law = encoder if estimate.path == "load.gravity_phase" else ""
-        sigma = max(estimate.sigma, spread.get(estimate.path, 0.0))
+        sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
         told = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
         told = told.resting_on(taken.relative, beside.get(estimate.path, 0.0))
         told = told.sharing(taken.rotor) if estimate.path == "load.inertia" else told

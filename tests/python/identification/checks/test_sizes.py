@@ -128,3 +128,18 @@ def test_a_stiffness_that_no_gear_of_its_kind_has_fails_a_check_with_the_likely_
         assert found.failed == ()
     else:
         assert named in " ".join(check.remedy for check in found.failed)
+
+
+@pytest.mark.parametrize(("largest", "fails"), [(0.05, False), (60.0, True)])
+def test_a_loop_of_a_locked_gear_named_as_one_of_the_input_at_rest(largest: float, fails: bool) -> None:
+    """60 N.m rest on no friction of a motor that slides at 0.058 N.m: it is the spring of the gear, loaded at the output."""
+    turns = 1e-3 * np.array([0.0, 4.0, -4.0, 4.0, -4.0, 4.0])
+    angle = np.interp(np.arange(0.0, len(turns) - 1, 0.02), np.arange(len(turns)), turns)
+    law = sw.friction.LuGre(
+        coulomb=largest, breakaway=largest, bristle_stiffness=500.0 * largest, bristle_damping=0.01, stribeck_speed=1.0
+    )
+    noise = 1e-3 * largest * np.random.default_rng(1).standard_normal(len(angle))
+    columns = {"input_angle": angle, "input_torque": law.quasistatic(angle) + noise}
+    recording = sw.Recording(columns, {"input_angle": "rad", "input_torque": "N.m"})
+    found = sw.identify(start(), {"presliding": recording})
+    assert ("friction at rest" in [check.name for check in found.failed]) == fails

@@ -1,0 +1,37 @@
+"""Real joints beside plain least squares of another program; `python -m tests.real_joints` measures all of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests import real_joints
+
+pytestmark = pytest.mark.skipif(
+    not real_joints.ARMS.is_dir() or not real_joints.YARDSTICK.is_file(),
+    reason=f"measured data or yardstick not found: {real_joints.ARMS}, {real_joints.YARDSTICK} (set STRAINWAVE_DATA)",
+)
+CHOSEN = (
+    "ur10e/ur-20_01_22-joint_2.csv", "ur10e/ur-20_01_22-joint_5.csv", "kinova-gen3/joint_4_trapez.csv",
+    "icub/left-hip-pitch/idle.mat",
+)  # fmt: skip
+TRIALS = [trial for trial in real_joints.trials() if trial.file in CHOSEN]
+
+
+@pytest.mark.parametrize("trial", TRIALS, ids=lambda trial: trial.file)
+def test_a_joint_that_moves_alone_is_predicted_better_than_by_plain_least_squares(trial: real_joints.Trial) -> None:
+    found = real_joints.outcome(trial)
+    assert found.share < real_joints.MAX_MEDIAN_SHARE, real_joints.line(found)
+    assert found.failed == ()
+
+
+def test_a_record_that_shows_little_is_in_doubt() -> None:
+    """One way and back of a joint without gravity: friction drifts by more than it varies."""
+    (trial,) = (each for each in real_joints.trials() if each.file == "kinova-gen3/joint_1_trapez.csv")
+    assert real_joints.outcome(trial).failed
+
+
+def test_halves_of_a_record_determine_the_same_numbers() -> None:
+    (trial,) = (each for each in real_joints.trials() if each.file == "ur10e/ur-20_01_22-joint_2.csv")
+    pairs = list(real_joints.halves(trial))
+    assert len(pairs) >= 5
+    assert sum(pair.apart < real_joints.MAX_DISTANCE for pair in pairs) >= real_joints.MIN_WITHIN * len(pairs)
