@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 from strainwave.commands.file_options import mapping_from_options
-from strainwave.identification.identify import Identified, identify
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.identify import Identified, identify, read_measurements
+from strainwave.identification.rank import rank
+from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import measurement_files
 from strainwave.messages import with_options
 
@@ -73,3 +76,12 @@ def test_friction_of_a_robot_with_its_motor_in_joint_units() -> None:
     assert found.files[0].held_out is not None
     assert found.files[0].held_out.relative < 0.5
     assert "friction of the start set" in {each.name for each in found.failed}  # which is of another size
+
+
+@needs_trials
+def test_rank_reads_a_log_as_identify_does() -> None:
+    read, start = read_measurements(measurement_files([TRIALS / "moteus" / "output.csv"]), None, GearSet.read("csg-20-100"))
+    ((_, file),) = read.items()
+    assert isinstance(file, Recognised)
+    assert file.units["output_angle"] == "rev"
+    assert rank(start, file)[0].error < 0.8  # N.m of 19; 0.98 in radians

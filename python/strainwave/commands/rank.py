@@ -32,21 +32,23 @@ def rank(
     from rich.console import Console
 
     from strainwave.files.gear_set import GearSet
+    from strainwave.identification.identify import read_measurements
+    from strainwave.identification.kinds import KINDS
     from strainwave.identification.rank import rank as ranked
     from strainwave.identification.rank import table_of
-    from strainwave.identification.kinds import KINDS
-    from strainwave.identification.reading.recognise import recognise
     from strainwave.identification.reading.source import measurement_files
+    from strainwave.identification.results.file_result import FileResult
 
-    files = measurement_files(paths).files
-    said = mapping_from_options(mapping, column, unit, constant, side, joint, kind, files)
-    start, told = GearSet.read(gear), list[str]()
+    files, told = measurement_files(paths), list[str]()
+    said = mapping_from_options(mapping, column, unit, constant, side, joint, kind, files.files)
     with Console(stderr=True).status("reading") as status:
-        for each in files:
-            status.update(each.path.name)
-            file = recognise(each, said(each.path))
+        read, start = read_measurements(files, said, GearSet.read(gear))
+        for path, file in read.items():
+            status.update(path.name)
+            if isinstance(file, FileResult):
+                raise ValueError(f"{path.name}: {file.refused}")
             told += [
-                f"{each.path.name}: {KINDS[file.kind].title}",
+                f"{path.name}: {KINDS[file.kind].title}",
                 *(f"  {line}" for line in table_of(ranked(start, file))),
                 "",
             ]

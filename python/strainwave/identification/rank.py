@@ -23,7 +23,7 @@ def rank(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
     Raises:
         ValueError: the file is none of these, or cannot be fitted
     """
-    return kind_named(file.kind).rank(file, GearSoFar(start))
+    return kind_named(file.kind).rank(file.at_ratio(start.gear.kinematics.ratio), GearSoFar(start))
 
 
 def table_of(ranked: Sequence[Ranked]) -> list[str]:
