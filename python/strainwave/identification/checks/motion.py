@@ -71,9 +71,9 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     """
     log, ratio = best.log, abs(drive.gear.kinematics.ratio)
     delay = _delay(best)
-    usual = _squares(log, drive, 1.0, delay)
-    if len(usual) < BLOCKS * MIN_ROWS_PER_BLOCK:
+    if len(log.motion.rows) < BLOCKS * MIN_ROWS_PER_BLOCK:
         return
+    usual = _squares(log, drive, _best_scale(best, drive), delay)  # a ratio near the one taken may be the simpler mistake
     share, found = 1.0, ""
     for what, factor in _mistakes(recording, ratio).items():
         if np.ptp(log.motion.angle) * factor / ratio > JOINT:
@@ -94,30 +94,35 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
 
     With both encoders their ratio is measured; an angle of the output needs none.
     """
+    log, delay = best.log, _delay(best)
+    if "output_angle" in recording or "input_angle" not in recording or len(log.motion.rows) < BLOCKS * MIN_ROWS_PER_BLOCK:
+        return
+    scale = _best_scale(best, drive)
+    off = float(np.log(scale))
+    ratio = abs(drive.gear.kinematics.ratio)
+    inside = abs(off) < float(RATIOS_TRIED[-2])  # at the end of the range nothing but a straight line is left of a sine
+    is_sure = inside and _is_less(_squares(log, drive, scale, delay), _squares(log, drive, 1.0, delay))
+    yield Check(
+        "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
+        f"gravity goes with the sine of the motor's angle over about {ratio / scale:.3g}, the ratio of the gear is "
+        f"{ratio:.6g}",
+        "see whether the start set is that of this gear, or give its ratio: --constant ratio=…",
+    )  # fmt: skip
+
+
+def _best_scale(best: MotionCandidate, drive: Drive) -> float:
+    """Return the true angle over the one taken, as gravity has it, if the ratio taken is wrong by up to a factor of two."""
     from scipy.optimize import minimize_scalar
 
-    if "output_angle" in recording or "input_angle" not in recording:
-        return
     log, delay = best.log, _delay(best)
-    usual = _squares(log, drive, 1.0, delay)
-    if len(usual) < BLOCKS * MIN_ROWS_PER_BLOCK:
-        return
 
     def left(logarithm: float) -> float:
         return float(_squares(log, drive, float(np.exp(logarithm)), delay).sum())
 
-    nearest = min(RATIOS_TRIED, key=left)
+    nearest = float(min(RATIOS_TRIED, key=left))
     step = float(RATIOS_TRIED[1] - RATIOS_TRIED[0])
-    off = float(minimize_scalar(left, bounds=(nearest - step, nearest + step), method="bounded").x)
-    ratio = abs(drive.gear.kinematics.ratio)
-    inside = abs(nearest) < float(RATIOS_TRIED[-1])  # at the end of the range nothing but a straight line is left of a sine
-    is_sure = inside and _is_less(_squares(log, drive, float(np.exp(off)), delay), usual)
-    yield Check(
-        "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
-        f"gravity goes with the sine of the motor's angle over about {ratio * np.exp(-off):.3g}, the ratio of the gear is "
-        f"{ratio:.6g}",
-        "see whether the start set is that of this gear, or give its ratio: --constant ratio=…",
-    )  # fmt: skip
+    low, high = max(nearest - step, float(RATIOS_TRIED[0])), min(nearest + step, float(RATIOS_TRIED[-1]))
+    return float(np.exp(minimize_scalar(left, bounds=(low, high), method="bounded", options={"xatol": 1e-3}).x))
 
 
 def _is_less(squares: Array, usual: Array) -> bool:
