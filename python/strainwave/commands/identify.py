@@ -50,6 +50,7 @@ def identify(
     from strainwave.identification.identify import identify as identified
     from strainwave.identification.joints import ALL
     from strainwave.identification.reading.source import measurement_files
+    from strainwave.identification.results.drive import why_no_load
     from strainwave.report.provenance import Provenance
 
     opened = measurement_files(paths)
@@ -75,22 +76,11 @@ def identify(
         write_folder(out, files)
     print("\n".join(summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
-    if "gear.toml" in files:
-        print(f"gear.toml: {contents(found)}")
+    if "gear.toml" in files and (why := why_no_load(found.files)):
+        print(f"gear.toml: {found.gear_set.name}, without a load: {why}")
     if found.failed and not accept:
         print("no gear is written while a check fails: settle it, or --accept writes it")
         raise typer.Exit(FAILED)
-
-
-def contents(found: Identified) -> str:
-    """Return what the gear file of an identification contains, in words."""
-    from strainwave.identification.results.drive import why_no_load
-
-    gear_set = found.gear_set
-    if gear_set.load is not None:
-        return f"{gear_set.name}, with load and motor: strainwave predict compares it with later recordings"
-    why = why_no_load(found.files)
-    return f"{gear_set.name}, without a load" + (f": {why}" if why else "")
 
 
 def files_to_write(

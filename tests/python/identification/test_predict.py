@@ -1,0 +1,174 @@
+"""Later recordings against a saved drive: what did not change is as saved, and what changed is found, on independent truth."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.files.gear_set import GearSet
+from strainwave.files.identified_tables import Covariance
+from strainwave.identification.results.prediction import Change
+
+from tests.arms import Joint, Recorder, fourier, rtde, run
+from tests.python.command import refused, strainwave
+from tests.rig import RIG
+
+JOINT = Joint()
+STATED = sw.FileMapping(joint="1", constants={"torque_constant": 0.12, "motor_inertia": 4e-5, "ratio": 100.0})
+DRY = {"coulomb": 1.3 * JOINT.coulomb, "breakaway": 1.3 * JOINT.breakaway, "loss": 1.3 * JOINT.loss}
+SPEED = np.geomspace(2.0, 200.0, 12)
+
+
+def record(path: Path, joint: Joint, seed: int, turned: float = 1.0) -> None:
+    seen = Recorder(rate=250.0, seed=seed)(run((joint,) * 3, fourier(30.0, (1,), seed)))
+    rtde(path, seen | {"current": turned * seen["current"]})
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A saved joint, and later logs of it by other motions: as it was, worn, and with another zero of the current."""
+    place = tmp_path_factory.mktemp("joint")
+    record(place / "first.csv", JOINT, 2)
+    record(place / "same.csv", JOINT, 12)
+    record(place / "worn.csv", replace(JOINT, **DRY), 12)
+    record(place / "thick.csv", replace(JOINT, viscous=1.5 * JOINT.viscous), 12)
+    sw.identify("csg-20-100", [place / "first.csv"], mapping=STATED).gear_set.save(place / "gear.toml")
+    return place
+
+
+def predicted(folder: Path, name: str) -> sw.Prediction:
+    (found,) = sw.predict(folder / "gear.toml", [folder / name], mapping=STATED)
+    return found
+
+
+def change(found: sw.Prediction, name: str) -> Change:
+    return next(each for each in found.changes if each.name == name)
+
+
+def test_an_unchanged_joint_is_unchanged(folder: Path) -> None:
+    found = predicted(folder, "same.csv")
+    assert not found.contradicts
+    assert found.changed == ()
+    assert found.relative < 0.06  # 3 % are noise
+    assert found.error < found.plain < found.varies
+    assert {each.name for each in found.changes} >= {"dry friction", "viscous friction", "zero", "gravity of the load"}
+
+
+def test_friction_scaled_by_1_3_is_reported_as_that_and_contradicts(folder: Path) -> None:
+    found = predicted(folder, "worn.csv")
+    dry = change(found, "dry friction")
+    assert found.contradicts
+    assert dry.significant
+    assert abs(dry.value - 1.3) < min(3.0 * dry.sigma, 0.05)
+    assert [each.name for each in found.changed] == ["dry friction"]
+    assert found.error_with_changes < 0.4 * found.error
+
+
+def test_viscous_friction_scaled_by_1_5_is_found_within_what_the_result_allows(folder: Path) -> None:
+    found = predicted(folder, "thick.csv")
+    viscous = change(found, "viscous friction")
+    assert not found.contradicts
+    assert [each.name for each in found.changed] == ["viscous friction"]
+    assert viscous.value == pytest.approx(1.5, abs=0.1)
+
+
+def test_temperature_is_a_cause_if_it_was_recorded(folder: Path) -> None:
+    seen = Recorder(rate=250.0, seed=5)(run((JOINT,) * 3, fourier(30.0, (1,), 12)))
+    speed = np.gradient(seen["q"][1], seen["time"])
+    kelvin = np.linspace(0.0, 20.0, len(speed))
+    lost = -0.01 * kelvin * (JOINT.coulomb / 0.12) * np.tanh(speed / 0.02)
+    columns = {
+        "time": seen["time"],
+        "output_angle": seen["q"][1],
+        "current": seen["current"][1] + lost,
+        "temperature": 20.0 + kelvin,
+    }
+    log = sw.Recording(columns, {"time": "s", "output_angle": "rad", "current": "A", "temperature": "degC"})
+    constants = sw.FileMapping(constants=dict(STATED.constants))
+    (found,) = sw.predict(folder / "gear.toml", {"log": log}, mapping=constants)
+    warm = change(found, "friction over temperature")
+    assert warm.unit == "1/K"
+    assert warm.significant
+    assert -0.015 < warm.value < -0.004  # Coulomb's part falls by 1 %/K, of which it is some two thirds
+
+
+def test_a_table_of_friction_is_predicted_by_the_gear_alone() -> None:
+    gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
+    torque = 1.3 * 0.05 + 3e-4 * SPEED + 1e-4 * np.cos(np.arange(12.0))
+    table = sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    (found,) = sw.predict(gear, {"friction": table})
+    assert change(found, "dry friction").value == pytest.approx(1.3, abs=0.01)
+    assert [each.name for each in found.changed] == ["dry friction"]
+
+
+def test_the_uncertainty_of_the_saved_numbers_is_part_of_that_of_a_change() -> None:
+    gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
+    sure = GearSet.of(gear, name="joint", source="measured")
+    spread = sw.Entry("measured", uncertainty=5e-3)
+    unsure = sure.replace(
+        sources={**sure.sources, "gear.friction_input.coulomb": spread},
+        covariance=Covariance(("gear.friction_input.coulomb",), ((2.5e-5,),)),
+    )
+    torque = 0.05 + 3e-4 * SPEED + 1e-4 * np.cos(np.arange(12.0))
+    table = sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    sigmas = [change(sw.predict(each, {"friction": table})[0], "dry friction").sigma for each in (sure, unsure)]
+    assert sigmas[0] < 0.01
+    assert sigmas[1] == pytest.approx(0.1, rel=0.1)
+
+
+def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_contradicts(folder: Path) -> None:
+    options = ("--joint", "1", "--constant", "torque_constant=0.12", "--constant", "ratio=100")
+    same = strainwave("predict", "gear.toml", "same.csv", *options, "--out", "same", folder=folder)
+    assert same.returncode == 0, same.stderr
+    assert "same.csv agrees with gear of joint 1 of first: error " in same.stdout
+    assert "nothing changed significantly." in same.stdout
+    both = strainwave("predict", "gear.toml", "same.csv", "worn.csv", *options, "--out", "both", folder=folder)
+    assert both.returncode == 3
+    assert "worn.csv contradicts gear of joint 1 of first: error " in both.stdout
+    assert "; dry friction is 1.3" in both.stdout
+    assert "plain least squares on this file" in both.stdout
+    numbers = json.loads((folder / "both" / "results.json").read_text())["files"]
+    assert [each["contradicts"] for each in numbers] == [False, True]
+    page = (folder / "both" / "report.html").read_text()
+    assert page.count("<svg") == 2
+    assert "contradicts" in page
+    assert ">nan" not in page
+
+
+def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
+    arguments = ("predict", "csg-20-100", "same.csv", "--joint", "1", "--out", "none")
+    refused(folder, arguments, "has no [load], without which no torque along a motion is predicted")
+    twist = np.concatenate([np.linspace(0.0, 1e-3, 50), np.linspace(1e-3, -1e-3, 100), np.linspace(-1e-3, 1e-3, 100)])
+    loop = sw.Recording({"twist": twist, "torque": 1e4 * twist}, {"twist": "rad", "torque": "N.m"})
+    with pytest.raises(ValueError, match="only logs and tables of friction are predicted"):
+        sw.predict("csg-20-100", {"torsion": loop})
+
+
+@pytest.mark.skipif(not RIG.is_dir(), reason=f"the independent joint was not found: {RIG} (set STRAINWAVE_RIG)")
+@pytest.mark.parametrize("seed", [3, 4])
+def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
+    """Friction scaled by 1.3 in another record, and the loads of two other logs: 0.85 to 0.3 kg.m2, 11 to 25 N.m."""
+    for name, more in (("first", [f"seed={seed}"]), ("worn", [f"seed={seed + 20}", "Fc=0.0611", "Fs=0.0806"])):
+        subprocess.run([sys.executable, RIG / "measure.py", tmp_path / name, *more], check=True)
+    stated = sw.FileMapping(constants={"torque_constant": 0.0755, "motor_inertia": 7.5e-5})
+    saved = sw.identify("hfuc-20-80", [tmp_path / "first" / "log.csv"], mapping=stated).gear_set
+    loads = [tmp_path / "first" / "two_loads" / f"{name}.csv" for name in ("heavy", "light", "middle")]
+    logs = [tmp_path / "worn" / "log.csv", *loads]
+    worn, heavy, light, middle = sw.predict(saved, logs, mapping=stated)
+    dry = change(worn, "dry friction")
+    assert [each.name for each in worn.changed] == ["dry friction"]
+    assert abs(dry.value - 1.3) < 3.0 * dry.sigma < 0.05
+    assert middle.changed == ()
+    assert not middle.contradicts
+    assert heavy.contradicts
+    assert light.contradicts
+    assert {each.name for each in (*heavy.changed, *light.changed)} == {"inertia of the load", "gravity of the load"}
+    assert change(heavy, "gravity of the load").value == pytest.approx(25.0 / 11.0, rel=0.01)
+    assert change(light, "gravity of the load").value == pytest.approx(0.0, abs=0.01)
+    assert change(heavy, "inertia of the load").value == pytest.approx(1.6 / 0.85, rel=0.03)

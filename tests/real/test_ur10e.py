@@ -1,0 +1,57 @@
+"""One half of a record of a UR10e predicts the other: joints that moved alone (Mamedov, dynamic_calibration, 2020), 100 Hz.
+
+The torque constant is not known, and a rough one is given: currents that are predicted do not depend on it. Run with `-s` to
+read the numbers.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+import strainwave as sw
+
+FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "arms" / "ur10e"
+MAX_CHANGE_SIGMA = 3.0  # standard deviations between halves of one record
+
+pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"measured data not found: {FOLDER} (set STRAINWAVE_DATA)")
+
+
+def mapping(joint: int, torque_constant: float) -> sw.FileMapping:
+    columns = {"time": "1", "output_angle": str(1 + joint), "output_speed": str(7 + joint), "current": str(13 + joint)}
+    return sw.FileMapping(columns=columns, constants={"ratio": 101.0, "torque_constant": torque_constant})
+
+
+def halves(joint: int, folder: Path) -> tuple[Path, Path]:
+    rows = (FOLDER / f"ur-20_01_22-joint_{joint}.csv").read_text().splitlines()
+    paths = folder / "first.csv", folder / "second.csv"
+    for path, part in zip(paths, (rows[: len(rows) // 2], rows[len(rows) // 2 :]), strict=True):
+        path.write_text("\n".join(part) + "\n")
+    return paths
+
+
+@pytest.mark.parametrize("joint", [1, 2, 4, 5])
+def test_the_first_half_predicts_the_second(joint: int, tmp_path: Path) -> None:
+    first, second = halves(joint, tmp_path)
+    sw.identify("csg-20-100", [first], mapping=mapping(joint, 0.1)).gear_set.save(tmp_path / "gear.toml")
+    (found,) = sw.predict(tmp_path / "gear.toml", [second], mapping=mapping(joint, 0.1))
+    errors = f"error {found.error:.3f} A of {found.varies:.3f}, {found.allowed:.3f} allowed, plain {found.plain:.3f}"
+    print(f"\njoint {joint}: {errors}")
+    for each in found.changes:
+        print(f"  {each.name} {each.value:.4g} ± {each.sigma:.2g} {each.unit}, {each.significance:.1f} standard deviations off")
+    assert not found.contradicts
+    assert found.changed == ()
+    assert found.error < 1.05 * found.plain  # plain least squares is fitted to the second half itself
+    assert all(each.significance < MAX_CHANGE_SIGMA for each in found.changes)
+    assert any(each.kind in ("order", "either") and abs(each.order - 2.0) < 0.05 for each in found.lines)
+
+
+def test_currents_do_not_depend_on_the_torque_constant(tmp_path: Path) -> None:
+    first, second = halves(2, tmp_path)
+    errors = []
+    for constant in (0.05, 0.2):
+        saved = sw.identify("csg-20-100", [first], mapping=mapping(2, constant), accept=True).gear_set
+        (found,) = sw.predict(saved, [second], mapping=mapping(2, constant))
+        errors.append(found.error)
+    assert errors[0] == pytest.approx(errors[1], rel=0.05)
