@@ -138,6 +138,12 @@ class MotionCandidate(ComparedByFields):
         """The log as it was compared."""
         return self.model.log
 
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The numbers that are free, near their least squares."""
+        numbers = {path: value for path, value, *_ in _core.parameters(self.model.drive)}
+        return tuple(numbers[path] for path in self.model.free)
+
     @cached_property
     def fit(self) -> Fit:
         """The fit to the whole log, with the covariance of its estimates."""
@@ -578,6 +584,20 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
     without = np.array(list(_without_rows(problem, x, blocks, ())))
     spread = np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(without, axis=0))
     return {each.path: float(sigma) for each, sigma in zip(problem.plan.unknowns, spread, strict=False)}
+
+
+def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
+    """Return how far numbers lie apart in models that predict as well, by path: the choice of a model is part of their spread."""
+    values = dict(zip(best.model.free, best.values, strict=True))
+    found = dict.fromkeys(values, 0.0)
+    for other in others:
+        if MAX_RELATIVE_ERROR * max(other.error / best.error, other.error_in_band / best.error_in_band) < 1.0:
+            for path, value in zip(other.model.free, other.values, strict=True):
+                if path in found:
+                    off = abs(value - values[path])
+                    turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if path.endswith("_phase") else off
+                    found[path] = max(found[path], float(turned))
+    return found
 
 
 def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
