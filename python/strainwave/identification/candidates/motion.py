@@ -587,7 +587,7 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
 
 
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
-    """Return how far numbers lie apart in models that predict as well, by path: the choice of a model is part of their spread."""
+    """Return how far numbers lie apart in models that predict as well, by path: the choice of a model is part of it."""
     values = dict(zip(best.model.free, best.values, strict=True))
     found = dict.fromkeys(values, 0.0)
     for other in others:
