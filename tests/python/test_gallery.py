@@ -323,3 +323,13 @@ def test_a_gear_comes_back_from_its_photographs(gallery: Callable[[str], dict[st
     measured, clean = (sw.rig.analyse(found[name]).area.value for name in ("loop", "clean"))
     slid = 2.0 * np.ptp(found["loop"].angle)  # once to each end; where it turns back it rests
     assert measured - clean == pytest.approx(0.02 * slid, rel=0.02)
+
+
+def test_a_worn_joint_contradicts_the_saved_one(gallery: Callable[[str], dict[str, Any]]) -> None:
+    found = gallery("16")
+    assert not found["same"].contradicts
+    assert found["same"].changed == ()
+    assert found["worn"].contradicts
+    (dry,) = found["worn"].changed
+    assert dry.name == "dry friction"
+    assert abs(dry.value - 1.3) < 0.03

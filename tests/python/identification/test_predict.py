@@ -21,7 +21,7 @@ from tests.rig import RIG
 
 JOINT = Joint()
 STATED = sw.FileMapping(joint="1", constants={"torque_constant": 0.12, "motor_inertia": 4e-5, "ratio": 100.0})
-DRY = {"coulomb": 1.3 * JOINT.coulomb, "breakaway": 1.3 * JOINT.breakaway, "loss": 1.3 * JOINT.loss}
+WORN = replace(JOINT, coulomb=1.3 * JOINT.coulomb, breakaway=1.3 * JOINT.breakaway, loss=1.3 * JOINT.loss)
 SPEED = np.geomspace(2.0, 200.0, 12)
 
 
@@ -36,7 +36,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("joint")
     record(place / "first.csv", JOINT, 2)
     record(place / "same.csv", JOINT, 12)
-    record(place / "worn.csv", replace(JOINT, **DRY), 12)
+    record(place / "worn.csv", WORN, 12)
     record(place / "thick.csv", replace(JOINT, viscous=1.5 * JOINT.viscous), 12)
     sw.identify("csg-20-100", [place / "first.csv"], mapping=STATED).gear_set.save(place / "gear.toml")
     return place
@@ -48,7 +48,8 @@ def predicted(folder: Path, name: str) -> sw.Prediction:
 
 
 def change(found: sw.Prediction, name: str) -> Change:
-    return next(each for each in found.changes if each.name == name)
+    found_changes: tuple[Change, ...] = found.changes
+    return next(each for each in found_changes if each.name == name)
 
 
 def test_an_unchanged_joint_is_unchanged(folder: Path) -> None:
