@@ -12,6 +12,7 @@ from strainwave.commands.file_options import mapping_from_options
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, identify, read_measurements
 from strainwave.identification.rank import rank
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import measurement_files
 from strainwave.messages import with_options
@@ -85,3 +86,14 @@ def test_rank_reads_a_log_as_identify_does() -> None:
     assert isinstance(file, Recognised)
     assert file.units["output_angle"] == "rev"
     assert rank(start, file)[0].error < 0.8  # N.m of 19; 0.98 in radians
+
+
+@needs_arms
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_sign_that_is_given_changes_no_number_of_a_joint_turned_by_hand(sign: int) -> None:
+    """Published: 1.67 and 1.88 N.m one way and the other, .083 N.m.s/deg. The torque is counted against the motion."""
+    mapping = FileMapping(columns={"joint_torque": "block3"}, sign={"joint_torque": sign})
+    found = identify("csg-20-100", [ARMS / "icub" / "left-hip-pitch" / "idle.mat"], mapping=mapping)
+    assert not found.failed
+    assert values(found)["gear.friction_input.coulomb"] * 100.0 == pytest.approx(1.77, rel=0.06)
+    assert values(found)["gear.friction_input.viscous"] * 100.0**2 == pytest.approx(0.083 * 57.3, rel=0.06)

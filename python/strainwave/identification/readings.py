@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from strainwave.identification.candidates.plain import fit_plain, sliding_squares
 from strainwave.identification.checks.sizes import input_speed
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
-from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.recognise import Alternative, Recognised, recognise
 from strainwave.identification.reading.sides import SAID
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -77,8 +77,7 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
     """
     if file.kind != "log" or not file.alternatives:
         return file
-    others = [(recognise(source, each.mapping), each.options) for each in file.alternatives]
-    tried = [_tried(each, options, known) for each, options in ((file, _options_of(file)), *others) if each.kind == "log"]
+    tried = [_tried(file, _options_of(file), known), *(_tried_again(source, each, known) for each in file.alternatives)]
     readings = [each for each in tried if each is not None]
     sensible = [each for each in readings if not each.doubt] or readings
     if not sensible:
@@ -93,6 +92,15 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
             why = tuple(each for each in best.file.why if not (file.question and SAID in each))
             return replace(best.file, question="", alternatives=(), why=why, remarks=(taken, *best.file.remarks))
     return replace(file, question=_asked(file.question, remaining)) if file.question else file
+
+
+def _tried_again(source: MeasurementFile, other: Alternative, known: GearSoFar) -> _Reading | None:
+    """Return another reading with what it leaves; None if the file cannot be read so, or is no log then."""
+    try:
+        file = recognise(source, other.mapping)
+    except ValueError:
+        return None
+    return _tried(file, other.options, known) if file.kind == "log" else None
 
 
 def _tried(file: Recognised, options: str, known: GearSoFar) -> _Reading | None:
@@ -152,4 +160,5 @@ def _left(reading: _Reading) -> str:
 
 
 def _percent(reading: _Reading) -> str:
-    return f"{100.0 * reading.error:.2g} %"
+    percent = 100.0 * reading.error
+    return f"{percent:.2g} %" if percent < 99.0 else f"{percent:.0f} %"
