@@ -67,6 +67,7 @@ ELSEWHERE = {
     "Viscous": {
         "identification/dynamics/log.py": LOG,
         "identification/experiments/motion_log.py": "by which a place without friction is known",
+        "identification/experiments/friction_table.py": "a mesh without loss, before its loss is fitted",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "AccelerationSource": {
@@ -83,6 +84,7 @@ ELSEWHERE = {
         "identification/kinds/at_rest.py": AT_REST,
         "identification/dynamics/log.py": LOG,
     },
+    "MaxwellSlipFriction": {"identification/kinds/at_rest.py": AT_REST},
     "Stribeck": {
         "identification/kinds/at_rest.py": AT_REST,
         "friction/cyclic.hpp": "what it modulates by default",
@@ -116,11 +118,10 @@ ELSEWHERE = {
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
         "identification/kinds/prepared_log.py": RIGID,
-        "identification/experiments/motion_log.py": RIGID,
     },
     "StrainWave": {
         "files/datasheet.py": SHEET,
-        "identification/identify.py": SAID,
+        "identification/results/ratio.py": SAID,
         "identification/checks/unexplained.py": "the ratio that two encoders show, as one of teeth",
     },
     "Stochastic": {"analysis/steady.py": STEADY_RUNNING},
@@ -141,7 +142,6 @@ ELSEWHERE = {
     "Preisach": {"parameter_drive.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {
-        "identification/experiments/motion_log.py": RIGID,
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
     },
     "Linear": {
@@ -149,7 +149,7 @@ ELSEWHERE = {
         "rig/virtual/printed.py": PRINTED,
         "identification/kinds/between_encoders.py": REACHED,
     },
-    "PlainRatio": {"identification/identify.py": SAID, "rig/virtual/printed.py": PRINTED},
+    "PlainRatio": {"identification/results/ratio.py": SAID, "rig/virtual/printed.py": PRINTED},
     "Regimes": {"rig/virtual/printed.py": PRINTED},
     "ThreeSegment": {
         "files/datasheet.py": SHEET,
