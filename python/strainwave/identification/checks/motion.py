@@ -215,7 +215,10 @@ def negative_parts(log: MotionLog, drive: Drive, error: float, source: str) -> I
 
 
 def halves(best: MotionCandidate, source: str) -> Iterator[Check]:
-    """Yield the check that both halves of the motion determine the same numbers, as runs of one gear do."""
+    """Yield the check that both halves of the motion determine the same numbers, as runs of one gear do.
+
+    Inertia and gravity are compared of a joint that moves alone: others change both on the way.
+    """
     count = len(best.log.motion.rows)
     first = np.arange(count) < count // 2
     try:
@@ -223,16 +226,17 @@ def halves(best: MotionCandidate, source: str) -> Iterator[Check]:
     except (ValueError, FloatingPointError):  # a half that does not move both ways, or not enough
         return
     apart, words = 0.0, ""
-    for path in pair[0].keys() & pair[1].keys():
+    compared = pair[0].keys() & pair[1].keys()
+    for path in (each for each in compared if not best.log.regressors or not each.startswith("load.")):
         one, other = (each[path] for each in pair)
         spread = repeatability(path) * max(abs(one.value), abs(other.value))
         distance = abs(one.value - other.value) / float(np.linalg.norm([spread, one.sigma, other.sigma]))
         if distance > apart:
             apart = distance
-            words = f"{path} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}"
+            words = f"{path} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g}"
     yield Check(
         "halves of the record", source, apart, MAX_DISTANCE, "1", apart > MAX_DISTANCE,
-        f"the first half of the motion has {words}: {apart:.2g} times what runs of one gear and chance differ by",
+        f"the halves of the motion have {words}: {apart:.2g} times what runs of one gear and chance differ by",
         "see whether load, temperature or controller changed on the way, or an encoder slipped; give the parts as files of "
         "their own",
     )  # fmt: skip

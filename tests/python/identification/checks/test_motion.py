@@ -75,4 +75,4 @@ def test_a_load_that_changes_on_the_way_shows_in_the_halves() -> None:
     half = len(light) // 2
     mixed = with_channel(light, "current", np.concatenate([light["current"][:half], heavy["current"][half:]]))
     message = failed(mixed)["halves of the record"]
-    assert message.startswith("the first half of the motion has load.gravity_torque = ")
+    assert message.startswith("the halves of the motion have load.gravity_torque = ")
