@@ -65,7 +65,7 @@ class Covariance:
     @classmethod
     def of(cls, paths: Sequence[str], matrix: Array) -> Covariance:
         """Return that of an array, shape (n, n)."""
-        even = 0.5 * (matrix + matrix.T)
+        even = 0.5 * matrix + 0.5 * matrix.T
         return cls(tuple(paths), tuple(tuple(row) for row in even.tolist()))
 
     @property

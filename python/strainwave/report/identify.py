@@ -62,8 +62,8 @@ def identify_report(
     return render(
         "identify.html.jinja",
         {
-            "name": found.start.name,
-            "maker": found.start.maker,
+            "name": found.gear_set.name,
+            "note": found.gear_set.note,
             "verdict": _verdict(found, accepted),
             "failed": found.failed,
             "refused": [(each.name, each.refused) for each in found.files if each.refused],

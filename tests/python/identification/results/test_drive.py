@@ -121,6 +121,9 @@ def test_a_load_in_current_is_not_written_and_this_is_stated(folder: Path) -> No
     options = ("--joint", "1", "--constant", "ratio=100", "--out", "amperes")
     result = strainwave("identify", START, "joint.csv", *options, folder=folder)
     assert "gear.toml: gear of joint 1 of joint, without a load: the load is not written" in result.stdout
+    page = (folder / "amperes" / "report.html").read_text()
+    assert "<h1>gear of joint 1 of joint</h1>" in page
+    assert "The load is not written" in page
 
 
 def test_a_measured_torque_gives_a_motor_of_torque(folder: Path) -> None:
