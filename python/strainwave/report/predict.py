@@ -32,14 +32,17 @@ def verdict(found: Prediction) -> str:
     allowed = quantity(found.allowed, found.unit, 3)
     if found.contradicts:
         result = f"{found.name} contradicts {found.gear}: error {of}, {share} % of what varies, where {allowed} is allowed"
-        cause = f"; {_changes(found.changed)}" if found.changed else "; no change of friction, zero or load explains it"
+        cause = f"; {_changes(found)}" if found.changed else "; no change of friction, zero or load explains it"
         return f"{result}{cause}."
     result = f"{found.name} agrees with {found.gear}: error {of}, {share} % of what varies, of {allowed} allowed"
-    return f"{result}; {f'yet {_changes(found.changed)}' if found.changed else _nothing_changed(found)}."
+    return f"{result}; {f'yet {_changes(found)}' if found.changed else _nothing_changed(found)}."
 
 
-def _changes(changed: Sequence[Change]) -> str:
-    return "; ".join(f"{each.name} is {change_in_words(each)}" for each in changed)
+def _changes(found: Prediction) -> str:
+    if found.common_scale is not None:
+        scale = f"all torques are {uncertain(*found.common_scale)} times those saved"
+        return f"{scale}: the torque constant or the range of a sensor is another one"
+    return "; ".join(f"{each.name} is {change_in_words(each)}" for each in found.changed)
 
 
 def _nothing_changed(found: Prediction) -> str:

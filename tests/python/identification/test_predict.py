@@ -14,6 +14,7 @@ import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Covariance
 from strainwave.identification.results.prediction import Change
+from strainwave.report.predict import verdict
 
 from tests.arms import Joint, Recorder, fourier, rtde, run
 from tests.python.command import refused, strainwave
@@ -77,6 +78,15 @@ def test_viscous_friction_scaled_by_1_5_is_found_within_what_the_result_allows(f
     assert not found.contradicts
     assert [each.name for each in found.changed] == ["viscous friction"]
     assert viscous.value == pytest.approx(1.5, abs=0.1)
+
+
+def test_another_torque_constant_is_told_from_another_joint(folder: Path) -> None:
+    record(folder / "scaled.csv", JOINT, 12, turned=1.15)
+    found = predicted(folder, "scaled.csv")
+    assert found.common_scale is not None
+    assert found.common_scale[0] == pytest.approx(1.15, abs=0.02)
+    assert "all torques are 1.1" in verdict(found)
+    assert predicted(folder, "worn.csv").common_scale is None
 
 
 def test_temperature_is_a_cause_if_it_was_recorded(folder: Path) -> None:

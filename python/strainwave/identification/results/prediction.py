@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 SIGNIFICANCE_SIGMA = 3.0  # standard deviations by which a change must differ from none
 MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
+MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
 DIFFERENCE = 0.1  # standard deviations of a number, over which the difference of two predictions is taken
 BLOCKS = 20  # contiguous ones of a recording, over which what is left scatters
@@ -139,6 +140,24 @@ class Prediction(ComparedByFields):
     def changed(self) -> tuple[Change, ...]:
         """The significant changes."""
         return tuple(each for each in self.changes if each.significant)
+
+    @property
+    def common_scale(self) -> tuple[float, float] | None:
+        """The scale and its standard deviation of all torques together, if friction and load changed by one factor; else None.
+
+        Then the torque constant or the range of a sensor is another one, and not the joint.
+        """
+        scales = {each.name: each for each in self.changes if each.unit == "1"}
+        if GRAVITY in scales:
+            scales.pop(INERTIA, None)  # beside it turns that of the rotor, which no torque constant scales
+        significant = {name for name, each in scales.items() if each.significant}
+        if not (significant & {DRY, FRICTION} and significant & {INERTIA, GRAVITY}):
+            return None
+        weights = np.array([each.sigma**-2 for each in scales.values()])
+        scale = float(np.average([each.value for each in scales.values()], weights=weights))
+        sigma = float(weights.sum() ** -0.5)
+        alike = all(abs(each.value - scale) < SIGNIFICANCE_SIGMA * each.sigma + MAX_APART for each in scales.values())
+        return (scale, sigma) if alike else None
 
 
 def validations(gear_set: GearSet, channel: str) -> list[Validation]:
