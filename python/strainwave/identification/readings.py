@@ -30,6 +30,7 @@ MAX_OF_USUAL = 0.7  # of the error of the usual reading, which nothing but the f
 MIN_GAIN_SIGMA = 3.0  # standard deviations of the difference of squares over the blocks of the motion
 MAX_GAIN = 3.0  # times the upper quartile of the differences of blocks: a larger one counts as that
 MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction drives the motion
+UNITS_OPEN = "no unit is stated, and another one than the usual explains more"
 TORQUES = ("joint_torque", "input_torque")
 
 
@@ -68,7 +69,8 @@ class _Reading:
 def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
     """Return a log in the reading that leaves least unexplained; with its question, if several leave as little.
 
-    The usual reading of a log without a question is kept unless another one leaves far less.
+    The usual reading of a log without a question is kept unless another one leaves clearly less: it is asked about then, and
+    given up if the other one leaves far less.
 
     Args:
         file: as it is usually read
@@ -85,13 +87,22 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
     best = min(sensible, key=lambda each: each.error)
     remaining = [each for each in sensible if each is best or not best.is_better_than(each, MAX_OF_ANOTHER)]
     usual = next((each for each in readings if each.file is file), None)
-    if best.error < MAX_UNEXPLAINED and len(remaining) == 1:
-        is_clear = usual is None or usual.doubt or best.is_better_than(usual, MAX_OF_USUAL)
-        if file.question or best is usual or is_clear:
-            taken = _report(best, [each for each in readings if each is not best])
-            why = tuple(each for each in best.file.why if not (file.question and SAID in each))
-            return replace(best.file, question="", alternatives=(), why=why, remarks=(taken, *best.file.remarks))
-    return replace(file, question=_asked(file.question, remaining)) if file.question else file
+    others = [each for each in readings if each is not best]
+    if file.question:
+        is_decided = best.error < MAX_UNEXPLAINED and len(remaining) == 1
+        return _taken(best, others, file) if is_decided else replace(file, question=_asked(file.question, remaining))
+    if best.error >= MAX_UNEXPLAINED or (usual in remaining and len(remaining) > 1):
+        return file
+    rivals = [usual] if usual is not None and usual is not best and not usual.doubt else []
+    if len(remaining) == 1 and all(best.is_better_than(each, MAX_OF_USUAL) for each in rivals):
+        return _taken(best, others, file)
+    return replace(file, question=_asked(UNITS_OPEN, [*rivals, *remaining]))
+
+
+def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> Recognised:
+    """Return the file in the best reading, with a remark of what each leaves."""
+    why = tuple(each for each in best.file.why if not (file.question and SAID in each))
+    return replace(best.file, question="", alternatives=(), why=why, remarks=(_report(best, others), *best.file.remarks))
 
 
 def _tried_again(source: MeasurementFile, other: Alternative, known: GearSoFar) -> _Reading | None:
@@ -136,7 +147,7 @@ def _asked(question: str, remaining: Sequence[_Reading]) -> str:
         return question
     ways = " or ".join(f"{each.options} ({_described(each)}: {_percent(each)})" for each in remaining)
     head, _, _ = question.partition("; say it")
-    return one_line(f"{head}: the fit leaves as much in each reading, so say which: {ways}")
+    return one_line(f"{head}: the fit does not decide between readings, so say which: {ways}")
 
 
 def _options_of(file: Recognised) -> str:

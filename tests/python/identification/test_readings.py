@@ -67,7 +67,7 @@ def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
 
 def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("position", "velocity", "torque"))
-    with pytest.raises(ValueError, match="the fit leaves as much in each reading, so say which: ") as asked:
+    with pytest.raises(ValueError, match="the fit does not decide between readings, so say which: ") as asked:
         identify("csg-20-100", [path])
     ways = re.findall(r"(--[^()]*) \(([^:()]*): [\d.e+]+ %\)", str(asked.value))
     options = {described: way for way, described in ways}
@@ -86,6 +86,22 @@ def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> 
         identify("csg-20-100", [path])
     assert "(rad, rad/s at the output: " in str(asked.value)
     assert "(rev, rev/s at the output: " not in str(asked.value)
+
+
+def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_path: Path) -> None:
+    """Friction that plain least squares does not have hides most of what a small gravity shows of the unit."""
+    path = log_of_joint(tmp_path, gravity=6.0, unit=TURN, names=("q", "dq", "tau"))
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    angle, speed = TURN * rows[:, 1], TURN * rows[:, 2]
+    load = 6.0 * np.sin(angle) + INERTIA * np.gradient(speed, rows[:, 0])
+    rows[:, 3] += 6.0 * (np.sin(angle + 0.5) - np.sin(angle))
+    rows[:, 3] += 0.1 * np.abs(load) * np.sign(speed) + 0.5 * np.sin(2.0 * RATIO * angle)
+    rows[:, 3] += RATIO * 0.02 * np.sign(speed) * (np.sqrt(0.5 * np.abs(speed)) - 0.5 * np.abs(speed))
+    np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
+    with pytest.raises(ValueError, match="no unit is stated, and another one than the usual explains more") as asked:
+        identify("csg-20-100", [path])
+    (option,) = re.findall(r"(--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
+    assert values(with_options(path, option))["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
 
 
 def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> None:
