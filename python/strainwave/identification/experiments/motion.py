@@ -138,7 +138,7 @@ class Motion(ComparedByFields):
         blocks = -(-len(self.time) // self.every)
         padded = np.zeros((*series.shape[:-1], blocks * self.every))
         padded[..., : len(self.time)] = np.where(self.compared, series, 0.0)
-        shares = (self._response @ padded.reshape(-1, self.every).T).reshape(-1, *series.shape[:-1], blocks)
+        shares = (self._response @ padded.reshape(-1, self.every).T).reshape(len(self._response), *series.shape[:-1], blocks)
         smooth = np.zeros((*series.shape[:-1], blocks + 2 * REACH))
         for distance, share in enumerate(shares):
             smooth[..., distance : distance + blocks] += share

@@ -65,3 +65,10 @@ def test_speed_and_acceleration_of_a_sine_hold_with_few_samples_a_period(samples
     gain = (1.0 + (np.tan(np.pi / samples) / np.tan(np.pi * 10.0 * 1e-2)) ** 8) ** -1  # Butterworth's, forward and backward
     expected = -gain * turning**2 * np.sin(turning * time)
     assert motion.acceleration[inside] == pytest.approx(expected[inside], abs=2e-3 * turning**2 + 2e-5 / 1e-4)
+
+
+def test_no_series_at_all_is_filtered_to_none() -> None:
+    """As of joints whose torque no combination of terms shows: it once ended in an error of array shapes."""
+    time = np.arange(0.0, 10.0, 0.004)
+    motion = motion_of(time, np.sin(time), None, 0.1)
+    assert motion.filtered(np.zeros((0, len(motion.time)))).shape == (0, len(motion.rows))
