@@ -70,7 +70,7 @@ def test_every_kind_is_thrown_and_a_case_is_the_same_each_time(tmp_path: Path) -
     assert {kind_of(number) for number in range(1000)} == KINDS.keys()
     for kind in KINDS:
         words = []
-        for turn in ("once", "again"):
+        for turn in ("turn-1", "turn-2"):
             folder = tmp_path / kind / turn
             folder.mkdir(parents=True)
             with warnings.catch_warnings(action="ignore"):
