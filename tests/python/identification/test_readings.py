@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from strainwave.commands.file_options import mapping_from_options
 from strainwave.identification.identify import Identified, identify
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.source import measurement_files
 
 TURN = 2.0 * np.pi
@@ -115,3 +116,13 @@ def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> 
     assert not found.failed
     assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
     assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
+
+
+def test_each_file_may_have_a_ratio_of_its_own(tmp_path: Path) -> None:
+    ratios = {"one": 256.857, "other": 267.429}
+    for name in ratios:
+        (tmp_path / name).mkdir()
+    paths = [log_of_joint(tmp_path / name, gravity=25.0, unit=1.0, names=("q", "dq", "tau")) for name in ratios]
+    found = identify("csg-20-100", paths, mapping=lambda path: FileMapping(constants={"ratio": ratios[path.parent.name]}))
+    coulomb = [next(each for each in file.estimates if each.path.endswith("coulomb")).value for file in found.files]
+    assert coulomb == pytest.approx([COULOMB * RATIO / ratio for ratio in ratios.values()], rel=0.02)

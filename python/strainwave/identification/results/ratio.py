@@ -12,6 +12,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar
 
+PLACE = "gear.kinematics."
 SAME = 1e-9  # relative: two ratios that are one
 
 
@@ -20,29 +21,30 @@ def with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
     ratios = {file.constants.get("ratio") for file in files}
     if len(ratios) != 1 or (ratio := ratios.pop()) is None:
         return start
-    gear = _geared(start.gear, ratio)
-    if gear is start.gear:
-        return start
-    sources = {path: entry for path, entry in start.sources.items() if not path.startswith("gear.kinematics.")}
-    numbers = [field["name"] for field in gear.kinematics.fields if field["kind"] != "choice"]
-    given = {f"gear.kinematics.{name}": Entry("ratio given with the files") for name in numbers}
-    return replace(start, gear=gear, sources=sources | given)
+    return _with_kinematics(start, _geared(start.gear, ratio).kinematics, "ratio given with the files")
 
 
 def with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
     """Return the gear so far with the ratio that a person gave with this file."""
     if "ratio" not in file.constants:
         return known
-    gear = _geared(known.gear_set.gear, file.constants["ratio"])
-    return known if gear is known.gear_set.gear else replace(known, gear_set=replace(known.gear_set, gear=gear))
+    geared = _geared(known.gear_set.gear, file.constants["ratio"])
+    return replace(known, gear_set=_with_kinematics(known.gear_set, geared.kinematics, "ratio given with the file"))
 
 
 def with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
     """Return the gear so far with the ratio of a set."""
-    if known.gear_set.gear.kinematics == of.gear.kinematics:
-        return known
-    gear = known.gear_set.gear.replace(kinematics=of.gear.kinematics)
-    return replace(known, gear_set=replace(known.gear_set, gear=gear))
+    return replace(known, gear_set=_with_kinematics(known.gear_set, of.gear.kinematics, of))
+
+
+def _with_kinematics(gear_set: GearSet, other: Any, of: GearSet | str) -> GearSet:
+    """Return the set with another ratio, whose source is that of a set, or as given."""
+    if gear_set.gear.kinematics == other:
+        return gear_set
+    sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(PLACE)}
+    names = [f"{PLACE}{field['name']}" for field in other.fields if field["kind"] != "choice"]
+    sources |= {name: Entry(of) if isinstance(of, str) else of.sources[name] for name in names}
+    return replace(gear_set, gear=gear_set.gear.replace(kinematics=other), sources=sources)
 
 
 def _geared(gear: Any, ratio: float) -> Any:
