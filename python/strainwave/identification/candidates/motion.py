@@ -307,9 +307,11 @@ class _Search:
         return best
 
     def reduced(self, best: MotionCandidate, model: MotionModel | None) -> MotionCandidate:
-        """Return the model with a part less, if that predicts better."""
+        """Return the model with a part less, if that predicts better, and sliding in the pass band no worse."""
         simpler = self.tried(model)
-        return simpler if simpler is not None and simpler.error < best.error else best
+        if simpler is None or simpler.error >= best.error or MAX_ERROR * simpler.error_in_band >= best.error_in_band:
+            return best
+        return simpler
 
     def grown(self, best: MotionCandidate, parts: list[Part]) -> MotionCandidate:
         """Return the model with those parts that explain more, the one that explains most first."""
