@@ -33,7 +33,7 @@ MIN_ROWS_PER_BLOCK = 5
 # counterweights and rotors make it longer. A wrong unit of time, as minutes or milliseconds, is a factor of 3600 or 1e6.
 MIN_PENDULUM_LENGTH, MAX_PENDULUM_LENGTH = 0.02, 200.0  # m
 MIN_LENGTH_SIGMA = 3.0  # standard deviations of its logarithm
-MAX_NEGATIVE_PART = 1.0  # of the held-out error: a larger part of the effort is there, with its sign
+MAX_NEGATIVE_PART = 1.0  # of the held-out error of plain least squares: a larger part of the effort is there, with its sign
 MAX_RELATIVE_SIGMA = 0.5  # of an estimate that a half of the motion determines
 
 
@@ -56,7 +56,7 @@ def checks_of_motion(
             yield from angle_in_gravity(best, drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
-    yield from negative_parts(best.log, drive, float(np.fmin(held_out.error, held_out.plain)), source)
+    yield from negative_parts(best.log, drive, held_out.plain if np.isfinite(held_out.plain) else held_out.error, source)
     yield from halves(best, source)
 
 
@@ -190,8 +190,8 @@ def pendulum_length(estimates: tuple[Estimate, ...], source: str) -> Iterator[Ch
 def negative_parts(log: MotionLog, drive: Drive, error: float, source: str) -> Iterator[Check]:
     """Yield the check that inertia and Coulomb friction are not clearly negative by plain least squares.
 
-    A model has neither: its fit ends at the bound, and its other numbers make up for what is missing. `error` is what data
-    held out leave.
+    A model has neither: its fit ends at the bound, and its other numbers make up for what is missing. `error` is what plain
+    least squares leaves on data held out: it knows its parts no better.
     """
     plain, rows = fit_plain(log, drive), moving(log)
     scale = abs(per_torque(drive, log.effort))
@@ -208,7 +208,7 @@ def negative_parts(log: MotionLog, drive: Drive, error: float, source: str) -> I
     yield Check(
         "estimates at bounds", source, share, MAX_NEGATIVE_PART, "1", share > MAX_NEGATIVE_PART,
         f"plain least squares has a negative {name} of {value:.3g} {unit} at the input: it makes {made[name]:.3g} {effort}, "
-        f"more than the {error:.3g} {effort} left on data held out",
+        f"more than the {error:.3g} {effort} that it leaves on data held out",
         "see whether the signs of angle and effort fit each other, whether the effort comes with a delay, and whether another "
         "drive or a hand moves the joint",
     )  # fmt: skip
