@@ -118,5 +118,6 @@ def _of_file(
         kind=kind,
     )
     read = recognise(path, mapping)
+    read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
     found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

@@ -19,7 +19,7 @@ from strainwave.studies import position_control as study
 from strainwave.studies.position_control import FULL, SIMPLIFIED, PositionControl, position_control
 
 from tests.python.report.reading import Node, Page, printed, section
-from tests.python.report.twins import HOSTILE
+from tests.python.report.measured import HOSTILE
 
 
 @pytest.fixture(scope="module")

@@ -91,9 +91,13 @@ def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tup
     measured = log.with_measured_speed(recording, drive.gear.kinematics.ratio)
     if measured is None:
         return log, False
-    errors = [float(np.mean(np.concatenate(held_out_residuals(each, drive, stretches(each))) ** 2)) for each in (log, measured)]
-    is_better = errors[1] < MAX_SPEED_ERROR**2 * errors[0]
+    is_better = held_out_rms(measured, drive) < MAX_SPEED_ERROR * held_out_rms(log, drive)
     return (measured, True) if is_better else (log, False)
+
+
+def held_out_rms(log: MotionLog, drive: Drive) -> float:
+    """Return the root mean square of what plain least squares leaves of stretches held out, in the unit of the effort."""
+    return float(np.sqrt(np.mean(np.concatenate(held_out_residuals(log, drive, stretches(log))) ** 2)))
 
 
 def stretches(log: MotionLog) -> list[Rows]:

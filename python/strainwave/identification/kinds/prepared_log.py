@@ -12,7 +12,7 @@ from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.plain import along_best_motion, fit_plain
+from strainwave.identification.candidates.plain import along_best_motion, fit_plain, held_out_rms
 from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.reading.recognise import Recognised
@@ -103,6 +103,10 @@ def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[Mo
     which = f"joints {listed(found.joints)} move too: "
     if not found.terms:
         return log, [f"{which}no torque of them was found that other parts of the record show; if they load it, record longer"]
+    if held_out_rms(found.log, drive) >= held_out_rms(log, drive):
+        return log, [
+            f"{which}their terms are left out, as least squares predicts better without them; {errors} of blocks between"
+        ]
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
     terms = f"{len(found.terms)} terms of them are fitted beside, {listed(found.terms)}"
     if found.combined:
