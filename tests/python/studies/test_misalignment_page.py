@@ -18,8 +18,8 @@ from strainwave.studies.misalignment import MisalignmentStudy, misalignment
 from strainwave.studies.pure_error import fitted, placed, pure_error, turn_mean
 
 from tests.python.command import Result, refused, strainwave
-from tests.python.report.reading import Node, Page, printed, section
 from tests.python.report.measured import HOSTILE
+from tests.python.report.reading import Node, Page, printed, section
 
 LUMPED = "tilt-actuator-lumped"
 LAW = sw.kinematic_error.Misalignment(

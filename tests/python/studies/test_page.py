@@ -18,8 +18,8 @@ from strainwave.report.provenance import Provenance
 from strainwave.studies import position_control as study
 from strainwave.studies.position_control import FULL, SIMPLIFIED, PositionControl, position_control
 
-from tests.python.report.reading import Node, Page, printed, section
 from tests.python.report.measured import HOSTILE
+from tests.python.report.reading import Node, Page, printed, section
 
 
 @pytest.fixture(scope="module")
