@@ -20,6 +20,17 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, friction, loads
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion_model import (
+    FOLLOWS,
+    INPUT,
+    MotionModel,
+    bristled,
+    with_another_friction_at_low_speed,
+    with_curved_viscous_part,
+    with_delay,
+    with_loss_under_load,
+    without,
+)
 from strainwave.identification.candidates.plain import Plain, fit_plain, held_out_residuals, moving, stretches
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -32,12 +43,8 @@ from strainwave.identification.results.held_out import HeldOut
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
-LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
-INPUT = "gear.friction_input."
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
 GRAVITY = ("load.gravity_torque", "load.gravity_phase")
-FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
 BENDS = np.geomspace(3e-3, 1.0, 16)  # rad of the input, in which bristles bend
 RIPPLE_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, found in every gear measured so far
 MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler model: what leaves more is chance
@@ -58,35 +65,6 @@ START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can s
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
 NO_INERTIA = 1e-12  # kg.m2: a load must have some
 MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
-
-
-@dataclass(frozen=True, eq=False)
-class MotionModel(ComparedByFields):
-    """A model of a joint to be fitted to a log.
-
-    Attributes:
-        name: of its friction, with what was added
-        log: as it is compared
-        drive: from which a fit starts
-        free: paths of the numbers that are fitted
-        ties: numbers that follow others, by path
-    """
-
-    name: str
-    log: MotionLog
-    drive: Drive
-    free: tuple[str, ...]
-    ties: Mapping[str, str]
-
-    @property
-    def law(self) -> Any:
-        """The friction at the input."""
-        return self.drive.gear.friction_input
-
-    def having(self, what: str, *free: str, **parts: Any) -> MotionModel:
-        """Return the same with other parts of the gear, and further numbers free."""
-        drive = self.drive.replace(gear=self.drive.gear.replace(**parts))
-        return replace(self, name=f"{self.name}, {what}", drive=drive, free=(*self.free, *free))
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,7 +232,7 @@ def fit_motion(
     best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
-    best = search.grown(best, [_delayed, _curved, _falling, _lossy])
+    best = search.grown(best, [with_delay, with_curved_viscous_part, with_another_friction_at_low_speed, with_loss_under_load])
     for more in (_with_bristles, _with_ripple):
         added = more(best)
         best = added if added is not None and added.is_better_than(best) else best
@@ -351,11 +329,6 @@ def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
 # ---- Parts that a record may not show -------------------------------------------------------------------------------------
 
 
-def _without(free: Sequence[str], name: str) -> tuple[str, ...]:
-    """Return the paths but those of numbers whose names begin so."""
-    return tuple(path for path in free if not path.rpartition(".")[2].startswith(name))
-
-
 def _is_small(best: MotionCandidate, path: str, unit: Array) -> bool:
     """True if a number makes so little of the effort that the model may do without: `unit` is what one unit of it makes."""
     value = next((value for name, value, *_ in _core.parameters(best.model.drive) if name == path), 0.0)
@@ -370,7 +343,7 @@ def _without_gravity(best: MotionCandidate) -> MotionModel | None:
         return None
     load = loads.Inertia(inertia=inertia_of(model.drive))
     return replace(
-        model, name=f"{model.name}, no gravity", drive=model.drive.replace(load=load), free=_without(model.free, "gravity")
+        model, name=f"{model.name}, no gravity", drive=model.drive.replace(load=load), free=without(model.free, "gravity")
     )
 
 
@@ -380,7 +353,7 @@ def _without_inertia(best: MotionCandidate) -> MotionModel | None:
     if not _is_small(best, "load.inertia", best.log.motion.acceleration / model.drive.gear.kinematics.ratio**2):
         return None
     drive = model.drive.replace({"load.inertia": NO_INERTIA})
-    return replace(model, name=f"{model.name}, no inertia", drive=drive, free=_without(model.free, "inertia"))
+    return replace(model, name=f"{model.name}, no inertia", drive=drive, free=without(model.free, "inertia"))
 
 
 def _without_viscous(best: MotionCandidate) -> MotionModel | None:
@@ -389,56 +362,12 @@ def _without_viscous(best: MotionCandidate) -> MotionModel | None:
     if not _is_small(best, f"{INPUT}viscous", best.log.motion.speed):
         return None
     drive = model.drive.replace({f"{INPUT}viscous": 0.0})
-    return replace(model, name=f"{model.name}, no viscous part", drive=drive, free=_without(model.free, "viscous"))
+    return replace(model, name=f"{model.name}, no viscous part", drive=drive, free=without(model.free, "viscous"))
 
 
 # ---- Parts that may be added -------------------------------------------------------------------------------------------
 
 Part = Callable[[MotionModel], MotionModel | None]
-
-
-def _delayed(model: MotionModel) -> MotionModel | None:
-    """With a delay of the effort behind the motion."""
-    if model.log.delayed:
-        return None
-    log = model.log.with_delay()
-    before = {each.name: each.start for each in model.log.nuisances}
-    return replace(
-        model, name=f"{model.name}, a delay", log=log.starting([before.get(each.name, 0.0) for each in log.nuisances])
-    )
-
-
-def _curved(model: MotionModel) -> MotionModel | None:
-    """With a viscous torque that bends over the speed."""
-    law = model.law
-    if not isinstance(law, friction.Coulomb):
-        return None
-    fastest = float(np.abs(model.log.motion.speed).max())
-    curved = friction.CurvedViscous(
-        coulomb=law.coulomb, breakaway=law.coulomb, viscous_torque=max(law.viscous * fastest, 1e-3 * law.coulomb, 1e-12),
-        exponent=0.9, reference_speed=fastest,
-    )  # fmt: skip
-    names = (f"{INPUT}viscous_torque", f"{INPUT}exponent")
-    return replace(model, free=_without(model.free, "viscous")).having("a curved viscous part", *names, friction_input=curved)
-
-
-def _falling(model: MotionModel) -> MotionModel | None:
-    """With friction that is higher, or lower, at low speed."""
-    law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
-    if not isinstance(law, friction.Coulomb):
-        return None
-    falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
-    ties = {path: other for path, other in model.ties.items() if path not in FOLLOWS}
-    return replace(model, ties=ties).having("another friction at low speed", *names, friction_input=falling)
-
-
-def _lossy(model: MotionModel) -> MotionModel | None:
-    """With a loss under load, the same in all quadrants: one for each cannot be separated from inertia and gravity."""
-    if LOSSES[0] in model.free:
-        return None
-    lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))
-    ties = {**model.ties, **dict.fromkeys(LOSSES[1:], LOSSES[0])}
-    return replace(model, ties=ties).having("a loss under load", LOSSES[0], friction_mesh=lossy)
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:
@@ -452,24 +381,6 @@ def _is_sensible(candidate: MotionCandidate) -> bool:
 
 
 # ---- Parts of the prediction alone -----------------------------------------------------------------------------------------
-
-
-def bristled(drive: Drive, bend: float) -> Drive:
-    """Return the drive with bristles that bend at reversals, where its friction at the input has a law with bristles.
-
-    Args:
-        drive: with friction that slides, of Coulomb or Stribeck
-        bend: angle of the input in which they bend [rad]
-    """
-    law: Any = drive.gear.friction_input
-    if not isinstance(law, friction.Coulomb | friction.Stribeck) or min(law.coulomb, law.breakaway) <= 0.0:
-        return drive
-    speed = law.stribeck_speed if isinstance(law, friction.Stribeck) else 1.0
-    bristle = friction.LuGre(
-        coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=speed,
-        bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
-    )  # fmt: skip
-    return drive.replace(gear=drive.gear.replace(friction_input=bristle))
 
 
 def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:

@@ -1,0 +1,114 @@
+"""A model of a joint along its motion, and the parts of friction that may be added to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from strainwave import Drive, friction
+from strainwave.equality import ComparedByFields
+from strainwave.identification.experiments.motion_log import MotionLog
+
+QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
+LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
+INPUT = "gear.friction_input."
+FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
+
+
+@dataclass(frozen=True, eq=False)
+class MotionModel(ComparedByFields):
+    """A model of a joint to be fitted to a log.
+
+    Attributes:
+        name: of its friction, with what was added
+        log: as it is compared
+        drive: from which a fit starts
+        free: paths of the numbers that are fitted
+        ties: numbers that follow others, by path
+    """
+
+    name: str
+    log: MotionLog
+    drive: Drive
+    free: tuple[str, ...]
+    ties: Mapping[str, str]
+
+    @property
+    def law(self) -> Any:
+        """The friction at the input."""
+        return self.drive.gear.friction_input
+
+    def having(self, what: str, *free: str, **parts: Any) -> MotionModel:
+        """Return the same with other parts of the gear, and further numbers free."""
+        drive = self.drive.replace(gear=self.drive.gear.replace(**parts))
+        return replace(self, name=f"{self.name}, {what}", drive=drive, free=(*self.free, *free))
+
+
+def without(free: Sequence[str], name: str) -> tuple[str, ...]:
+    """Return the paths but those of numbers whose names begin so."""
+    return tuple(path for path in free if not path.rpartition(".")[2].startswith(name))
+
+
+def with_delay(model: MotionModel) -> MotionModel | None:
+    """With a delay of the effort behind the motion."""
+    if model.log.delayed:
+        return None
+    log = model.log.with_delay()
+    before = {each.name: each.start for each in model.log.nuisances}
+    return replace(
+        model, name=f"{model.name}, a delay", log=log.starting([before.get(each.name, 0.0) for each in log.nuisances])
+    )
+
+
+def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
+    """With a viscous torque that bends over the speed."""
+    law = model.law
+    if not isinstance(law, friction.Coulomb):
+        return None
+    fastest = float(np.abs(model.log.motion.speed).max())
+    curved = friction.CurvedViscous(
+        coulomb=law.coulomb, breakaway=law.coulomb, viscous_torque=max(law.viscous * fastest, 1e-3 * law.coulomb, 1e-12),
+        exponent=0.9, reference_speed=fastest,
+    )  # fmt: skip
+    names = (f"{INPUT}viscous_torque", f"{INPUT}exponent")
+    return replace(model, free=without(model.free, "viscous")).having("a curved viscous part", *names, friction_input=curved)
+
+
+def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
+    """With friction that is higher, or lower, at low speed."""
+    law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
+    if not isinstance(law, friction.Coulomb):
+        return None
+    falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
+    ties = {path: other for path, other in model.ties.items() if path not in FOLLOWS}
+    return replace(model, ties=ties).having("another friction at low speed", *names, friction_input=falling)
+
+
+def with_loss_under_load(model: MotionModel) -> MotionModel | None:
+    """With a loss under load, the same in all quadrants: one for each cannot be separated from inertia and gravity."""
+    if LOSSES[0] in model.free:
+        return None
+    lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))
+    ties = {**model.ties, **dict.fromkeys(LOSSES[1:], LOSSES[0])}
+    return replace(model, ties=ties).having("a loss under load", LOSSES[0], friction_mesh=lossy)
+
+
+def bristled(drive: Drive, bend: float) -> Drive:
+    """Return the drive with bristles that bend at reversals, where its friction at the input has a law with bristles.
+
+    Args:
+        drive: with friction that slides, of Coulomb or Stribeck
+        bend: angle of the input in which they bend [rad]
+    """
+    law: Any = drive.gear.friction_input
+    if not isinstance(law, friction.Coulomb | friction.Stribeck) or min(law.coulomb, law.breakaway) <= 0.0:
+        return drive
+    speed = law.stribeck_speed if isinstance(law, friction.Stribeck) else 1.0
+    bristle = friction.LuGre(
+        coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=speed,
+        bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
+    )  # fmt: skip
+    return drive.replace(gear=drive.gear.replace(friction_input=bristle))
