@@ -76,7 +76,7 @@ def _options(
         bool, typer.Option("--version", help="Show the version and end.", callback=_show_version, is_eager=True)
     ] = False,
 ) -> None:
-    """What comes before a verb."""
+    """Options before a verb."""
 
 
 def _names_columns(words: list[str]) -> bool:
@@ -107,11 +107,11 @@ def main() -> None:
 
 
 def _misuse(error: Any) -> str:
-    """What is wrong with the command line, in one sentence, and where help is."""
+    """Return the fault of a command line in one sentence, with where help is."""
     command, wrong = "strainwave" if error.ctx is None else error.ctx.command_path, error.format_message().rstrip(".")
     if wrong.startswith("Missing") and error.ctx is not None:
         wrong += f" of {' '.join([command, *error.ctx.command.collect_usage_pieces(error.ctx)])}"
-    return f"{wrong}; {command} --help tells more"
+    return f"{wrong}; see {command} --help"
 
 
 def _warn(message: Warning | str, *_: object, **__: object) -> None:

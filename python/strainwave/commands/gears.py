@@ -28,6 +28,6 @@ def packaged(of: str, part: str) -> list[str]:
     found = [name for name in names if part.lower() in name]
     if not found:
         near = ", ".join(get_close_matches(part.lower(), names))
-        told = f"near it are {near}" if near else f"`strainwave {of}` lists all"
-        raise ValueError(f"none of the {of} that come with the package has {quoted(part)} in its name; {told}")
+        hint = f"near it are {near}" if near else f"`strainwave {of}` lists all"
+        raise ValueError(f"none of the {of} that come with the package has {quoted(part)} in its name; {hint}")
     return found

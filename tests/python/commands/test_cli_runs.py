@@ -141,7 +141,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["simulate"], ("Missing argument 'drive' of strainwave simulate [OPTIONS] {drive}", "simulate --help tells more")),
+        (["simulate"], ("Missing argument 'drive' of strainwave simulate [OPTIONS] {drive}", "see strainwave simulate --help")),
         (["identify", "a.csv", "a.csv"], ("a.csv holds measurements, where a gear is asked for", "as hfuc-25-100")),
         (["simulate", "joint.toml"], ("Missing option '--scenario'",)),
         (["simulate", "joint.toml", "--scenario"], ("'--scenario' requires an argument",)),
@@ -195,7 +195,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["show", "joint.toml", "--run", "none.csv"], ("none.csv cannot be read",)),
         (["show", "a.csv"], ("a.csv holds measurements",)),
         (["drives", "nonsense"], ('has "nonsense" in its name', "`strainwave drives` lists all")),
-        (["simulat"], ("No such command 'simulat'", "simulate", "strainwave --help tells more")),
+        (["simulat"], ("No such command 'simulat'", "simulate", "see strainwave --help")),
         (["--bogus"], ("No such option: --bogus",)),
     ],
 )  # fmt: skip
