@@ -166,7 +166,7 @@ def is_share(unit: str) -> bool:
     >>> is_share("%"), is_share("‰"), is_share("% of 12 A")
     (True, True, False)
     """
-    return unit.strip().casefold() in _SHARES
+    return _text(unit).strip().casefold() in _SHARES
 
 
 def _turning(unit: pint.Unit, other: pint.Unit) -> pint.Unit:
@@ -191,7 +191,7 @@ def _check_finite(values: Values, converted: Values, unit: str, to: str) -> None
 
 @lru_cache(maxsize=1024)
 def measures(unit: str, wanted: str) -> bool:
-    """Whether a unit is known and measures what another one does.
+    """True if a unit is known and measures what another one does.
 
     >>> measures("1/min", "rad/s"), measures("N.m", "rad/s"), measures("furlong", "m")
     (True, False, False)
@@ -204,11 +204,15 @@ def measures(unit: str, wanted: str) -> bool:
 
 
 def counts(unit: str) -> bool:
-    """Whether a unit is that of an encoder's counts, without or with the counts of a revolution.
+    """True if a unit is that of an encoder's counts, without or with the counts of a revolution.
+
+    Raises:
+        TypeError: the unit is no text
 
     >>> counts("inc"), counts("counts/16384"), counts("rad")
     (True, True, False)
     """
+    unit = _text(unit)
     return any(_COUNTED.fullmatch(each) for each in (unit, f"{unit}/1", unit.replace("/", "/1/", 1)))
 
 
@@ -270,10 +274,14 @@ def _registry() -> pint.UnitRegistry[Any]:
     return pint.UnitRegistry(_DEFINITIONS)
 
 
-def _parse(unit: str) -> pint.Unit:
+def _text(unit: str) -> str:
     if not isinstance(unit, str):
         raise TypeError(f"a unit is a text like N.m, not {shortened(unit)}")
-    if len(unit) > _LONGEST:
+    return unit
+
+
+def _parse(unit: str) -> pint.Unit:
+    if len(_text(unit)) > _LONGEST:
         raise ValueError(f"unit {quoted(unit)} has {len(unit)} characters; at most {_LONGEST} are allowed")
     return _parsed(unit)
 

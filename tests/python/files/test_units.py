@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from contextlib import suppress
+from decimal import Decimal
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strainwave.files.units import check, convert, measures
+from strainwave.files.units import check, convert, counts, is_share, measures
 
 from tests.work import calls
 
@@ -179,10 +181,11 @@ def test_a_frequency_is_no_angular_speed_for_the_reason_told(unit: str) -> None:
         convert(1.0, unit, "rad/s")
 
 
-@pytest.mark.parametrize("unit", [3, None, ["N.m"], {"N.m"}])
-def test_a_unit_that_is_not_a_text_is_refused(unit: object) -> None:
+@pytest.mark.parametrize("asked", [check, counts, is_share])
+@pytest.mark.parametrize("unit", [3, None, ["N.m"], {"N.m"}, Decimal("NaN")])
+def test_a_unit_that_is_not_a_text_is_refused(asked: Callable[[object], object], unit: object) -> None:
     with pytest.raises(TypeError, match=exactly(f"a unit is a text like N.m, not {unit!r}")):
-        check(unit)  # type: ignore[arg-type]
+        asked(unit)
 
 
 @pytest.mark.parametrize(("values", "kind"), [(np.array(["a"]), "<U1"), (len, "object"), (True, "bool"), ("3", "<U1")])
