@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from importlib import metadata
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
@@ -81,11 +80,8 @@ def identify_report(
             "sections": list(_sections(found, given)),
             "checks": [(each, number(each.value, 3), number(each.limit, 3)) for each in found.checks],
             "experiments": list(_experiments(experiments)),
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
-from importlib import metadata
 from math import degrees, isfinite
 from typing import Any
 
 from strainwave.files.recording import Recording
-from strainwave.report import figures
 from strainwave.report import influence_figures as plots
 from strainwave.report.influence_claims import ARCMIN, Entry, counts, entries, life, over_size, steps_and_falls
 from strainwave.report.influence_trends import bent_words, chance, change_of, told_of
@@ -78,11 +76,8 @@ def influence_report(found: Influence, provenance: Provenance | None = None) -> 
             "shuffles": SHUFFLES,
             "numbers": list(numbers({"": found.gear_set})),
             "note": found.gear_set.note,
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )
 
 

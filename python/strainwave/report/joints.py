@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator
-from importlib import metadata
 from io import StringIO
 from math import isfinite
 from typing import Any
@@ -14,7 +13,6 @@ from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
 from strainwave.identification.results.combined_parameter import lines_of
 from strainwave.identification.results.file_result import FileResult
-from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
@@ -32,11 +30,8 @@ def joints_report(joints: Joints, provenance: Provenance | None = None) -> str:
             "refused": list(joints.refused.items()),
             "left_out": list(joints.left_out.items()),
             "numbers": list(_rows(joints)),
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )
 
 

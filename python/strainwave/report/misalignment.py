@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
-from importlib import metadata
 from math import degrees, hypot
 from typing import Any
 
 import numpy as np
 
-from strainwave.report import figures
 from strainwave.report import misalignment_drawings as drawings
 from strainwave.report import misalignment_figures as plots
 from strainwave.report.misalignment_claims import ARCMIN, Claim, arcmin, claims, frequency, microns, percent, silence
@@ -76,11 +74,8 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
             "staged": {name: percent(abs(found.off_in_series(name))) for name in ("torque", "current")} if found.staged else {},
             "assumed_geometry": found.assumed_geometry,
             "numbers": list(numbers({"": found.gear_set})),
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )
 
 

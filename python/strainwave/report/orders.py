@@ -17,7 +17,6 @@ from strainwave.files.recording import Recording
 from strainwave.orders.measured import OrdersFound
 from strainwave.orders.ripple import Ripple, RippleLine
 from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
-from strainwave.report import figures
 from strainwave.report import orders_figures as plots
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
@@ -44,11 +43,8 @@ def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = 
         "orders.html.jinja",
         {
             "recordings": [_section(each, place) for place, each in enumerate(found)],
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )
 
 

@@ -4,32 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from strainwave.files.writing import replacing
-from strainwave.report import typeset
+from strainwave.report import figures, typeset
+from strainwave.report.provenance import Provenance
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 
-def render(template: str, content: Mapping[str, Any]) -> str:
-    """The HTML of a template of this folder; whatever is put into it is escaped.
+def render(template: str, content: Mapping[str, Any], provenance: Provenance | None = None) -> str:
+    """Return the HTML of a template of this folder; whatever is put into it is escaped.
 
     Args:
         template: name of the file in templates/
         content: what the template names
+        provenance: command, date and files of the page, if they are to be shown
 
     Raises:
         jinja2.UndefinedError: the template names what `content` does not have
     """
-    return _environment().get_template(template).render(content)
+    of_every_page = {
+        "provenance": provenance or Provenance(),
+        "version": metadata.version("strainwave"),
+        "light": figures.variables(figures.LIGHT),
+        "dark": figures.variables(figures.DARK),
+    }
+    return _environment().get_template(template).render(of_every_page | dict(content))
 
 
 @cache
 def _environment() -> Environment:
-    """One for all pages, since it keeps the templates that it has compiled."""
+    """Return one environment for all pages, since it keeps the templates that it has compiled."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -45,7 +54,7 @@ def _environment() -> Environment:
 
 
 def write(html: str, path: str | Path) -> None:
-    """Writes a page; what stood at `path` stays until the new page is complete.
+    """Write a page; what stood at `path` stays until the new page is complete.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from importlib import metadata
 from math import degrees, isfinite
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -94,11 +93,8 @@ def position_control_report(found: PositionControl, provenance: Provenance | Non
             "notes": {model: gear_set.note for model, gear_set in found.sets.items()},
             "study": study,
             "degrees": degrees,
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )
 
 

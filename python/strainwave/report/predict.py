@@ -11,7 +11,6 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.prediction import Change, Prediction
-from strainwave.report import figures
 from strainwave.report.identify_figures import file_figure
 from strainwave.report.orders import line_words
 from strainwave.report.page import render
@@ -112,11 +111,8 @@ def predict_report(found: Sequence[Prediction], gear_set: GearSet, provenance: P
                  f"{number(100.0 * each.relative, 2)} %")
                 for each in gear_set.validation
             ],
-            "provenance": provenance or Provenance(),
-            "version": metadata.version("strainwave"),
-            "light": figures.variables(figures.LIGHT),
-            "dark": figures.variables(figures.DARK),
         },
+        provenance,
     )  # fmt: skip
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from importlib import metadata
 from math import degrees
 from typing import Any
 
 import numpy as np
 
-from strainwave.report import figures, rig_plates, rig_setup
+from strainwave.report import rig_plates, rig_setup
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_numbers import sentence, stated
@@ -74,12 +73,8 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
         "sources": list(source_rows(found)),
         "multiple": number(MULTIPLE),
         "files": files,
-        "provenance": provenance or Provenance(),
-        "version": metadata.version("strainwave"),
-        "light": figures.variables(figures.LIGHT),
-        "dark": figures.variables(figures.DARK),
     }
-    return render("rig.html.jinja", content | {"sections": _sections(content)})
+    return render("rig.html.jinja", content | {"sections": _sections(content)}, provenance)
 
 
 def _sections(content: dict[str, Any]) -> dict[str, str]:
