@@ -15,7 +15,7 @@ from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.mistakes import wrong_units
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.reading.missing_units import JOINT
+from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.held_out import HeldOut
@@ -76,7 +76,7 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     usual = _squares(log, drive, _best_scale(best, drive), delay)  # a ratio near the one taken may be the simpler mistake
     share, found = 1.0, ""
     for what, factor in _mistakes(recording, ratio).items():
-        if np.ptp(log.motion.angle) * factor / ratio > JOINT:
+        if np.ptp(log.motion.angle) * factor / ratio > MAX_JOINT_ANGLE:
             continue
         other = _squares(log, drive, factor, delay)
         gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.labels import Label
+from strainwave.files.units import measures
 from strainwave.identification.reading.channels import Channel
 
 Array = NDArray[np.float64]
@@ -18,19 +19,19 @@ class Column:
     """A column that seems to be a channel.
 
     Args:
-        position: where it stands in the file, from 0
-        label: what the file calls it
+        position: in the file, from 0
+        label: its header in the file
         channel: what it measures
-        which: what else its name says, as the number of a joint
-        robot: whether its name is that of a robot's joint channel
-        said: whether a person said what it is
-        neighbour: whether it is the angle of another joint than the one that is asked for
-        regressor: whether it is a torque of which a share that is not known acts
-        unit: its unit in the file; None where none is stated
-        sure: whether its unit is stated, or its numbers tell it by themselves
-        is_open: True if its unit is not stated, and its numbers leave others
-        estimated: whether its name says that it is an estimate
-        values: in SI units, once they are read
+        which: the rest of its name, as the number of a joint
+        robot: True if its name is that of a robot's joint channel
+        by_user: True if a person named it
+        neighbour: True for the angle of another joint than the one that is asked for
+        regressor: True for a torque of which an unknown share acts
+        unit: its unit in the file; None if none is stated
+        sure: True if its unit is stated, or its numbers allow no other
+        estimated: True if its name is that of an estimate
+        raw: its numbers in the file, once they are read, nan in empty cells
+        si: the same in SI units
     """
 
     position: int
@@ -38,25 +39,30 @@ class Column:
     channel: Channel
     which: str = ""
     robot: bool = False
-    said: bool = False
+    by_user: bool = False
     neighbour: bool = False
     regressor: bool = False
     unit: str | None = None
     sure: bool = True
-    is_open: bool = False
     estimated: bool = False
-    values: Array | None = None
+    raw: Array = field(default_factory=lambda: np.zeros(0))
+    si: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def own(self) -> bool:
-        """Whether it is a channel of the joint that is asked for."""
+        """True for a channel of the joint that is asked for."""
         return not (self.neighbour or self.regressor)
-
-    @property
-    def si(self) -> Array:
-        assert self.values is not None
-        return self.values
 
     @property
     def name(self) -> str:
         return self.label.name
+
+    @property
+    def at_joint(self) -> bool:
+        """True if it is measured at the output by its name, or called like a channel of a robot's joint."""
+        return self.channel.side == "output" or (self.robot and self.channel.side is None)
+
+    @property
+    def si_unit(self) -> str:
+        """Unit of `si`: a command may be an angle or a voltage."""
+        return "V" if self.channel.commanded and self.unit is not None and measures(self.unit, "V") else self.channel.unit

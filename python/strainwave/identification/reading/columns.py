@@ -171,7 +171,7 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
         neighbour, regressor = name == "other_angles", name == "regressors"
         unit = channel.unit if name == "regressors" else unit  # of a regressor any unit is that of torque over its share's
         kept = which if neighbour else ""
-        found.append(Column(places[0], label, channel, kept, said=True, neighbour=neighbour, regressor=regressor, unit=unit))
+        found.append(Column(places[0], label, channel, kept, by_user=True, neighbour=neighbour, regressor=regressor, unit=unit))
     return found
 
 

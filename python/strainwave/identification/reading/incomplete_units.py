@@ -2,102 +2,103 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from strainwave.files.units import convert, counts, is_share, measures
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import COARSEST, FINEST, NEAR_COUNTS, counts_of_revolution
+from strainwave.identification.reading.missing_units import bits_of, pairs_of_shafts
 from strainwave.identification.reading.sides import UndecidedError
+from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.messages import as_option, listed
-
-Array = NDArray[np.float64]
 
 COUNTED = "counts/16384"  # for example
 RATIOS = (100.0, 50.0, 80.0, 120.0, 160.0, 30.0)  # of catalogues, the most usual first
 MIN_COUNTS = 1000  # range of whole numbers that are counts of an encoder
 MIN_STEPS, MIN_SAMPLES = 20, 100  # range and rows of whole numbers that are shares of a rated torque
+MAX_OFF_COUNTS = 3e-3  # relative difference of the counts of a revolution from a usual number
 
 
-def with_counts(columns: Sequence[Column], raw: Mapping[int, Array]) -> tuple[list[Column], list[str]]:
-    """The columns, with the counts of a revolution where the speed beside an encoder determines them; and which."""
-    found = counts_of_revolution(
-        [replace(c, unit="counts") if counts(_incomplete_unit(c, raw[c.position])) else c for c in columns], raw
-    )
-    told = [
-        f"a revolution has {found[c.position]} counts of {c.name}, as its speed shows" for c in columns if c.position in found
-    ]
-    return [replace(c, unit=f"counts/{found[c.position]}") if c.position in found else c for c in columns], told
+def with_counts(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
+    """Return the columns, with the counts of a revolution if the speed beside an encoder determines them; and remarks."""
+    time = next((convert(c.raw, c.unit, "s") for c in columns if c.channel.quantity == "time" and c.unit is not None), None)
+    known, remarks = list(columns), list[str]()
+    for angle, speed in pairs_of_shafts(columns):
+        is_counted = angle in known and counts(_incomplete_unit(angle))
+        if time is not None and is_counted and speed.unit is not None and measures(speed.unit, "rad/s"):
+            turns = convert(abs(speed_per_slope(angle.raw, speed.raw, time)), speed.unit, "rev/s")
+            if number := _usual_counts(1.0 / turns if turns > 0.0 else 0.0):
+                known[known.index(angle)] = replace(angle, unit=f"counts/{number}")
+                remarks.append(f"a revolution has {number} counts of {angle.name}, as its speed shows")
+    return known, remarks
 
 
-def check_units(columns: Sequence[Column], raw: Mapping[int, Array], ratio: float | None) -> None:
+def check_units(columns: Sequence[Column], ratio: float | None) -> None:
     """Ask for the numbers that units need and the file does not contain.
 
     Args:
-        columns, raw: as of `missing_units`
+        columns: with the units that are stated or given, and their numbers
         ratio: of the gear, if a person gave it
 
     Raises:
         UndecidedError: a unit needs the counts of a revolution, or a rated value
     """
-    needs = {column.name: unit for column in columns if (unit := _incomplete_unit(column, raw[column.position]))}
-    by_joint = dict[str, str]()
-    for column in columns:
-        if needs.get(column.name) == COUNTED and (found := _counts_by_joint(column, columns, raw, ratio)) is not None:
-            needs[column.name], by_joint[column.name] = f"counts/{found.counts}", found.why
-    if needs:
-        counted = [name for name, unit in needs.items() if counts(unit)]
-        shares = [name for name in needs if name not in counted]
-        whys = "".join(f" ({why})" for why in by_joint.values())
-        lacks = [f"how many counts a revolution has in {listed(counted)}{whys}"] if counted else []
-        lacks += [f"of which rated value {listed(shares)} is a share"] if shares else []
-        options = " ".join(as_option("unit", name, unit) for name, unit in needs.items())
-        told = f"the file does not contain {' and '.join(lacks)}; add it, as with {options}"
-        raise UndecidedError(told, (), options, FileMapping(units=needs))
+    needs = {column.name: unit for column in columns if (unit := _incomplete_unit(column))}
+    if not needs:
+        return
+    counted = [column for column in columns if counts(needs.get(column.name, ""))]
+    shares = [name for name, unit in needs.items() if not counts(unit)]
+    whys = ""
+    for column in counted:
+        if needs[column.name] == COUNTED and (found := _counts_by_joint(column, columns, ratio)) is not None:
+            number, why = found
+            needs[column.name], whys = f"counts/{number}", f"{whys} ({why})"
+    lacks = [f"how many counts a revolution has in {listed(column.name for column in counted)}{whys}"] if counted else []
+    lacks += [f"of which rated value {listed(shares)} is a share"] if shares else []
+    options = " ".join(as_option("unit", name, unit) for name, unit in needs.items())
+    question = f"the file does not contain {' and '.join(lacks)}; add it, as with {options}"
+    raise UndecidedError(question, (), options, FileMapping(units=needs))
 
 
-class _Counts(NamedTuple):
-    """The counts of a revolution of an encoder of the motor, and what determines them."""
+def _usual_counts(per_turn: float) -> int | None:
+    """Return the usual counts of a revolution near a number: a power of two, or hundreds; None if there are none."""
+    if bits := bits_of(per_turn, MAX_OFF_COUNTS):
+        return int(2**bits)
+    hundreds = 100 * round(per_turn / 100.0)
+    return hundreds if hundreds and abs(per_turn / hundreds - 1.0) < MAX_OFF_COUNTS else None
 
-    counts: int
-    why: str
 
-
-def _counts_by_joint(
-    column: Column, columns: Sequence[Column], raw: Mapping[int, Array], ratio: float | None
-) -> _Counts | None:
-    """The counts of a revolution of an encoder beside an angle of the joint: by a ratio that makes them a power of two."""
+def _counts_by_joint(column: Column, columns: Sequence[Column], ratio: float | None) -> tuple[int, str] | None:
+    """Return the counts of a motor's encoder beside an angle of the joint, by a ratio that makes them 2^n; and why."""
     joint = next((c for c in columns if c.channel.quantity == "angle" and c.unit and measures(c.unit, "rad")), None)
     if joint is None or joint.unit is None or column.channel.quantity != "angle":
         return None
-    turns, counted = convert(raw[joint.position], joint.unit, "rev"), raw[column.position]
+    turns, counted = convert(joint.raw, joint.unit, "rev"), column.raw
     there = np.isfinite(turns + counted)
     if not np.ptp(turns[there]) > 0.0:
         return None
     per_turn = abs(float(np.polyfit(turns[there], counted[there], 1)[0]))
     for each in RATIOS if ratio is None else (abs(ratio),):
-        bits = round(np.log2(per_turn / each)) if per_turn > each else 0
-        if COARSEST <= bits <= FINEST and abs(per_turn / each / 2.0**bits - 1.0) < NEAR_COUNTS:
-            return _Counts(2**bits, f"{2**bits} at a ratio of {each:g}, as {joint.name} turns once in {per_turn:.6g} counts")
+        if bits := bits_of(per_turn / each, MAX_OFF_COUNTS):
+            return 2**bits, f"{2**bits} at a ratio of {each:g}, as {joint.name} turns once in {per_turn:.6g} counts"
     return None
 
 
-def _incomplete_unit(column: Column, values: Array) -> str:
-    """The unit of a column as it may be with a number that is missing; empty if it is complete."""
+def _incomplete_unit(column: Column) -> str:
+    """Return the unit of a column as it may be with a number that is missing; empty if it is complete."""
     share = f"permille of {'0.4 N.m' if column.channel.quantity == 'torque' else '10 A'}"
     if column.unit is not None:
         if is_share(column.unit):
             return share.replace("permille", "%") if column.unit.strip() in ("%", "percent") else share
         counted = f"{COUNTED}/s" if column.channel.quantity == "speed" else COUNTED
         return counted if counts(column.unit) and not measures(column.unit, column.channel.unit) else ""
-    there = values[np.isfinite(values)]
-    is_whole = len(there) > 1 and bool((there == np.round(there)).all())
+    values = column.raw[np.isfinite(column.raw)]
+    if len(values) < 2 or not (values == np.round(values)).all():
+        return ""
     if column.channel.quantity == "angle":
-        return COUNTED if is_whole and np.ptp(there) > MIN_COUNTS else ""
+        return COUNTED if np.ptp(values) > MIN_COUNTS else ""
     is_torque = column.channel.quantity == "torque" and column.channel.measured
-    return share if is_torque and is_whole and len(there) > MIN_SAMPLES and np.ptp(there) >= MIN_STEPS else ""
+    return share if is_torque and len(values) > MIN_SAMPLES and np.ptp(values) >= MIN_STEPS else ""

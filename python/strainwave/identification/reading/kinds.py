@@ -168,7 +168,7 @@ def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Colum
     torques = _measured(columns, "torque")
     loads = named or [column for column in torques if column.channel.side == "output"]
     own = [column for column in torques if column not in loads]
-    if len(loads) != 1 or len(own) != 1 or loads[0].said != own[0].said:
+    if len(loads) != 1 or len(own) != 1 or loads[0].by_user != own[0].by_user:
         return columns, {}, ()
     ((load,), (torque,)) = loads, own
     name = "load_torque" if named or not _drives(speed.si, torque, load) else "output_torque"
@@ -241,7 +241,7 @@ def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
     """The letter u is a voltage beside motors, and whatever a robot is driven by beside joints."""
     for column in _measured(columns, "voltage"):
         is_letter = len(column.name.rstrip("_0123456789[]")) == 1 and column.label.unit is None
-        if is_letter and not others and not column.said and any(each.robot for each in columns):
+        if is_letter and not others and not column.by_user and any(each.robot for each in columns):
             ways = " or ".join(as_option("column", name, column.name) for name in ("joint_torque", "current", "voltage"))
             raise UndecidedError(f"{column.name} may be a torque, a current or a voltage; say it with {ways}")
 
@@ -261,7 +261,7 @@ def _put_sided(
         why.append(told)
         _put(found, f"{'reflected' if column in reflected else side}_{column.channel.quantity}", column)
     why += _reflect(found, mapping)
-    if len(torques) > 1 and not any(column.said or column.channel.side for column in torques):
+    if len(torques) > 1 and not any(column.by_user or column.channel.side for column in torques):
         first = torques[0]
         stem = first.name.removesuffix(first.which).rstrip("_.") if first.robot and first.which else first.name
         ways = f"--column input_torque={stem} if it is that of the motor, or --column joint_torque={stem} if of the joint"
@@ -313,8 +313,8 @@ def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]
 def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tuple[str, ...]]:
     """Torques and currents of a log: those that a person named, else those measured, else those commanded."""
     torques, currents = _measured(columns, "torque"), _measured(columns, "current")
-    if any(column.said for column in (*torques, *currents)):
-        torques, currents = ([column for column in some if column.said] for some in (torques, currents))
+    if any(column.by_user for column in (*torques, *currents)):
+        torques, currents = ([column for column in some if column.by_user] for some in (torques, currents))
     if torques or currents:
         return torques, currents, ()
     torques, currents = _commanded(columns, "torque"), _commanded(columns, "current")
@@ -401,7 +401,7 @@ def _commanded(columns: Sequence[Column], quantity: Quantity) -> list[Column]:
 def _needed(columns: Sequence[Column], quantity: Quantity, kind: str) -> Column:
     """The one column of a quantity, or the one that a person named."""
     found = _measured(columns, quantity)
-    found = found if len(found) == 1 else [column for column in found if column.said] or found
+    found = found if len(found) == 1 else [column for column in found if column.by_user] or found
     if len(found) == 1:
         return found[0]
     lack = f"each of {_names(found)} may be it" if found else f"it holds {_names(columns)}"
@@ -417,9 +417,9 @@ def _temperature(columns: Sequence[Column]) -> dict[str, Column]:
 
 def _put(found: dict[str, Column], name: str, column: Column) -> None:
     """A channel; a column that a person named goes before one whose name tells."""
-    if name not in found or (column.said and not found[name].said):
+    if name not in found or (column.by_user and not found[name].by_user):
         found[name] = column
-    elif column.said or not found[name].said:
+    elif column.by_user or not found[name].by_user:
         ways = as_option("column", name, column.name)
         raise UndecidedError(f"{pair(found[name], column)} may both be the {name}; say which, as with {ways}")
 

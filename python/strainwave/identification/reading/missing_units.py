@@ -2,126 +2,85 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.units import convert, counts, measures
+from strainwave.files.units import convert
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import UNITS
+from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.messages import as_option, quoted
 
 Array = NDArray[np.float64]
 
-ANGLES = ("rad", "deg", "rev")
+ANGLES = {"rad": 2.0 * np.pi, "deg": 360.0, "rev": 1.0}  # units, and a revolution in each
 SPEEDS = ("rad/s", "deg/s", "rpm")
-LIKE = 0.15  # relative: an angle's slope and a speed that differ by less are in units that fit
-FINEST = 40  # bits of an encoder
-COARSEST = 6
-MULTIPLES = 0.95  # of the steps of an encoder that are whole multiples of the smallest
-EQUAL = 1e-3  # relative: a step and a part of a revolution
-JOINT = 4.0 * np.pi  # rad: a joint that is written in radians does not get further, two turns to each side
-EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # what time since 1970 exceeds, in each unit
-FINER = ("ms", "us", "ns")  # than a second
-DIFFERENCES = (5000, 200)  # parts of a record over which slopes are taken, the finest first: encoders have steps
+EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
 RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
-NEAR = 0.03  # relative: a rate of rows that differs by less from a usual one is this one
-NEAR_COUNTS = 3e-3  # relative: counts of a revolution that differ by less from a usual number are this one
-WRAP = 0.5  # of the range of an angle: by more it does not move within a thousandth of a log, but where it begins anew
-SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
+MIN_BITS, MAX_BITS = 6, 40  # of an encoder
+MAX_OFF_SPEED = 0.15  # relative difference of a speed from the slope of its angle, in units that fit
+MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
+MAX_OFF_STEP = 1e-3  # relative difference of a step from a part of a revolution
+MIN_SHARE_OF_MULTIPLES = 0.95  # of the steps of an encoder
+MAX_JOINT_ANGLE = 4.0 * np.pi  # rad: two turns to each side, the most that joints have
+MAX_STEP_OF_LOG = 0.2  # s
+MIN_KELVIN = 200.0  # K: gears are not colder
 
 
 class Assumed(NamedTuple):
-    """A unit that is not stated.
+    """The unit of a column.
 
     Args:
         unit: the unit
         why: what determines it; empty if nothing does
-        sure: True if that leaves no other
+        sure: True if no other one is possible
         scale: of that unit, in which the numbers count, as rows do the time between them
     """
 
     unit: str
-    why: str
+    why: str = ""
     sure: bool = False
     scale: float = 1.0
 
-    @property
-    def told(self) -> str:
-        return f"{self.unit} {self.why}".strip()
 
-
-def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[int, Assumed]:
-    """The units of the columns that state none, by their places.
+def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
+    """Return the units of columns, by their positions: those stated, else those that numbers determine, else the usual ones.
 
     Args:
-        columns: all, with the units that are stated or given
-        raw: their numbers as they stand in the file, by their places
+        columns: with the units that are stated or given, and their numbers
 
     Raises:
-        ValueError: numbers may be in any unit
+        ValueError: a time may be in any unit
     """
-    found = {
-        column.position: (_of_time(column, columns, raw) if column.channel.quantity == "time" else _alone(column, values))
-        for column, values in ((column, raw[column.position]) for column in columns)
-        if column.unit is None
-    }
-    units = {column.position: column.unit or found[column.position].unit for column in columns}
+    found = {column.position: _by_itself(column, columns) for column in columns}
     time = next((column for column in columns if column.channel.quantity == "time"), None)
-    sure = {place for place in units if place not in found or found[place].why}
-    if time is None:
-        return found
-    for angle, speed in _pairs(columns):
-        if angle.position in sure and speed.position in sure:
+    for pair in pairs_of_shafts(columns) if time is not None else ():
+        known = [found[each.position].unit if found[each.position].why else None for each in pair]
+        if time is None or None not in known:
             continue
-        slope = _slope(raw[angle.position], raw[speed.position], convert(raw[time.position], units[time.position], "s"))
-        for angle_unit, speed_unit in _fitting(slope, units, angle, speed, sure):
-            for column, unit in ((angle, angle_unit), (speed, speed_unit)):
-                if column.position in found and not found[column.position].why:
-                    found[column.position] = Assumed(unit, f"as it fits {speed.name if column is angle else angle.name}")
-                    units[column.position] = unit
-                    sure.add(column.position)
-            break
-    return found
-
-
-def counts_of_revolution(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[int, int]:
-    """The counts of one revolution of encoders beside their speed, by their places; those that are a usual number.
-
-    Args:
-        columns, raw: as of `missing_units`
-    """
-    times = [convert(raw[c.position], c.unit, "s") for c in columns if c.channel.quantity == "time" and c.unit is not None]
-    found = dict[int, int]()
-    for angle, speed in _pairs(columns) if times else ():
-        is_counted = angle.unit is not None and counts(angle.unit) and not measures(angle.unit, "rad")
-        if not is_counted or speed.unit is None or not measures(speed.unit, "rad/s"):
-            continue
-        slope = _slope(raw[angle.position], raw[speed.position], times[0])
-        per_turn = 1.0 / turns if (turns := convert(abs(slope), speed.unit, "rev/s")) > 0.0 else 0.0
-        bits = round(np.log2(per_turn)) if per_turn > 1.0 else 0
-        usual = (2**bits, 100 * round(per_turn / 100.0)) if COARSEST <= bits <= FINEST else ()
-        near = next((each for each in usual if each and abs(per_turn / each - 1.0) < NEAR_COUNTS), None)
-        if near is not None:
-            found[angle.position] = near
+        slope = speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, found[time.position].unit, "s"))
+        for column, other, own, unit in zip(pair, pair[::-1], known, next(_fitting(slope, *known), ()), strict=False):
+            if own is None:
+                found[column.position] = Assumed(unit, f"as it fits {other.name}")
     return found
 
 
 def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
-    """Other units that the columns without a stated one may be in, by their places: those that fit their numbers as well.
+    """Return other units that fit the numbers of the columns without a stated one as well, by their positions.
 
     Args:
         columns: with the units that were assumed of those that state none, and their values
     """
-    angles = [c for c in columns if c.is_open and c.channel.quantity == "angle" and not c.channel.commanded]
-    known = {speed.position for angle, speed in _pairs(columns) if not angle.is_open}
-    speeds = [c for c in columns if c.is_open and c.channel.quantity == "speed" and c.position not in known]
+    angles = [c for c in columns if not c.sure and c.channel.quantity == "angle" and not c.channel.commanded]
+    known = {speed.position for angle, speed in pairs_of_shafts(columns) if angle.sure}
+    speeds = [c for c in columns if not c.sure and c.channel.quantity == "speed" and c.position not in known]
     if not angles:
         units = [unit for unit in SPEEDS if speeds and unit != speeds[0].unit]
         return [{speed.position: unit for speed in speeds} for unit in units]
-    if any(angle in angles and not speed.is_open for angle, speed in _pairs(columns)):
+    if any(angle in angles and speed.sure for angle, speed in pairs_of_shafts(columns)):
         return []
     found = []
     for unit in ANGLES:
@@ -134,57 +93,60 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
     return found
 
 
+def bits_of(counts: float, max_off: float) -> int | None:
+    """Return the bits of an encoder with so many counts a revolution; None if they are no power of two.
+
+    Args:
+        counts: of a revolution [1]
+        max_off: largest relative difference from the power of two [1]
+    """
+    bits = round(np.log2(counts)) if counts > 1.0 else 0
+    return bits if MIN_BITS <= bits <= MAX_BITS and abs(counts / 2.0**bits - 1.0) < max_off else None
+
+
 def _too_far(angle: Column, factor: float) -> bool:
     """True if a joint would move further than joints do, were its angle so many times as large."""
-    at_joint = angle.channel.side == "output" or (angle.robot and angle.channel.side is None)
-    return at_joint and factor * float(np.abs(angle.si).max()) > JOINT
+    return angle.at_joint and factor * float(np.abs(angle.si).max()) > MAX_JOINT_ANGLE
 
 
 def _unit_of_size(size: float) -> str | None:
-    """The unit of a speed by its size [rad/s]; None if none has it."""
+    """Return the unit of a speed by its size [rad/s]; None if none has it."""
     sizes = {unit: convert(1.0, unit, "rad/s") for unit in (*SPEEDS, "rev/s")}
-    return next((unit for unit, each in sizes.items() if abs(size / each - 1.0) < EQUAL), None)
+    return next((unit for unit, each in sizes.items() if abs(size / each - 1.0) < MAX_OFF_STEP), None)
 
 
-def _alone(column: Column, values: Array) -> Assumed:
-    """What the numbers of a column tell by themselves."""
-    there = values[np.isfinite(values)]
-    if not there.size:
-        return Assumed(UNITS[column.channel.quantity], "")
+def _by_itself(column: Column, columns: Sequence[Column]) -> Assumed:
+    """Return the unit of a column that is stated, or that its own numbers determine, or the usual one."""
+    values = column.raw[np.isfinite(column.raw)]
+    if column.unit is not None:
+        return Assumed(column.unit, "stated", True)
     match column.channel.quantity:
-        case "temperature":
-            return Assumed("degC", "as it would be too cold in K") if np.median(there) < 200.0 else Assumed("K", "")
-        case "angle":
-            return _of_angle(column, there)
-        case quantity:
-            return Assumed(UNITS[quantity], "")
+        case "time":
+            return _of_time(column, values, columns)
+        case "temperature" if len(values) and np.median(values) < MIN_KELVIN:
+            return Assumed("degC", "as it would be too cold in K")
+        case "angle" if len(values):
+            return _of_angle(column, values)
+    return Assumed(UNITS[column.channel.quantity])
 
 
-def _of_time(column: Column, columns: Sequence[Column], raw: Mapping[int, Array]) -> Assumed:
-    """Of stamps: by their size since 1970, by a step of a log in seconds, or by an angle and its speed in usual units."""
-    values = raw[column.position][np.isfinite(raw[column.position])]
-    late = float(np.abs(values).max(initial=0.0))
-    for least, unit in EPOCHS:
-        if late > least:
-            return Assumed(unit, "since 1970")
-    if len(values) > 1 and np.median(np.abs(np.diff(values))) < SLOWEST:
-        return Assumed("s", "")
-    for angle, speed in _pairs(columns):
-        units = {each.position: each.unit or UNITS[each.channel.quantity] for each in (angle, speed)}
-        sure = {each.position for each in (angle, speed) if each.unit is not None}
-        slope = _slope(raw[angle.position], raw[speed.position], raw[column.position])
-        for unit in FINER:
-            if _fitting(slope * convert(1.0, unit, "s"), units, angle, speed, sure):
-                return Assumed(unit, f"as {angle.name} then moves as {speed.name} says")
-        counts_rows = bool((np.diff(values) == 1.0).all())
+def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assumed:
+    """Return the unit of stamps: by their size since 1970, by a step of a log, or by an angle and its speed in usual units."""
+    latest = float(np.abs(values).max(initial=0.0))
+    if unit := next((unit for least, unit in EPOCHS if latest > least), None):
+        return Assumed(unit, "since 1970")
+    if len(values) > 1 and np.median(np.abs(np.diff(values))) < MAX_STEP_OF_LOG:
+        return Assumed("s")
+    counts_rows = bool((np.diff(values) == 1.0).all())
+    for angle, speed in pairs_of_shafts(columns):
+        slope, then = speed_per_slope(angle.raw, speed.raw, column.raw), f"{speed.name} is then the slope of {angle.name}"
+        for unit in ("ms", "us", "ns"):
+            if any(_fitting(slope * convert(1.0, unit, "s"), angle.unit, speed.unit)):
+                return Assumed(unit, f"as {then}")
+        expected = convert(1.0, f"{angle.unit or UNITS['angle']}/s", speed.unit or UNITS["speed"])
         for rate in RATES if counts_rows else ():
-            if (
-                slope
-                and abs(convert(1.0, units[speed.position], "rad/s") * slope / rate / _size(units[angle.position]) - 1.0) < NEAR
-            ):
-                return Assumed(
-                    "s", f"as it counts rows at {rate:g} Hz, at which {angle.name} moves as {speed.name} says", scale=1.0 / rate
-                )
+            if abs(slope / rate / expected - 1.0) < MAX_OFF_RATE:
+                return Assumed("s", f"as it counts rows at {rate:g} Hz: {then}", scale=1.0 / rate)
     hint = as_option("unit", "time", "ms")
     lasts = f" if the record lasted {np.ptp(values):.4g} ms" if len(values) else ""
     raise ValueError(
@@ -193,24 +155,19 @@ def _of_time(column: Column, columns: Sequence[Column], raw: Mapping[int, Array]
     )
 
 
-def _size(unit: str) -> float:
-    return convert(1.0, unit, "rad")
-
-
 def _of_angle(column: Column, values: Array) -> Assumed:
-    """Radians, unless the steps of an encoder or the range of a joint tell otherwise."""
+    """Return radians, unless the steps of an encoder or the range of a joint determine another unit."""
     step = smallest_step(values)
-    for unit, turn in (("deg", 360.0), ("rad", 2.0 * np.pi), ("rev", 1.0)):
-        if step and COARSEST <= (bits := round(np.log2(turn / step))) <= FINEST and abs(turn / step / 2.0**bits - 1.0) < EQUAL:
+    for unit in ("deg", "rad", "rev"):
+        if step and (bits := bits_of(ANGLES[unit] / step, MAX_OFF_STEP)):
             return Assumed(unit, f"as its steps are those of an encoder of {bits} bits", True)
-    at_joint = column.channel.side == "output" or (column.robot and column.channel.side is None)
-    if at_joint and np.abs(values).max() > JOINT:
+    if column.at_joint and np.abs(values).max() > MAX_JOINT_ANGLE:
         return Assumed("deg", f"as a joint does not reach {np.abs(values).max():.4g} rad")
-    return Assumed("rad", "")
+    return Assumed("rad")
 
 
 def smallest_step(values: Array) -> float | None:
-    """The step of which all steps of a series are whole multiples; None where there is none.
+    """Return the step of which all steps of a series are whole multiples; None if there is none.
 
     >>> smallest_step(np.array([0.0, 0.5, 0.5, 2.0, 1.5, 3.0, 3.5]))
     0.5
@@ -223,48 +180,19 @@ def smallest_step(values: Array) -> float | None:
     least = float(np.mean(near / np.round(near / steps.min())))
     near = steps[steps < 20.0 * least] / least
     off = np.abs(near - np.round(near))
-    return least if np.mean(off < 0.02) > MULTIPLES and len(near) >= 5 else None
+    return least if np.mean(off < 0.02) > MIN_SHARE_OF_MULTIPLES and len(near) >= 5 else None
 
 
-def _pairs(columns: Sequence[Column]) -> list[tuple[Column, Column]]:
-    """Angles and speeds of one shaft."""
-    kinds = [[c for c in columns if c.channel.quantity == name and not c.channel.commanded] for name in ("angle", "speed")]
-    return [(angle, speed) for angle in kinds[0] for speed in kinds[1] if angle.channel.side == speed.channel.side]
+def pairs_of_shafts(columns: Sequence[Column]) -> list[tuple[Column, Column]]:
+    """Return angles and speeds of one shaft."""
+    own = [column for column in columns if not column.channel.commanded]
+    angles, speeds = ([column for column in own if column.channel.quantity == each] for each in ("angle", "speed"))
+    return [(angle, speed) for angle in angles for speed in speeds if angle.channel.side == speed.channel.side]
 
 
-@np.errstate(all="ignore")
-def _slope(angle: Array, speed: Array, time: Array) -> float:
-    """How much of the speed there is for each unit of the angle's slope, by least squares; 0 where nothing moves.
-
-    Where an angle begins anew with each revolution it has no slope.
-    """
-    for parts in DIFFERENCES:
-        if slope := _slope_over(angle, speed, time, max(2, len(time) // parts)):
-            return slope
-    return 0.0
-
-
-@np.errstate(all="ignore")
-def _slope_over(angle: Array, speed: Array, time: Array, apart: int) -> float:
-    """The same over rows that are so far apart."""
-    if len(time) <= apart:
-        return 0.0
-    moved = angle[apart:] - angle[:-apart]
-    smooth = np.abs(moved) < WRAP * (np.nanmax(angle) - np.nanmin(angle))
-    forward = np.flatnonzero(np.isfinite(moved + speed[apart:]) & (time[apart:] > time[:-apart]) & smooth)
-    rate = moved[forward] / (time[apart:] - time[:-apart])[forward]
-    middle = speed[forward + apart // 2]
-    square = float(rate @ rate)
-    related = square > 0.0 and middle @ middle > 0.0 and (rate @ middle) ** 2 > 0.5 * square * (middle @ middle)
-    return float(rate @ middle) / square if related and np.isfinite(square) else 0.0
-
-
-def _fitting(slope: float, units: Mapping[int, str], angle: Column, speed: Column, sure: set[int]) -> list[tuple[str, str]]:
-    """Pairs of units that make the slope of the angle the speed; those in radians first."""
-    pairs = []
-    for one in (units[angle.position],) if angle.position in sure else ANGLES:
-        for other in (units[speed.position],) if speed.position in sure else SPEEDS if one != "rev" else ("rev/s", *SPEEDS):
-            expected = convert(1.0, f"{one}/s", other)
-            if abs(slope / expected - 1.0) < LIKE:
-                pairs.append((one, other))
-    return pairs
+def _fitting(slope: float, angle: str | None, speed: str | None) -> Iterator[tuple[str, str]]:
+    """Yield units of an angle and its speed in which the speed is the slope; None is open; those in radians come first."""
+    for one in ANGLES if angle is None else (angle,):
+        for other in (speed,) if speed is not None else SPEEDS if one != "rev" else ("rev/s", *SPEEDS):
+            if abs(slope / convert(1.0, f"{one}/s", other) - 1.0) < MAX_OFF_SPEED:
+                yield one, other

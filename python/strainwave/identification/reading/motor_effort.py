@@ -43,7 +43,7 @@ def one_effort(columns: Sequence[Column]) -> tuple[list[Column], list[tuple[str,
 
 def _is_effort(column: Column) -> bool:
     is_one = column.channel.quantity in ("torque", "current") and column.channel.measured and column.channel.side is None
-    return is_one and column.own and not column.said
+    return is_one and column.own and not column.by_user
 
 
 def _words(column: Column) -> set[str]:

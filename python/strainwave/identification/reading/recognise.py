@@ -19,7 +19,6 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints
 from strainwave.identification.reading.held import renewed_rows
 from strainwave.identification.reading.kinds import kind_of
-from strainwave.identification.reading.layout import LaidOutTable
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
 from strainwave.identification.reading.name_of_file import joint_in, speed_in
@@ -204,7 +203,7 @@ def _recognised(source: MeasurementFile, said: FileMapping) -> Recognised:
         (*found.why, *by_name),
         (*remarks, *_of_unused(unused)),
         dict(said.constants),
-        Recording(series, {name: _unit(name, used) for name in series}, table.title),
+        Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
         {column.which: name for name, column in neighbours.items()},
         tuple(regressors),
         _joint_of(found.columns, source.path),
@@ -282,22 +281,12 @@ def _check_named_effort(source: MeasurementFile, said: FileMapping) -> None:
     if source.is_of_one_quantity and not source.parts and (others := beside(source.path)):
         paths = " ".join(str(other) for other in (source.path, *others))
         raise UndecidedError(f"it has one quantity of a recording; name its files together: {paths}")
-    if not isinstance(source.table, LaidOutTable) or named & {"torque", "current", "voltage"}:
+    layout = source.layout
+    if layout is None or not layout.efforts or named & {"torque", "current", "voltage"}:
         return
-    layout, labels = source.table.layout, source.table.labels
-    blocks = listed(f"{name} = column{'s' * (len(places) > 1)} {_span(places)}" for name, places in layout.efforts.items())
-    if not blocks:
-        return
-    timed = layout.time is not None or "rate" in said.constants or any(label.name == "time" for label in labels)
-    options = layout.options(timed)
-    if layout.joints > 1 and said.joint is None:
-        options = f"--joint 1 (or --joint all) {options}"
-    raise UndecidedError(f"{source.table.remark}; name the torque or current among {blocks}, as with {options}", (), options)
-
-
-def _span(places: Sequence[int]) -> str:
-    is_run = places[-1] - places[0] == len(places) - 1 > 0
-    return f"{places[0] + 1} to {places[-1] + 1}" if is_run else listed(str(place + 1) for place in places)
+    is_timed = "rate" in said.constants or any(label.name == "time" for label in source.table.labels)
+    question, options = layout.question(is_timed=is_timed, joint=said.joint)
+    raise UndecidedError(question, (), options)
 
 
 def _further(source: MeasurementFile, said: FileMapping, undecided: UndecidedError) -> str:
@@ -386,13 +375,6 @@ def _unwrap(table: OpenTable, series: dict[str, Array], columns: Mapping[str, Co
                 raise ValueError(one_line(f"{table.file} column {quoted(column.name)} {error}")) from None
             if wraps:
                 yield f"{column.name} begins anew with each revolution, {wraps} times: it is taken to run on"
-
-
-def _unit(name: str, columns: Mapping[str, Column]) -> str:
-    if name == "time":
-        return "s"
-    column = columns[name]
-    return column.channel.unit if not (name == "command" and column.unit and column.unit.endswith("V")) else "V"
 
 
 def _without_held(series: dict[str, Array], columns: Mapping[str, Column], kind: str) -> tuple[dict[str, Array], list[str]]:

@@ -18,10 +18,10 @@ from strainwave.files.labels import Label, Source, places_of
 from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS, OpenTable, is_table_of_numbers, open_table
 from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.layout import is_slope, nameless, rises_evenly, with_layout
+from strainwave.identification.reading.layout import Layout, layout_of, nameless, rises_evenly
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS
-from strainwave.identification.reading.own_times import with_own_times
-from strainwave.identification.reading.two_part_time import with_whole_time
+from strainwave.identification.reading.slopes import is_slope
+from strainwave.identification.reading.times import with_one_time
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -60,13 +60,23 @@ class MeasurementFile:
         return _together(self.parts) if self.parts else open_table(self.path)
 
     @cached_property
+    def timed(self) -> OpenTable:
+        """The table with one time."""
+        return with_one_time(self.raw)
+
+    @cached_property
+    def layout(self) -> Layout | None:
+        """The layout of columns without names; None if they have some, or the numbers determine none."""
+        return layout_of(self.timed)
+
+    @property
     def table(self) -> OpenTable:
         """The table with one time, and with the names of its layout if it has no others.
 
         Raises:
             ValueError: the file cannot be read
         """
-        return with_layout(with_own_times(with_whole_time(self.raw)))
+        return self.timed if self.layout is None else self.layout.named(self.timed)
 
     @cached_property
     def names(self) -> set[str]:

@@ -41,6 +41,6 @@ def stretches(speed: Array) -> list[slice]:
 def averaged(columns: Mapping[str, Column], parts: Sequence[slice]) -> dict[str, Column]:
     """Columns whose rows are the means of stretches."""
     return {
-        name: replace(column, values=np.array([float(column.si[part].mean()) for part in parts]))
+        name: replace(column, si=np.array([float(column.si[part].mean()) for part in parts]))
         for name, column in columns.items()
     }

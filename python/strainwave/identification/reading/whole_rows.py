@@ -27,7 +27,7 @@ def whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str]) 
     lost = int((~whole).sum())
     rows = "1 row without a number in each column is" if lost == 1 else f"{lost} rows without a number in each column are"
     remarks.append(f"{rows} left out, the first at {table.place(int(np.argmin(whole)))}")
-    return [replace(column, values=column.si[whole]) for column in columns], remarks
+    return [replace(column, si=column.si[whole]) for column in columns], remarks
 
 
 def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
@@ -55,10 +55,10 @@ def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
     for column in columns:
         finite = there[column.position]
         if (finite & rows).sum() == rows.sum():
-            found.append(replace(column, values=column.si[rows]))
+            found.append(replace(column, si=column.si[rows]))
             continue
         moved.append(column.name)
         order = np.argsort(time[finite], kind="stable")
-        found.append(replace(column, values=np.interp(time[rows], time[finite][order], column.si[finite][order])))
+        found.append(replace(column, si=np.interp(time[rows], time[finite][order], column.si[finite][order])))
     said = f"rows are of several channels: at the {int(rows.sum())} rows of {slowest.name}"
     return found, f"{said}, {listed(moved)} is taken by linear interpolation"

@@ -54,7 +54,7 @@ def test_a_joint_that_would_reach_too_far_is_in_degrees(tmp_path: Path) -> None:
 def test_radians_are_taken_where_nothing_tells(tmp_path: Path) -> None:
     found = log(tmp_path, "theta_m,i", ANGLE, SPEED)
     assert found.units["input_angle"] == "rad"
-    assert "no unit is stated: t in s, theta_m in rad, i in A; --unit NAME=UNIT says another one" in found.remarks
+    assert "no unit is stated: t in s, theta_m in rad, i in A; otherwise add --unit NAME=UNIT" in found.remarks
 
 
 def test_counts_are_asked_for(tmp_path: Path) -> None:

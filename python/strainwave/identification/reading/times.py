@@ -1,0 +1,102 @@
+"""Times that are spread over columns: whole seconds and their parts, or a time before each channel."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.array_table import Grid, GridTable, grid_table
+from strainwave.files.labels import Label, Source
+from strainwave.files.tables import OpenTable
+from strainwave.files.units import convert, measures
+from strainwave.identification.reading.names import meaning, words_of
+from strainwave.identification.reading.renamed_table import Part, RenamedTable
+
+Array = NDArray[np.float64]
+
+SECONDS = ("s", "sec", "secs", "second", "seconds")
+PARTS = {
+    **dict.fromkeys(("ns", "nsec", "nsecs", "nanosec", "nanosecs", "nanosecond", "nanoseconds"), 1e-9),
+    **dict.fromkeys(("us", "usec", "usecs", "microsec", "microseconds"), 1e-6),
+}  # s
+MIN_PAIRS = 2  # of a time and a channel
+
+
+def with_one_time(table: OpenTable) -> OpenTable:
+    """Return the table with one column of time, if its times are spread over several.
+
+    Stamps of ROS are whole seconds and nanoseconds. Scopes and recorders of servo drives have a time before each channel:
+    channels with equal times become those of one time.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from strainwave.files.tables import open_table
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "log.csv").write_text("stamp.sec,stamp.nanosec,q\\n7,500000000,0.1\\n8,0,0.2\\n")
+    ...     numbers, _ = with_one_time(open_table(Path(folder, "log.csv"))).measured([Source(0, "time", "time", "s")])
+    ...     _ = Path(folder, "a.csv").write_text("t [ms];Position;t [ms];Torque\\n0;1,5;0;7\\n1;1,6;2;8\\n2;1,7;;\\n")
+    ...     table = with_one_time(open_table(Path(folder, "a.csv")))
+    >>> numbers["time"].tolist()
+    [7.5, 8.0]
+    >>> [label.name for label in table.labels], [grid.time.tolist() for grid in table.grids]
+    (['time', 'Position', 'Torque'], [[0.0, 0.001, 0.002], [0.0, 0.002]])
+    """
+    return _with_own_times(_with_whole_time(table))
+
+
+def _with_whole_time(table: OpenTable) -> OpenTable:
+    """Return the table with the sum of a column of whole seconds and one of their parts, if it has both."""
+    labels, ends = list(table.labels), [_end(label) for label in table.labels]
+    for seconds, (before, unit) in enumerate(ends):
+        for part, (beside, size) in enumerate(ends) if unit in SECONDS else ():
+            if beside == before and size in PARTS and _are_one_time(table, seconds, part, PARTS[size]):
+                labels[seconds] = Label(f"{labels[seconds].text} and {labels[part].text}", "time", "s")
+                return RenamedTable(table, labels, {seconds: Part(part, PARTS[size])})
+    return table
+
+
+def _end(label: Label) -> tuple[tuple[str, ...], str]:
+    """Return the words of a name, and the last of them or the unit, which names what is counted."""
+    words = words_of(label.name) + ([label.unit] if label.unit else [])
+    if len(words) > 1 and words[-2] in ("nano", "micro"):
+        words[-2:] = [words[-2] + words[-1]]
+    return (tuple(words[:-1]), words[-1]) if words else ((), "")
+
+
+def _are_one_time(table: OpenTable, seconds: int, part: int, size: float) -> bool:
+    """True if one column contains whole numbers, and the other one parts of one second."""
+    if not table.contents[seconds] == table.contents[part] == "numbers":
+        return False
+    numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in (seconds, part)])
+    whole, parts = (values[np.isfinite(values)] for values in (numbers[str(seconds)], numbers[str(part)]))
+    return bool(
+        whole.size and parts.size and (whole == np.round(whole)).all() and parts.min() >= 0.0 and size * parts.max() < 1.0
+    )
+
+
+def _with_own_times(table: OpenTable) -> OpenTable:
+    """Return the table with channels of equal times beside one time, if each channel has an increasing time before it."""
+    labels = [label for label in table.labels if label.text]
+    is_time = [(found := meaning(label)) is not None and found.quantity == "time" for label in labels]
+    pairs = len(labels) // 2
+    if pairs < MIN_PAIRS or len(labels) % 2 or is_time != [True, False] * pairs or isinstance(table, GridTable):
+        return table
+    channels = {label.name: label.unit or "" for label in labels[1::2]}
+    if len(channels) < pairs:
+        return table
+    numbers, remarks = table.measured([Source(place, label.name, str(place), "1") for place, label in enumerate(labels)])
+    grids = list[Grid]()
+    for place, name in zip(range(0, len(labels), 2), channels, strict=True):
+        time, values = numbers[str(place)], numbers[str(place + 1)]
+        rows = np.isfinite(time) & np.isfinite(values)
+        time, values = convert(time[rows], _unit_of_time(labels[place]), "s"), values[rows]
+        if not len(time) or not (np.diff(time) > 0.0).all():
+            return table
+        same = next((at for at, grid in enumerate(grids) if np.array_equal(grid.time, time)), len(grids))
+        before = grids[same].columns if same < len(grids) else {}
+        grids[same : same + 1] = [Grid(time, {**before, name: values})]
+    return grid_table(table.file, table.title, grids, channels, [*remarks, *table.left_out])
+
+
+def _unit_of_time(label: Label) -> str:
+    return label.unit if label.unit is not None and measures(label.unit, "s") else "s"
