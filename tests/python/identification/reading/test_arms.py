@@ -68,7 +68,7 @@ def test_a_table_without_names_is_read_by_its_layout(tmp_path: Path, seen: dict[
 def test_a_time_that_counts_milliseconds_is_found_by_the_speed(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     arms.kinova(tmp_path / "log.csv", arms.Recorder(rate=1000.0)(arms.run((JOINT,) * 3, arms.fourier(4.0, (1,), seed=2))))
     found = recognise(tmp_path / "log.csv", FileMapping(joint="2"))
-    assert any("Time in ms as Position2 then moves as Velocity2 says" in remark for remark in found.remarks)
+    assert any("Time in ms as Velocity2 is then the slope of Position2" in remark for remark in found.remarks)
     assert found.recording["time"][-1] == pytest.approx(3.9, abs=0.01)
 
 
@@ -232,9 +232,7 @@ def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path
     told = FileMapping(columns={"joint_torque": "block4"}, constants={"rate": 200.0})
     assert recognise(tmp_path / "a.txt", told).recording["output_angle"] == pytest.approx(alone["q"][1])
     np.savetxt(tmp_path / "b.txt", alone["current"][1])
-    with pytest.raises(
-        ValueError, match="of a record at one constant speed say it, as with --column current=1 --constant speed="
-    ):
+    with pytest.raises(ValueError, match="name it if the speed was constant, as with --column current=1 --constant speed="):
         recognise(tmp_path / "b.txt")
 
 

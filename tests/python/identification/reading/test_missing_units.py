@@ -79,7 +79,7 @@ def test_what_is_said_goes_before_what_is_stated(tmp_path: Path) -> None:
     log(tmp_path, "theta_m [deg],i [A]", ANGLE, SPEED)
     found = recognise(tmp_path / "log.csv", FileMapping(units={"theta_m": "rad"}))
     assert found.recording["input_angle"] == pytest.approx(ANGLE)
-    assert "theta_m is stated in deg, and taken in rad, as was said" in found.remarks
+    assert "theta_m is stated in deg, and taken in rad, as --unit has it" in found.remarks
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e6, "us"), (1e9, "ns")])

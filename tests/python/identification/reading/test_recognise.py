@@ -168,9 +168,7 @@ def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
 
 
 def test_what_is_no_measurement_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(
-        ValueError, match=r"no name of a column tells what it measures: foo, bar; say it, as with --column speed=foo"
-    ):
+    with pytest.raises(ValueError, match=r"no column has a name that is known: foo, bar; name it, as with --column speed=foo"):
         recognise(write(tmp_path / "a.csv", "foo,bar", [1.0, 2.0], [1.0, 2.0]))
     with pytest.raises(ValueError, match=r"it holds time, position, which is no measurement that is known"):
         recognise(write(tmp_path / "b.csv", "time [s],position [rad]", TIME, SWING))
