@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.candidates.motion import bands, fit_motion
+from strainwave.identification.candidates.motion import MAX_DELAY_SAMPLES, _is_sensible, bands, fit_motion, refit
 from strainwave.identification.candidates.motion_model import LOSSES
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
@@ -141,6 +141,28 @@ def test_a_delay_is_found_and_does_not_bias_friction() -> None:
         assert abs(values[NAMES[name]].value - TRUTH[name]) < 4.0 * values[NAMES[name]].sigma
 
 
+def test_no_delay_is_longer_than_five_samples() -> None:
+    """An effort that another motion made, as that of a hand, fits best with a delay that no clock makes."""
+    log = MotionLog.of(record(TRUTH, 0.05, 1, delay=0.4), drive())
+    tried = fit_motion([log], drive())
+    for best in (tried[0], *(each for each in tried if _is_sensible(each))):
+        delays = [each.start for each in best.log.nuisances if each.name == "delay"]
+        assert all(abs(delay) < MAX_DELAY_SAMPLES / RATE for delay in delays)
+    long = next(each for each in tried if each.log.delayed)
+    assert not _is_sensible(long)
+
+
+def test_the_error_held_out_is_that_of_all_samples_in_the_full_band() -> None:
+    """A wave of 40 Hz lies above the pass band of the fit, and begins in the last third of the motion."""
+    usual = record(TRUTH, 0.02, 1)
+    wave = np.where(0.7 * TIME[-1] < TIME, np.sin(2.0 * np.pi * 40.0 * TIME), 0.0)
+    log = MotionLog.of(usual.with_column("current", usual["current"] + wave, "A"), drive())
+    held_out, _ = refit(fit_motion([log], drive())[0], drive())
+    assert held_out.error == pytest.approx(np.sqrt(0.5), rel=0.1)
+    assert held_out.samples == pytest.approx(0.3 * len(TIME), rel=0.05)
+    assert held_out.in_band < 0.2 * held_out.relative
+
+
 def test_a_slow_clock_that_jitters_does_not_bias_the_inertia() -> None:
     """Of 100 Hz: straight lines between samples, or differences of second order, would move it by 0.2 %."""
     rows = np.cumsum(np.random.default_rng(4).integers(2, 4, 1900))
@@ -174,6 +196,13 @@ def test_noise_and_what_is_smooth_are_no_outliers() -> None:
         assert np.mean(spoilt(smooth)) < 2e-3
         for noise in (1e-4, 1e-2, 0.3):
             assert np.mean(spoilt(smooth + noise * random.standard_normal(len(TIME)))) < 1e-3
+
+
+def test_ripple_that_grows_with_the_speed_has_no_outliers() -> None:
+    """A threshold from the noise of the whole record takes 14 % for outliers."""
+    ripple = np.abs(SPEED) * np.cos(240.0 * ANGLE)
+    values = 6.0 * np.sign(SPEED) + 25.0 * np.sin(ANGLE) + ripple + 0.1 * np.random.default_rng(2).standard_normal(len(TIME))
+    assert np.mean(spoilt(values)) < 0.01
 
 
 def ringing(truth: dict[str, float], stiffness: float, seed: int) -> sw.Recording:
