@@ -132,18 +132,6 @@ def test_friction_that_vanished_in_a_file_is_not_the_start_of_the_next_one(tmp_p
     assert all(abs(each.estimate.value) > 1e-9 for each in found.parameters)
 
 
-@pytest.mark.parametrize("constant", [CONSTANT, 0.002])
-def test_a_log_in_amperes_has_the_friction_of_one_in_newton_metres(tmp_path: Path, constant: float) -> None:
-    """Stiffness in N.m/rad over inertia in A.s2/rad is no natural frequency: it would narrow the pass band."""
-    recording = record(TRUTH, 0.05, 3)
-    current = recording["current"] * CONSTANT / constant
-    recording.with_column("current", current, "A").to_csv(tmp_path / "log.csv")
-    (file,) = identify("hfuc-20-80", [tmp_path / "log.csv"]).files
-    coulomb = next(each for each in file.estimates if each.path.endswith("coulomb"))
-    assert (coulomb.unit, coulomb.why) == ("A", "")
-    assert coulomb.value * constant == pytest.approx(TRUTH["coulomb"], rel=0.02)
-
-
 def finding(name: str, value: float, sigma: float, common: float = 0.0) -> FileResult:
     return FileResult(name, estimates=(FileEstimate("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
 
