@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from strainwave.commands.file_options import mapping_from_options
+from strainwave.commands.file_options import FileOptions
 from strainwave.files.recording import Recording
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
@@ -195,11 +195,8 @@ def mapping(trial: Trial) -> Any:
     for name, value in zip(given[::2], given[1::2], strict=True):
         values.setdefault(name, []).append(value)
     one = {name: values.get(f"--{name}", [None])[0] for name in ("side", "joint", "kind")}
-    opened = measurement_files(paths(trial)).files
-    return mapping_from_options(
-        None, values.get("--column"), values.get("--unit"), values.get("--constant"), one["side"], one["joint"], one["kind"],
-        files=opened,
-    )  # fmt: skip
+    several = (values.get(f"--{name}") for name in ("column", "unit", "constant"))
+    return FileOptions(None, *several, **one).mapping_of(measurement_files(paths(trial)).files)
 
 
 def best_of_yardstick(trial: Trial) -> float:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator
-from strainwave.commands.file_options import mapping_from_options
+from strainwave.commands.file_options import FileOptions
 from strainwave.identification.reading.mapping import CONSTANTS
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import measurement_files
@@ -52,7 +52,7 @@ def mappings_case(random: Generator, folder: Path) -> Case:
     constants = [f"{picked(random, tuple(CONSTANTS))}={picked(random, VALUES)}"] if random.random() < 0.5 else []
 
     def attempt() -> Recognised:
-        given = mapping_from_options(path, [], [], constants, None, None, None, measurement_files([log]).files)
+        given = FileOptions(path, constant=constants).mapping_of(measurement_files([log]).files)
         return recognise(log, given(log))
 
     def check(found: Recognised) -> None:

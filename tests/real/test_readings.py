@@ -8,7 +8,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from strainwave.commands.file_options import mapping_from_options
+from strainwave.commands.file_options import FileOptions
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, identify, read_measurements
 from strainwave.identification.rank import rank
@@ -34,7 +34,7 @@ def identified(path: Path, options: str = "") -> Identified:
     files = measurement_files([path])
     joint = given.get("--joint", [None])[0]
     options_of = ("--column", "--unit", "--constant")
-    said = mapping_from_options(None, *(given.get(name) for name in options_of), None, joint, files=files.files)
+    said = FileOptions(None, *(given.get(name) for name in options_of), joint=joint).mapping_of(files.files)
     try:
         return identify("csg-20-100", files, mapping=said)
     except ValueError as question:

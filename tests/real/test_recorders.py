@@ -8,7 +8,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from strainwave.commands.file_options import mapping_from_options
+from strainwave.commands.file_options import FileOptions
 from strainwave.identification.reading.consistent import consistent
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
@@ -32,8 +32,8 @@ def answered(file: MeasurementFile) -> tuple[Recognised, str]:
         for name, value in zip(options[::2], options[1::2], strict=True):
             values.setdefault(name, []).append(value)
         joint = values.get("--joint", [None])[0]
-        said = mapping_from_options(
-            None, values.get("--column"), values.get("--unit"), values.get("--constant"), None, joint, files=[file]
+        said = FileOptions(None, *(values.get(f"--{name}") for name in ("column", "unit", "constant")), joint=joint).mapping_of(
+            [file]
         )
         try:
             return recognise(file, said(file.path)), given

@@ -7,23 +7,23 @@ from typing import Annotated
 
 import typer
 
+from strainwave.commands.progress import progress
+
 
 def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
     """Identify two gears from published measurements, and simulate published experiments with one of them."""
-    from rich.console import Console
-
-    from strainwave.commands.identify import files_to_write, summary
     from strainwave.demo import PUBLISHED, experiments, position_drive, torsion_rig
     from strainwave.files.writing import write_folder
+    from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
-    with Console(stderr=True).status("reading") as status:
+    with progress() as turn:
         for name, identify in (("torsion-rig", torsion_rig), ("position-drive", position_drive)):
-            status.update(name.replace("-", " "))
+            turn(name.replace("-", " "))
             found = identify()
             runs = experiments(found) if name == "position-drive" else []
             published = PUBLISHED.glob(f"{'torsional' if name == 'torsion-rig' else 'position'}*")
             provenance = Provenance.of_this_command(published)
-            write_folder(out / name, files_to_write(found, provenance, accept=True, experiments=runs))
-            print("\n".join(summary(found)))
+            write_folder(out / name, identify_files(found, provenance, accepted=True, experiments=runs))
+            print("\n".join(identify_summary(found)))
             print(f"wrote {out / name / 'gear.toml'} and {out / name / 'report.html'}")

@@ -1,36 +1,110 @@
-"""What commands that read any files ask of them: the options, and what they say of a file."""
+"""Options of commands that read measurement files, declared once for all of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import wraps
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from strainwave.identification.kinds import KINDS
-from strainwave.messages import quoted
+from strainwave.messages import listed, pairs, quoted, unquoted
 from strainwave.number_texts import is_whole, number_in
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
-    from strainwave.identification.reading.source import MeasurementFile
+    from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
 Gear = Annotated[str, typer.Argument(help="Where to start: a catalogue set, as hfuc-25-100, or a gear file.")]
-Mapping = Annotated[Path | None, typer.Option(help="TOML file that says what is in which column, for all files or for some.")]
-Columns = Annotated[
-    list[str] | None, typer.Option(help="A column's name or number in the files, as speed=3; repeat as needed.")
-]
-Units = Annotated[
-    list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
-]
-Constants = Annotated[
-    list[str] | None,
-    typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
-]
-Side = Annotated[str | None, typer.Option(help="Where a table or angles were measured that do not say it: input or output.")]
-Kind = Annotated[str | None, typer.Option(help=f"What files are that may be two things: {', '.join(KINDS)}.")]
-Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several; with identify, all takes every one.")]
+
+
+@dataclass(frozen=True)
+class FileOptions:
+    """Options that state what measurement files contain; a verb that takes them has them as `--mapping`, `--column`, …"""
+
+    mapping: Annotated[Path | None, typer.Option(help="TOML file with the columns of all or some files.")] = None
+    column: Annotated[
+        list[str] | None, typer.Option(help="A column's name or number in the files, as speed=3; repeat as needed.")
+    ] = None
+    unit: Annotated[
+        list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
+    ] = None
+    constant: Annotated[
+        list[str] | None,
+        typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
+    ] = None
+    side: Annotated[
+        str | None, typer.Option(help="Side of a table, or of angles, whose names do not contain it: input or output.")
+    ] = None
+    joint: Annotated[str | None, typer.Option(help="Joint, of files with several; with identify, all takes every one.")] = None
+    kind: Annotated[str | None, typer.Option(help=f"Kind of files that may be of two kinds: {', '.join(KINDS)}.")] = None
+
+    def __post_init__(self) -> None:
+        from strainwave.arguments import one_of
+
+        if self.side is not None:
+            one_of("side", self.side, ("input", "output"))
+
+    def mapping_of(self, files: Sequence[MeasurementFile]) -> Callable[[Path], FileMapping]:
+        """Return the function that gives the mapping of each file: of its own columns, the options before the mapping file.
+
+        Args:
+            files: that the command reads
+
+        Raises:
+            ValueError: an option is not written as it must be, or names no channel, or a column that none of the files has
+        """
+        from strainwave.identification.reading.channels import ALIASES, CHANNELS
+        from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
+        from strainwave.identification.reading.source import measurement_file
+
+        side: Any = self.side
+        channels = {*CHANNELS, *ALIASES}
+        columns = pairs("--column", self.column, channels)
+        names = dict.fromkeys(name for file in files for name in file.names) if columns or self.unit else {}
+        for channel, column in columns.items() if names else ():
+            if not any(_has(file, column) for file in files):
+                raise ValueError(
+                    f"--column {channel}={unquoted(column)}: no file has a column {quoted(column)}; there are {listed(names)}"
+                )
+        units = pairs("--unit", self.unit, channels.union(names))
+        constants = pairs("--constant", self.constant, set(CONSTANTS))
+        numbers = {name: constant_of(name, value) for name, value in constants.items()}
+        from_file = MappingFile.read(self.mapping) if self.mapping is not None else None
+        opened = {file.path: file for file in files}
+
+        def of(path: Path) -> FileMapping:
+            file = opened.get(path) or measurement_file(path)
+            own = {channel: column for channel, column in columns.items() if _has(file, column)}
+            of_it = {name: unit for name, unit in units.items() if name in channels or name in file.names}
+            given = FileMapping(own, of_it, constants=numbers, side=side, joint=self.joint, kind=self.kind)
+            return from_file.of(path).updated(given) if from_file is not None else given
+
+        return of
+
+
+def with_file_options(verb: Callable[..., None]) -> Callable[..., None]:
+    """Return a verb that has each of `FileOptions` as an option of its own, in place of its parameter `given`."""
+    own, options = signature(verb, eval_str=True), signature(FileOptions, eval_str=True).parameters
+    places = [options.values() if each.name == "given" else (each,) for each in own.parameters.values()]
+    parameters = [each for place in places for each in place]
+
+    @wraps(verb)
+    def expanded(**arguments: Any) -> None:
+        verb(given=FileOptions(**{name: arguments.pop(name) for name in options}), **arguments)
+
+    expanded.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
+    expanded.__annotations__ = {each.name: each.annotation for each in parameters}
+    return expanded
+
+
+def paths_in(files: MeasurementFiles) -> list[Path]:
+    """Return the paths of all files that a command reads, those of a measurement in several files one by one."""
+    return [part.path for file in files.files for part in file.parts or (file,)]
 
 
 def number_option(value: str | float) -> float:
@@ -60,50 +134,7 @@ def whole_option(value: str | int) -> int:
     return int(value)
 
 
-def mapping_from_options(
-    mapping: Path | None,
-    column: list[str] | None,
-    unit: list[str] | None,
-    constant: list[str] | None,
-    side: Any,
-    joint: str | None,
-    kind: Any = None,
-    files: Sequence[MeasurementFile] = (),
-) -> Callable[[Path], FileMapping]:
-    """What the options say of a file: of columns that it has; over what the mapping file says.
-
-    Raises:
-        ValueError: an option is not written as it must be, or names what is no channel and no column of any of the files
-    """
-    from strainwave.identification.reading.channels import ALIASES, CHANNELS
-    from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
-    from strainwave.identification.reading.source import measurement_file
-    from strainwave.messages import pairs
-
-    known = {*CHANNELS, *ALIASES}
-    names = known.union(*(file.names for file in files)) if unit else known
-    columns, units = pairs("--column", column, known), pairs("--unit", unit, names)
-    constants = {name: constant_of(name, value) for name, value in pairs("--constant", constant, set(CONSTANTS)).items()}
-    from_file = MappingFile.read(mapping) if mapping is not None else None
-    opened = {file.path: file for file in files}
-
-    def of(path: Path) -> FileMapping:
-        file = opened.get(path) or measurement_file(path)
-        own = {name: each for name, each in columns.items() if file.has(each) or _are_there(each.split(","), file)}
-        of_it = {name: each for name, each in units.items() if name in known or name in file.names}
-        given = FileMapping(columns=own, units=of_it, constants=constants, side=side, joint=joint, kind=kind)
-        return from_file.of(path).updated(given) if from_file is not None else given
-
-    return of
-
-
-def _are_there(parts: Sequence[str], file: MeasurementFile) -> bool:
-    """True if each part is a name, or may be the number of a column."""
-    return all(file.has(part) or (part.isascii() and part.isdigit()) for part in map(str.strip, parts))
-
-
-def names_in(path: Path) -> set[str]:
-    """Column names of a file. Empty if the file cannot be read; `recognise` then reports the error."""
-    from strainwave.identification.reading.source import measurement_file
-
-    return measurement_file(path).names
+def _has(file: MeasurementFile, column: str) -> bool:
+    """True if a file has a column, or each of several separated by commas: by name, or perhaps by number."""
+    parts = map(str.strip, column.split(","))
+    return file.has(column) or all(file.has(part) or (part.isascii() and part.isdigit()) for part in parts)

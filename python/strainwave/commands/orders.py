@@ -2,35 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.commands.file_options import Columns, Joint, Kind, Units, names_in, number_option
+from strainwave.commands.file_options import FileOptions, number_option, with_file_options
+from strainwave.commands.progress import progress
 
 if TYPE_CHECKING:
     from strainwave.orders.measured import OrdersFound
 
 
+@with_file_options
 def orders(
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a drive, each examined separately.")],
+    given: FileOptions,
     ratio: Annotated[
         float | None,
-        typer.Option(
-            parser=number_option,
-            help="Ratio of the gear, if it is known, with all its digits; else it is found, if the file determines it.",
-        ),
+        typer.Option(parser=number_option, help="Ratio of the gear, with all its digits; found, if the file determines it."),
     ] = None,
-    column: Columns = None,
-    unit: Units = None,
-    side: Annotated[str | None, typer.Option(help="Side of an angle whose name does not contain it: input or output.")] = None,
     rate: Annotated[
         float | None, typer.Option(parser=number_option, help="Samples per second of files without time, in Hz.")
     ] = None,
-    joint: Joint = None,
-    kind: Kind = None,
     highest: Annotated[
         float | None, typer.Option(parser=number_option, help="Order up to which ripple is looked for, at most 100000.")
     ] = None,
@@ -42,82 +37,50 @@ def orders(
     lines that repeat with the angle, and from them the ratio. Lines that repeat with time, as mains and resonances, are
     separated if the speed varies; lines of other joints that move, if their angles are in the file.
     """
-    from rich.console import Console
-
-    from strainwave.arguments import number, one_of
+    from strainwave.arguments import number
+    from strainwave.files.gear_set import catalogue
     from strainwave.files.writing import write_folder
     from strainwave.identification.reading.mapping import check_constant
     from strainwave.messages import one_line
     from strainwave.orders.ripple import MAX_ORDER
-    from strainwave.report.orders import orders_files, orders_report, orders_summary
+    from strainwave.report.orders import orders_files, orders_summary
     from strainwave.report.provenance import Provenance
 
-    if side is not None:
-        one_of("side", side, ("input", "output"))
     for option, value in (("ratio", ratio), ("rate", rate)):
         if value is not None:
             check_constant(f"--{option}", option, value)
     if highest is not None:
         number("--highest", highest, brackets="(]", low=0.0, high=MAX_ORDER)
-    _check_files(paths)
-    with Console(stderr=True).status("reading") as status:
+    if sets := [str(path) for path in paths if not path.exists() and str(path) in catalogue()]:
+        raise ValueError(
+            f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
+        )
+    with progress(len(paths)) as turn:
         found = []
         for path in paths:
-            status.update(path.name)
+            turn(path.name)
             try:
-                found.append(_of_file(path, ratio, column or (), unit or (), side, rate, joint, kind, highest))
+                found.append(_of_file(path, given, ratio, rate, highest))
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(path) in str(error) else f"{path}: {error}")) from None
-        status.update("report")
-        files = orders_files(found)
-        files["report.html"] = orders_report(found, Provenance.of_this_command(paths))
+        turn("report")
+        files = orders_files(found, Provenance.of_this_command(paths))
         write_folder(out, files)
     print(orders_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
 
 
-def _check_files(paths: Sequence[Path]) -> None:
-    """Raise ValueError for the name of a gear set, which other commands take before the files."""
-    from strainwave.files.gear_set import catalogue
-
-    sets = [str(path) for path in paths if not path.exists() and str(path) in catalogue()]
-    if sets:
-        raise ValueError(
-            f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
-        )
-
-
-def _of_file(
-    path: Path,
-    ratio: float | None,
-    column: Sequence[str],
-    unit: Sequence[str],
-    side: str | None,
-    rate: float | None,
-    joint: str | None,
-    kind: Any,
-    highest: float | None,
-) -> OrdersFound:
-    from dataclasses import replace
-
-    from strainwave.identification.reading.channels import CHANNELS
-    from strainwave.identification.reading.mapping import FileMapping
+def _of_file(path: Path, given: FileOptions, ratio: float | None, rate: float | None, highest: float | None) -> OrdersFound:
     from strainwave.identification.reading.recognise import recognise
-    from strainwave.messages import pairs
+    from strainwave.identification.reading.source import measurement_file
     from strainwave.orders.measured import orders_found
 
-    where: Any = side
-    known = set(CHANNELS)
-    names = known | names_in(path) if unit else known
-    mapping = FileMapping(
-        columns=pairs("--column", list(column), known),
-        units=pairs("--unit", list(unit), names),
-        constants={} if rate is None else {"rate": rate},
-        joint=joint,
-        side=where,
-        kind=kind,
-    )
-    read = recognise(path, mapping)
+    file = measurement_file(path)
+    mapping = given.mapping_of([file])(path)
+    constants = mapping.constants if rate is None else {**mapping.constants, "rate": rate}
+    read = recognise(file, replace(mapping, constants=constants))
+    ratio = read.constants.get("ratio") if ratio is None else ratio
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
-    found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest, other_angles=read.neighbours)
+    side: Any = mapping.side
+    found = orders_found(read.recording, path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

@@ -23,6 +23,7 @@ from strainwave.report.experiment import SimulatedExperiment
 from strainwave.simulation.signals import outputs
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
@@ -193,10 +194,11 @@ def legend(figure: Figure, axes: Axes) -> None:
 # ---- From a drawing to SVG -------------------------------------------------------------------------------------------
 
 
-def inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
-    """SVG to stand in a page, whose colours and letters it takes."""
-    svg: str = ElementTree.tostring(_svg(draw, size, name, title), encoding="unicode")
-    return svg
+def inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> Markup:
+    """Return SVG to stand in a page, whose colours and letters it takes."""
+    from markupsafe import Markup
+
+    return Markup(ElementTree.tostring(_svg(draw, size, name, title), encoding="unicode"))
 
 
 def standalone(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified
-from strainwave.identification.kinds import KINDS, kind_named
+from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
 from strainwave.identification.results.combined_parameter import (
     MAX_DISTANCE,
@@ -21,17 +21,15 @@ from strainwave.identification.results.combined_parameter import (
     distance,
 )
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
-from strainwave.identification.results.parameter_state import ParameterState
+from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
+from strainwave.report.errors import held_out_rows, percent
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render
 from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import fixed, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
-
-if TYPE_CHECKING:
-    from markupsafe import Markup
+from strainwave.report.typeset import fixed, interval, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 MIN_WIDENED = 1.05  # factor of the standard deviation of a mean, from which on it is stated
 DIGITS_BESIDE_SPREAD = 4  # of a number beside the scatter of individual gears
@@ -50,7 +48,7 @@ def identify_report(
         found: the result
         provenance: how the page came to be, if that is to be shown
         experiments: simulated with the gear
-        accepted: whether the gear is written in spite of failed checks
+        accepted: if true, the gear is written in spite of failed checks
 
     Returns:
         HTML; the same for the same arguments
@@ -70,7 +68,8 @@ def identify_report(
             "contradictions": [_contradiction(each, other) for each in found.parameters for other in each.contradicts],
             "max_distance": number(MAX_DISTANCE),
             "max_distance_in_mean": number(MAX_DISTANCE_IN_MEAN),
-            "effects": list(_by_effect(found)),
+            "effects": (effects := list(_by_effect(found))),
+            "has": {key for _, rows in effects for row in rows for key in ("start", "others", "copies") if row[key]},
             "comparisons": list(_comparisons(found)),
             "undetermined": _undetermined(found),
             "kept": _kept(found),
@@ -89,77 +88,74 @@ def identify_report(
 
 
 def _verdict(found: Identified, accepted: bool) -> str:
-    """Return in one sentence what came out."""
+    """Return the outcome in one sentence."""
     failed, checks = len(found.failed), len(found.checks)
+    parts = [_counts(found), *_unexplained(found)]
     if failed:
         written = "the gear was written all the same, as accepted" if accepted else "no gear was written"
-        return f"{failed} of {checks} {'check' if checks == 1 else 'checks'} failed, and {written}. {_counts(found)}."
-    passed = {0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed")
-    return f"{_counts(found)}; {passed}."
+        parts.insert(0, f"{failed} of {_several(checks, 'check')} failed, and {written}")
+    else:
+        parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
+    sentence = "; ".join(parts)
+    return f"{sentence[0].upper()}{sentence[1:]}."
 
 
 def _counts(found: Identified) -> str:
     """Return how many files determine how many parameters: "5 files: 3 determine 17 parameters, 1 is refused"."""
+    given = [each for each in found.files if each.recognised is None or each.recognised.columns]  # no table of several files
     refused = sum(bool(each.refused) for each in found.files)
     copies = sum(bool(each.same_as) and not each.refused for each in found.files)
     points = sum(bool(each.part_of) for each in found.files)
-    given = [each for each in found.files if each.recognised is None or each.recognised.columns]  # no table of several files
     determining = sum(any(not estimate.why for estimate in each.estimates) and not each.same_as for each in given)
-    files, count = len(given), len(found.parameters)
-    verb = "determines" if determining == 1 else "determine"
-    parts = [f"{determining} {verb} {count} {'parameter' if count == 1 else 'parameters'}"]
-    for several, one, many in (
+    parameters = _several(len(found.parameters), "parameter") if found.parameters else "no parameter"
+    if len(given) == 1:
+        return f"the file {'is refused' if refused else f'determines {parameters}'}"
+    parts = []
+    for count, one, many in (
+        (determining, f"determines {parameters}", f"determine {parameters}"),
         (copies, "contains the measurement of another", "contain the measurement of another"),
         (points, "is a point of a table of several files", "are points of a table of several files"),
-        (files - determining - copies - refused - points, "determines none", "determine none"),
+        (len(given) - determining - copies - refused - points, "determines none", "determine none"),
         (refused, "is refused", "are refused"),
     ):
-        parts += [f"{several} {one if several == 1 else many}"] if several else []
-    return f"{files} {'file' if files == 1 else 'files'}: {', '.join(parts)}"
+        parts += [f"{count} {one if count == 1 else many}"] if count else []
+    return f"{len(given)} files: {', '.join(parts)}"
+
+
+def _unexplained(found: Identified) -> list[str]:
+    """Return the error on data held out, from the best to the worst file; empty if there is none."""
+    shares = [each.held_out.relative for each in found.files if each.held_out is not None and not each.refused]
+    if not shares or not np.isfinite(shares).all():
+        return []
+    ends = dict.fromkeys(percent(end) for end in (min(shares), max(shares)))
+    return [f"{' to '.join(ends)} of what varies on data held out is unexplained"]
+
+
+def _several(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _card(result: FileResult, anchor: str) -> dict[str, Any]:
-    """Return what the first screen shows of a file: its error on data held out, and its first picture."""
-    from markupsafe import Markup
-
-    shown = [(picture, f"{anchor}-{place}" if place else anchor) for place, picture in enumerate(result.pictures)]
+    """Return what the first screen shows of a file: its errors on data held out, and its first picture."""
     drawn = [
         {
             "title": picture.title,
             "caption": _caption(result, picture),
-            "svg": Markup(plots.file_figure(result, picture, f"{at}-figure")),
+            "svg": plots.file_figure(result, picture, f"{anchor}-{place}-figure" if place else f"{anchor}-figure"),
         }
-        for picture, at in shown
+        for place, picture in enumerate(result.pictures)
     ]
     return {
         "name": result.name,
         "anchor": anchor,
-        "kind": _what(result),
+        "kind": result.title,
         "model": result.model,
         "failed": bool(result.failed),
         "same_as": result.same_as,
-        "error": _error(result),
-        "first": drawn[:1],
-        "more": drawn[1:],
+        "held_out": result.held_out,
+        "errors": held_out_rows(result.held_out),
+        "pictures": drawn,
     }
-
-
-def _error(result: FileResult) -> list[tuple[str, str]]:
-    """Return the error on data held out beside that of plain least squares and of predicting nothing, with labels."""
-    held_out = result.held_out
-    if held_out is None:
-        if not np.isfinite(result.error):
-            return []
-        return [("Error on data held out", f"{number(100.0 * result.error, 2)} % of what varies")]
-    share = f"{quantity(held_out.error, held_out.unit)}, {number(100.0 * held_out.relative, 2)} % of what varies"
-    rows = [(f"Error on data held out ({held_out.stretch})", share)]
-    if np.isfinite(held_out.plain):
-        rows.append(("Plain least squares there", quantity(held_out.plain, held_out.unit)))
-    return [*rows, (f"{held_out.channel.replace('_', ' ').capitalize()} varies by", quantity(held_out.zero, held_out.unit))]
-
-
-def _what(result: FileResult) -> str:
-    return result.what or (KINDS[result.recognised.kind].title if result.recognised is not None else "not read")
 
 
 def _caption(result: FileResult, picture: Picture) -> str:
@@ -194,7 +190,7 @@ def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
         "law": taken.law if taken.law.startswith(("in ", "of ", "at ")) else "",
         "unit": unit(taken.unit),
         "value": uncertain(taken.value, taken.sigma),
-        "interval": f"{number(taken.value - half, 3)} to {number(taken.value + half, 3)}",
+        "interval": interval(taken.value - half, taken.value + half, taken.sigma),
         "source": each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files",
         "widened": number(each.widened, 2) if each.widened > MIN_WIDENED else "",
         "shifts": ", ".join(f"{path} by {number(100.0 * by, 2)} %" for path, by in taken.shift_by_kept.items()),
@@ -271,7 +267,8 @@ def _kept(found: Identified) -> dict[str, list[str]]:
     kept: dict[str, list[str]] = {}
     for each in found.states:
         if each.state == "kept" and not each.why.endswith(NOT_GIVEN):
-            kept.setdefault(each.why or "as in the start set", []).append(_kept_number(each))
+            why = each.why.removeprefix(f"{UNDETERMINED}; ") or "as in the start set"
+            kept.setdefault(why, []).append(f"{each.path} = {number(each.value)} {unit(each.unit)}".strip())
     return kept
 
 
@@ -279,10 +276,6 @@ def _absent(found: Identified) -> str:
     """Return the parts that the model does without, as neither the set nor a file has anything of them."""
     parts = [each.path.rpartition(".")[0] for each in found.states if each.why.endswith(NOT_GIVEN)]
     return ", ".join(part.removeprefix("gear.").replace("_", " ") for part in dict.fromkeys(parts))
-
-
-def _kept_number(each: ParameterState) -> str:
-    return f"{each.path} = {number(each.value)} {unit(each.unit)}".strip()
 
 
 # ---- Files -----------------------------------------------------------------------------------------------------------
@@ -304,7 +297,7 @@ def _file(result: FileResult, anchor: str, given: Mapping[str, float]) -> dict[s
     return {
         "name": result.name,
         "anchor": anchor if result.pictures and not result.refused else "",
-        "kind": _what(result),
+        "kind": result.title,
         "why": read.why if read is not None else (),
         "columns": list(_columns(result, given)),
         "model": result.model,
@@ -348,10 +341,8 @@ def _sections(found: Identified, given: Mapping[str, float]) -> Iterator[dict[st
 # ---- Files beside each other, and experiments --------------------------------------------------------------------------
 
 
-def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
+def _comparisons(found: Identified) -> Iterator[tuple[str, str]]:
     """Yield a drawing for each part of the drive of which more than one file determines a parameter."""
-    from markupsafe import Markup
-
     copies = {file.name for file in found.files if file.same_as}
     parts: dict[str, list[CombinedParameter]] = {}
     for each in found.parameters:
@@ -359,7 +350,7 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
             parts.setdefault(each.estimate.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
     for place, (part, numbers) in enumerate(parts.items()):
         rows = [(plain_symbols(name_of(each.estimate)), list(_rows(each, copies))) for each in numbers]
-        yield part.removeprefix("gear.").replace("_", " ").capitalize(), Markup(plots.comparison(rows, f"comparison-{place}"))
+        yield part.removeprefix("gear.").replace("_", " ").capitalize(), plots.comparison(rows, f"comparison-{place}")
 
 
 def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
@@ -377,15 +368,13 @@ def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
 
 def _experiments(experiments: Sequence[SimulatedExperiment]) -> Iterator[dict[str, Any]]:
     """Yield experiments with their figures; a remark that they share stands with the first."""
-    from markupsafe import Markup
-
-    said = ""
+    before = ""
     for position, experiment in enumerate(experiments):
         below = "how far it is from the command" if experiment.comparable else "the command"
         yield {
             "experiment": experiment,
-            "remark": "" if experiment.remark == said else experiment.remark,
-            "figure": Markup(figures.experiment(experiment, f"experiment-{position}")),
+            "remark": "" if experiment.remark == before else experiment.remark,
+            "figure": figures.experiment(experiment, f"experiment-{position}"),
             "caption": f"{figures.output_name(experiment.response)} over time, and {below}.",
         }
-        said = experiment.remark
+        before = experiment.remark

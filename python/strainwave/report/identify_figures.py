@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-NINETY_FIVE = 1.959963984540054  # standard deviations that hold 95 % of a normal distribution
-POINTS = 600  # of a loop that are drawn, at most
-GAP = 2.5  # median intervals: over a longer one no line is drawn
-BLOCKS = 200  # of a band over time
-ROW = 0.19  # inches that a row of a comparison takes
+NINETY_FIVE = 1.959963984540054  # standard deviations about the mean that contain 95 % of a normal distribution
+MAX_POINTS = 600  # of a loop that are drawn
+MAX_INTERVALS = 2.5  # median intervals between two samples that a line joins
+MAX_BAND_BLOCKS = 200  # stretches of a band over time
+ROW_HEIGHT = 0.19  # inches, of a row of a comparison
 ABSCISSAE = {"twist": "twist", "small_angle": "angle of the input"}  # of loops, in words
-LONGEST = 22  # letters of a file's name that stand beside a drawing
-SEEN = 0.8  # of the intervals that are drawn whole; longer ones reach the edge
+MAX_NAME = 22  # letters of the name of a file beside a drawing
+WHOLE_QUANTILE = 0.8  # of the lengths of intervals; longer ones reach beyond the edge
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
     "value taken": ("o", "measured", True),
     "agrees": ("o", "ink", True),
@@ -38,11 +38,11 @@ LOOKS = {  # of a file in a comparison: mark, colour, whether filled
 
 @dataclass(frozen=True)
 class Row:
-    """What one file says of a number, against the value taken.
+    """The estimate of one file, against the value taken.
 
     Attributes:
         file: its name
-        off: how far it lies from the value taken [%]
+        off: difference from the value taken [%]
         sigma: its standard deviation [%]
         look: one of `LOOKS`
     """
@@ -54,10 +54,10 @@ class Row:
 
 
 def comparison(numbers: Sequence[tuple[str, Sequence[Row]]], name: str) -> str:
-    """Numbers as files have them, each with its interval of 95 %.
+    """Draw the estimates of each file, each with its interval of 95 %.
 
     Args:
-        numbers: of each what it is called, and what each file says, the value taken first
+        numbers: name of each parameter, and its estimates, the value taken first
         name: of the drawing
     """
     count = sum(1 + len(rows) for _, rows in numbers)
@@ -85,14 +85,14 @@ def comparison(numbers: Sequence[tuple[str, Sequence[Row]]], name: str) -> str:
         _looks_legend(figure, axes, every)
 
     return figures.inline(
-        draw, (WIDTH, 0.75 + ROW * count), name, "Each number as each file tells it, with its interval of 95 %"
+        draw, (WIDTH, 0.75 + ROW_HEIGHT * count), name, "Each parameter by each file, with its interval of 95 %"
     )
 
 
 def _reach(rows: Sequence[Row]) -> float:
-    """Where the axis ends: beyond all values, and most of their intervals."""
+    """Return the end of the axis, beyond all values and most of their intervals [%]."""
     values = max(abs(row.off) for row in rows)
-    ends = np.quantile([abs(row.off) + NINETY_FIVE * row.sigma for row in rows], SEEN, method="higher")
+    ends = np.quantile([abs(row.off) + NINETY_FIVE * row.sigma for row in rows], WHOLE_QUANTILE, method="higher")
     return 1.15 * max(values, float(ends), 1e-6)
 
 
@@ -113,7 +113,7 @@ def _looks_legend(figure: Figure, axes: Axes, rows: Sequence[Row]) -> None:
 
 
 def _short(name: str) -> str:
-    return name if len(name) <= LONGEST else f"{name[: LONGEST // 2 - 1]}…{name[-LONGEST // 2 :]}"
+    return name if len(name) <= MAX_NAME else f"{name[: MAX_NAME // 2 - 1]}…{name[-MAX_NAME // 2 :]}"
 
 
 # ---- One file --------------------------------------------------------------------------------------------------------
@@ -180,12 +180,12 @@ def _table_points(axes: Axes, curves: Recording) -> NDArray[np.intp]:
 
 
 def _loop_points(axes: Axes, curves: Recording) -> None:
-    """Draw torque over twist or angle, as points: samples behind reversals are left out."""
+    """Draw the measured points of a loop, and the fitted loop in the order measured."""
     over, torque = curves.names[:2]
-    rows = np.unique(np.linspace(0, len(curves) - 1, POINTS).astype(int))
+    rows = np.unique(np.linspace(0, len(curves) - 1, MAX_POINTS).astype(int))
     x = curves[over][rows]
     axes.plot(x, curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
-    axes.plot(x, curves["modelled"][rows], "o", color=LIGHT["model"], markersize=1.2, label="model")
+    axes.plot(x, curves["modelled"][rows], color=LIGHT["model"], linewidth=0.9, label="model")
 
 
 def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
@@ -202,7 +202,7 @@ def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
 
 
 def _means(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
-    """Means of the friction over the temperature, and the line through all samples."""
+    """Draw means of the friction over the temperature, and the line through all samples."""
     over, channel = curves.names[:2]
     celsius, residual = curves.values(over, "degC"), residual_of(curves)
     whole.plot(celsius, curves[channel], "o", color=LIGHT["measured"], label="means of classes")
@@ -214,7 +214,7 @@ def _means(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
 
 
 def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
-    """Over time, or over the angle where there is no time."""
+    """Draw a channel over time, or over the angle if there is no time."""
     over, channel = curves.names[:2]
     x, unit, residual = curves[over], curves.unit(channel), residual_of(curves)
     places, measured, modelled, rest = _broken(x, curves[channel], curves["modelled"], residual)
@@ -235,8 +235,12 @@ _DRAWN: dict[Look, Callable[..., None]] = {
 
 
 def _broken(x: Array, *series: Array) -> tuple[Array, ...]:
-    """Series that no line joins over what was left out, unless there are so many samples that they are drawn by extremes."""
-    gaps = np.flatnonzero(np.abs(np.diff(x)) > GAP * np.median(np.abs(np.diff(x)))) + 1 if len(x) > 1 else np.zeros(0, int)
+    """Return series with a gap where samples were left out; those with so many samples that extremes are drawn, unchanged."""
+    gaps = (
+        np.flatnonzero(np.abs(np.diff(x)) > MAX_INTERVALS * np.median(np.abs(np.diff(x)))) + 1
+        if len(x) > 1
+        else np.zeros(0, int)
+    )
     if len(x) + len(gaps) > 4 * figures.STRETCHES:
         return x, *series
     return np.insert(x, gaps, x[gaps]), *(np.insert(each, gaps, np.nan) for each in series)
@@ -249,7 +253,7 @@ def _sigma(curves: Recording, order: NDArray[np.intp] | None = None) -> Array | 
 
 
 def _bands(axes: Axes, x: Array, residual: Array, sigma: Array | None) -> None:
-    """Where 95 % of the residuals lie if they are normal, and where the model itself may lie."""
+    """Draw the limits of 95 % of the residuals, if they are normal, and the interval of the model."""
     level = NINETY_FIVE * float(np.sqrt(np.mean(residual**2)))
     for side in (-level, level):
         axes.axhline(side, color=LIGHT["earlier"], linestyle="--", linewidth=0.9)
@@ -260,8 +264,8 @@ def _bands(axes: Axes, x: Array, residual: Array, sigma: Array | None) -> None:
 
 
 def _blocks(x: Array, half: Array) -> Iterator[tuple[float, float]]:
-    """A band to draw: of a long record the largest of each of many stretches."""
-    for rows in np.array_split(np.arange(len(x)), min(len(x), BLOCKS)):
+    """Yield the points of a band: of a long record the largest of each of many stretches."""
+    for rows in np.array_split(np.arange(len(x)), min(len(x), MAX_BAND_BLOCKS)):
         yield float(np.mean(x[rows])), float(np.max(half[rows]))
 
 

@@ -1,33 +1,55 @@
-"""Results of an identification as files: JSON and CSV in SI units, for people and programs."""
+"""Results of an identification as files, and as lines for a terminal."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from importlib import metadata
 from io import StringIO
 from typing import Any
 
+from strainwave.files import gear_file
 from strainwave.identification.identify import Identified
-from strainwave.identification.results.combined_parameter import CombinedParameter, distance
+from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.report.errors import share_held_out
+from strainwave.report.experiment import SimulatedExperiment
+from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
+from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
 
 COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
     "state", "reason",
 )  # fmt: skip
+MAX_REMARKS = 5  # of a file on a terminal; the report has all
 
 
-def identify_files(found: Identified) -> dict[str, str]:
-    """Return the whole result as JSON, and every parameter with the estimates of all files as CSV."""
+def identify_files(
+    found: Identified,
+    provenance: Provenance | None = None,
+    *,
+    accepted: bool = False,
+    experiments: Sequence[SimulatedExperiment] = (),
+) -> dict[str, str]:
+    """Return the files of a result by their names: numbers as JSON and CSV, the gear, and the report.
+
+    Args:
+        found: the result
+        provenance: command, date and files, if the report is to show them
+        accepted: if true, the gear is among them in spite of failed checks
+        experiments: simulated with the gear
+    """
     text = StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
     writer.writeheader()
     writer.writerows(_csv_rows(found))
-    return {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
+    files = {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
+    if accepted or not found.failed:
+        files["gear.toml"] = gear_file.text(found.accepted)
+    return files | {"report.html": identify_report(found, provenance, experiments=experiments, accepted=accepted)}
 
 
 def _results(found: Identified) -> dict[str, Any]:
@@ -54,7 +76,6 @@ def _file(result: FileResult) -> dict[str, Any]:
         "constants": {} if read is None else read.constants,
         "model": result.model,
         "candidates": [{"model": name, "error": error} for name, error in result.candidates],
-        "error_on_data_held_out": result.error,
         "held_out": None if result.held_out is None else asdict(result.held_out),
         "same_as": result.same_as or None,
         "part_of": result.part_of or None,
@@ -115,3 +136,40 @@ def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
             if estimate.why:
                 row = {"file": file.name, "taken": "no", "state": estimate.state, "reason": estimate.why}
                 yield _estimate(estimate) | row
+
+
+# ---- On a terminal ---------------------------------------------------------------------------------------------------
+
+
+def identify_summary(found: Identified) -> Iterator[str]:
+    """Yield the result in lines, failed checks first."""
+    for check in found.failed:
+        yield f"FAILED: {check.source}: {check.message}"
+        yield f"  what to do: {check.remedy}"
+    points = [result for result in found.files if result.part_of]
+    for result in found.files:
+        if not result.part_of:
+            yield from _of_file(result)
+    if points:
+        yield f"{points[0].part_of}, {len(points)} files:"
+        width = max(len(result.name) for result in points)
+        yield from (f"  {result.name:{width}}  {result.model}" for result in points)
+        yield from (f"  {remark}" for remark in dict.fromkeys(remark for result in points for remark in result.remarks))
+    yield ""
+    yield from lines_of(found.parameters)
+    yield from (f"contradiction: {check.message}" for check in found.checks if check.name == "agreement of files")
+
+
+def _of_file(result: FileResult) -> Iterator[str]:
+    same = f", the same measurement as {result.same_as}" if result.same_as else ""
+    yield f"{result.name}: {result.title}{same}"
+    if result.recognised is not None:
+        yield from (f"  since {why}" for why in result.recognised.why)
+    if result.refused:
+        yield f"  NOT USED: {result.refused}"
+        return
+    share = share_held_out(result.held_out)
+    yield f"  {result.model}{f'; error on data held out: {share} of what varies' if share else ''}"
+    if result.failed:
+        yield f"  FAILED: {', '.join(check.name for check in result.failed)}; see above"
+    yield from (f"  {remark}" for remark in result.remarks[:MAX_REMARKS])

@@ -32,8 +32,6 @@ def influence_report(found: Influence, provenance: Provenance | None = None) -> 
     Returns:
         HTML; the same for the same arguments
     """
-    from markupsafe import Markup
-
     table, age = entries(found), life(found)
     series = found.series
     return render(
@@ -47,31 +45,31 @@ def influence_report(found: Influence, provenance: Provenance | None = None) -> 
             "counts": [(verdict, count) for verdict, count in counts(table)],
             "measured": any(each.measured for each in (*table, age) if each),
             "loops": [
-                Markup(plots.loops_figure(found.drawn[OWN], "loops-own")),
-                Markup(plots.loops_figure(found.drawn[SPECIMEN], "loops-specimen")),
+                plots.loops_figure(found.drawn[OWN], "loops-own"),
+                plots.loops_figure(found.drawn[SPECIMEN], "loops-specimen"),
             ],
             "amplitudes": [
-                Markup(plots.amplitude_figure(found.amplitude[OWN], "amplitude-own")),
-                Markup(plots.amplitude_figure(found.amplitude[SPECIMEN], "amplitude-specimen")),
+                plots.amplitude_figure(found.amplitude[OWN], "amplitude-own"),
+                plots.amplitude_figure(found.amplitude[SPECIMEN], "amplitude-specimen"),
             ],
             "levels": [
                 _level_table(f"{found.gear_set.name}, at the output", found.amplitude[OWN], ARCMIN, "′"),
                 _level_table("Document T’s gear, at the input", found.amplitude[SPECIMEN], degrees(1.0), "°"),
             ],
-            "ratio_figure": Markup(plots.ratio_figure(found.rows)),
+            "ratio_figure": plots.ratio_figure(found.rows),
             "steps": steps_and_falls(found.rows)[0],
             "sizes": list(_size_rows(found)),
             "shares": {part: f"{number(100.0 * share, 3)} %" for part, share in found.shares.items()},
-            "preload_figure": Markup(plots.preload_figure(found.preload, found.input_torque, found.friction))
+            "preload_figure": plots.preload_figure(found.preload, found.input_torque, found.friction)
             if found.preload is not None
             else "",
-            "temperature_figure": Markup(plots.temperature_figure(found.temperature)),
+            "temperature_figure": plots.temperature_figure(found.temperature),
             "rates": list(_rate_rows(found)),
             "series": None if series is None else series.name,
             "series_points": 0 if series is None else len(series),
             "series_figures": []
             if series is None
-            else [Markup(plots.series_figure(series, found.trends, name)) for name in FACTORS if name in series.varied],
+            else [plots.series_figure(series, found.trends, name) for name in FACTORS if name in series.varied],
             "trends": [_trend_row(each) for each in found.trends],
             "shuffles": SHUFFLES,
             "numbers": list(numbers({"": found.gear_set})),

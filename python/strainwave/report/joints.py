@@ -6,26 +6,28 @@ import csv
 import re
 from collections.abc import Iterator
 from io import StringIO
-from math import isfinite
 from typing import Any
 
 from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
 from strainwave.identification.results.combined_parameter import lines_of
-from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.report.errors import LEAST_SQUARES, THIS_MODEL, ZERO_MODEL, held_out_rows, share_held_out
 from strainwave.report.page import render
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import number, uncertain, unit
+from strainwave.report.typeset import uncertain, unit
 
 COLUMNS = ("joint", "path", "law", "unit", "value", "sigma", "file")
 
 
 def joints_report(joints: Joints, provenance: Provenance | None = None) -> str:
-    """The page, as one HTML file; the report of each joint lies in the folder beside it that `folder_of` names."""
+    """Return the page as one HTML file; it links to the report of each joint, in the folder that `folder_of` names."""
     return render(
         "joints.html.jinja",
         {
+            "verdict": _verdict(joints),
+            "models": (THIS_MODEL, LEAST_SQUARES, ZERO_MODEL),
             "joints": [_joint(name, found) for name, found in joints.found.items()],
             "refused": list(joints.refused.items()),
             "left_out": list(joints.left_out.items()),
@@ -35,8 +37,16 @@ def joints_report(joints: Joints, provenance: Provenance | None = None) -> str:
     )
 
 
+def _verdict(joints: Joints) -> str:
+    """Return the outcome in one sentence."""
+    count, failed = len(joints.found), sum(bool(found.failed) for found in joints.found.values())
+    state = f"{failed} of them with failed checks" if failed else "no check failed"
+    refused = f"; {len(joints.refused)} cannot be used" if joints.refused else ""
+    return f"{count} {'joint' if count == 1 else 'joints'} identified, {state}{refused}."
+
+
 def folder_of(joint: str) -> str:
-    """The folder with the results of a joint.
+    """Return the name of the folder with the results of a joint.
 
     >>> folder_of("arm/elbow")
     'joint-arm_elbow'
@@ -54,55 +64,49 @@ def joints_summary(joints: Joints) -> Iterator[str]:
     yield from (f"{name}: NOT USED: {why}" for name, why in joints.left_out.items())
 
 
-def joints_csv(joints: Joints) -> str:
-    """Every number of every joint, a row each, in SI units."""
+def joints_files(joints: Joints, provenance: Provenance | None = None) -> dict[str, str]:
+    """Return the page, and every parameter of every joint as CSV in SI units, by file name."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for name, found in joints.found.items():
         for each in found.parameters:
-            told = each.estimate
-            writer.writerow([name, told.path, told.law, told.unit, told.value, told.sigma, each.taken_from])
-    return text.getvalue()
+            own = each.estimate
+            writer.writerow([name, own.path, own.law, own.unit, own.value, own.sigma, each.taken_from])
+    return {"joints.csv": text.getvalue(), "report.html": joints_report(joints, provenance)}
 
 
 def _of_files(found: Identified) -> Iterator[str]:
-    """What was made of each file."""
+    """Yield the model of each file, and its error on data held out."""
     for each in found.files:
-        held_out = f", error on data held out {_error(each)} of what varies" if _error(each) else ""
-        yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{held_out}"
-
-
-def _error(finding: FileResult) -> str:
-    return f"{number(100.0 * finding.error, 2)} %" if isfinite(finding.error) else ""
+        share = share_held_out(each.held_out)
+        error = f", error on data held out {share} of what varies" if share else ""
+        yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{error}"
 
 
 def _joint(name: str, found: Identified) -> dict[str, Any]:
-    return {
-        "name": name,
-        "report": f"{folder_of(name)}/report.html",
-        "files": [{"name": each.name, "model": each.refused or each.model, "error": _error(each)} for each in found.files],
-        "failed": [f"{check.source}: {check.message}. What to do: {check.remedy}" for check in found.failed],
-    }
+    files = [
+        {
+            "name": each.name,
+            "model": each.refused or each.model,
+            "errors": {model: f"{size} ({share})" for model, size, share in held_out_rows(each.held_out)},
+        }
+        for each in found.files
+    ]
+    failed = dict.fromkeys(check.name for check in found.failed)
+    return {"name": name, "report": f"{folder_of(name)}/report.html", "files": files, "failed": ", ".join(failed)}
 
 
 def _rows(joints: Joints) -> Iterator[dict[str, Any]]:
     """Yield a row for each parameter of any joint, with its value of each joint; empty if a joint does not determine it."""
-    keys = dict.fromkeys(
-        (each.estimate.path, each.estimate.unit) for found in joints.found.values() for each in found.parameters
-    )
-    for path, of_unit in keys:
-        told = {
-            name: next(
-                (each.estimate for each in found.parameters if (each.estimate.path, each.estimate.unit) == (path, of_unit)),
-                None,
-            )
-            for name, found in joints.found.items()
-        }
-        first = next(each for each in told.values() if each is not None)
+    table: dict[tuple[str, str], dict[str, FileEstimate]] = {}
+    for joint, found in joints.found.items():
+        for each in found.parameters:
+            table.setdefault((each.estimate.path, each.estimate.unit), {}).setdefault(joint, each.estimate)
+    for (path, of_unit), own in table.items():
         yield {
-            "name": name_of(first),
+            "name": name_of(next(iter(own.values()))),
             "path": path,
             "unit": unit(of_unit),
-            "values": ["" if each is None else uncertain(each.value, each.sigma) for each in told.values()],
+            "values": [uncertain(own[joint].value, own[joint].sigma) if joint in own else "" for joint in joints.found],
         }

@@ -49,8 +49,6 @@ def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = 
 
 
 def _section(found: OrdersFound, place: int) -> dict[str, Any]:
-    from markupsafe import Markup
-
     error, ripple = found.transmission, found.ripple
     return {
         "name": found.name,
@@ -64,16 +62,14 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "scaled": ripple.side == "output" and any(each.per_input is not None for each in ripple.lines),
             "concluded": _concluded(ripple),
             "candidates": [_candidate(each.ratio, each.share, each.matched) for each in ripple.candidates],
-            "spectrum": Markup(plots.spectrum_figure(ripple, f"spectrum-{place}")),
-            "map": Markup(drawn) if (drawn := plots.map_figure(ripple, f"map-{place}")) else "",
+            "spectrum": plots.spectrum_figure(ripple, f"spectrum-{place}"),
+            "map": plots.map_figure(ripple, f"map-{place}"),
         },
         "remarks": _remarks(found),
     }
 
 
 def _error(error: TransmissionError, name: str) -> dict[str, Any]:
-    from markupsafe import Markup
-
     return {
         "ratio": _ratio(error),
         "lost": _quantity(error.lost_motion),
@@ -93,8 +89,8 @@ def _error(error: TransmissionError, name: str) -> dict[str, Any]:
             }
             for each in error.orders
         ],
-        "figure": Markup(plots.error_figure(error, name)),
-        "over_angle": Markup(plots.turn_figure(error, f"{name}-turn")),
+        "figure": plots.error_figure(error, name),
+        "over_angle": plots.turn_figure(error, f"{name}-turn"),
     }
 
 
@@ -263,8 +259,8 @@ def _strip(ripple: Ripple) -> str:
 # ---- As files --------------------------------------------------------------------------------------------------------
 
 
-def orders_files(found: Sequence[OrdersFound]) -> dict[str, str | bytes]:
-    """Return the numbers as JSON, spectra and curves as CSV, by file name."""
+def orders_files(found: Sequence[OrdersFound], provenance: Provenance | None = None) -> dict[str, str | bytes]:
+    """Return the numbers as JSON, spectra and curves as CSV, and last the page, by file name."""
     files: dict[str, str | bytes] = {"results.json": results_json({"recordings": [_results(each) for each in found]})}
     stems = [Path(each.name).stem for each in found]
     for place, (each, stem) in enumerate(zip(found, stems, strict=True)):
@@ -273,7 +269,7 @@ def orders_files(found: Sequence[OrdersFound]) -> dict[str, str | bytes]:
             files[f"{name}-error.csv"] = _csv(each.transmission.curves)
         if each.ripple is not None:
             files[f"{name}-spectrum.csv"] = _csv(each.ripple.spectrum)
-    return files
+    return files | {"report.html": orders_report(found, provenance)}
 
 
 def _results(found: OrdersFound) -> dict[str, Any]:

@@ -67,8 +67,6 @@ def position_control_report(found: PositionControl, provenance: Provenance | Non
     Returns:
         HTML; the same for the same arguments
     """
-    from markupsafe import Markup
-
     return render(
         "position_control.html.jinja",
         {
@@ -77,16 +75,16 @@ def position_control_report(found: PositionControl, provenance: Provenance | Non
                 {
                     "name": each.name,
                     "title": each.title,
-                    "figure": Markup(experiment_figure(each)),
+                    "figure": experiment_figure(each),
                     "rows": rows(each),
                     "current": quantity(each.between["current"].rms, "A"),
                     "resolved": _resolved(each),
                 }
                 for each in found.experiments
             ],
-            "friction_figure": Markup(friction_figure(found)),
-            "pulse_figure": Markup(pulse_figure(found)),
-            "control_figure": Markup(control_figure(found)),
+            "friction_figure": friction_figure(found),
+            "pulse_figure": pulse_figure(found),
+            "control_figure": control_figure(found),
             "pulses": list(_pulses(found)),
             "measured": None if found.measured is None else _measured(found.measured),
             "numbers": list(numbers(found.sets)),
@@ -251,12 +249,10 @@ def _resolved(experiment: Experiment) -> dict[str, str]:
 
 
 def _measured(measured: Measured) -> dict[str, Any]:
-    from markupsafe import Markup
-
     ends = None if measured.beyond is None else [number(end, 4) for end in measured.beyond]
     return {
         "name": measured.recording.title,
-        "figure": Markup(measured_figure(measured)),
+        "figure": measured_figure(measured),
         "rows": measured_rows(measured),
         "beyond": ends,
     }

@@ -11,6 +11,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.prediction import Change, Prediction
+from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
 from strainwave.report.identify_figures import file_figure
 from strainwave.report.orders import line_words
 from strainwave.report.page import render
@@ -27,13 +28,13 @@ def verdict(found: Prediction) -> str:
     """Return in one sentence whether a recording agrees with a saved gear, and what changed."""
     if found.refused:
         return f"{found.name} cannot be predicted: {found.refused}"
-    of, share = quantity(found.error, found.unit, 3), number(100.0 * found.relative, 2)
-    allowed = quantity(found.allowed, found.unit, 3)
+    of, share = quantity(found.error, found.unit), percent(found.relative)
+    allowed = quantity(found.allowed, found.unit)
     if found.contradicts:
-        result = f"{found.name} contradicts {found.gear}: error {of}, {share} % of what varies, where {allowed} is allowed"
+        result = f"{found.name} contradicts {found.gear}: error {of}, {share} of what varies, where {allowed} is allowed"
         cause = f"; {_changes(found)}" if found.changed else "; no change of friction, zero or load explains it"
         return f"{result}{cause}."
-    result = f"{found.name} agrees with {found.gear}: error {of}, {share} % of what varies, of {allowed} allowed"
+    result = f"{found.name} agrees with {found.gear}: error {of}, {share} of what varies, of {allowed} allowed"
     return f"{result}; {f'yet {_changes(found)}' if found.changed else _nothing_changed(found)}."
 
 
@@ -54,7 +55,7 @@ def change_in_words(change: Change) -> str:
         return f"{uncertain(change.value, change.sigma)} times that saved"
     if change.unit == "1/K":
         return f"{uncertain(100.0 * change.value, 100.0 * change.sigma)} % per kelvin"
-    return f"{uncertain_quantity(change.value, change.sigma, change.unit)}, saved {quantity(change.unchanged, change.unit, 3)}"
+    return f"{uncertain_quantity(change.value, change.sigma, change.unit)}, saved {quantity(change.unchanged, change.unit)}"
 
 
 def predict_summary(found: Sequence[Prediction]) -> str:
@@ -66,8 +67,8 @@ def _lines(found: Prediction) -> Iterator[str]:
     yield verdict(found)
     if found.refused:
         return
-    for name, value in _errors(found):
-        yield f"  {name:38} {value}"
+    for name, size, share in _errors(found):
+        yield f"  {name:38} {size} ({share})"
     for change in found.changes:
         state = "changed" if change.significant else "no significant change"
         yield f"  {change.name:38} {change_in_words(change)} ({state})"
@@ -78,18 +79,14 @@ def _lines(found: Prediction) -> Iterator[str]:
     yield from (f"  note: {remark}" for remark in found.remarks[:MAX_REMARKS])
 
 
-def _errors(found: Prediction) -> Iterator[tuple[str, str]]:
-    """Yield the error and those of other models, each with its name."""
-
-    def share(error: float) -> str:
-        return f"{quantity(error, found.unit, 3)} ({number(100.0 * error / found.varies, 2)} %)" if found.varies > 0.0 else ""
-
-    channel = found.channel.replace("_", " ")
-    yield f"error of {channel}, root mean square", share(found.error)
-    yield "with the changes below", share(found.error_with_changes)
-    if found.plain == found.plain:  # a number
-        yield "plain least squares on this file", share(found.plain)
-    yield "predicting the mean", share(found.varies)
+def _errors(found: Prediction) -> list[Row]:
+    """Return the error and those of other models, each with its name."""
+    errors = {
+        f"error of {found.channel.replace('_', ' ')}, root mean square": found.error,
+        "with the changes below": found.error_with_changes,
+        f"{LEAST_SQUARES} on this file": found.plain,
+    }
+    return list(error_rows(errors, found.varies, found.unit))
 
 
 def predict_report(found: Sequence[Prediction], gear_set: GearSet, provenance: Provenance | None = None) -> str:
@@ -107,8 +104,7 @@ def predict_report(found: Sequence[Prediction], gear_set: GearSet, provenance: P
             "note": gear_set.note,
             "recordings": [_section(each, f"recording-{place}") for place, each in enumerate(found)],
             "validation": [
-                (each.file, quantity(each.error, each.unit, 3), quantity(each.held_out, each.unit, 3),
-                 f"{number(100.0 * each.relative, 2)} %")
+                (each.file, quantity(each.error, each.unit), quantity(each.held_out, each.unit), percent(each.relative))
                 for each in gear_set.validation
             ],
         },
@@ -117,16 +113,14 @@ def predict_report(found: Sequence[Prediction], gear_set: GearSet, provenance: P
 
 
 def _section(found: Prediction, anchor: str) -> dict[str, Any]:
-    from markupsafe import Markup
-
     return {
         "name": found.name,
         "anchor": anchor,
         "verdict": verdict(found),
         "refused": bool(found.refused),
         "failed": [check for check in found.checks if check.failed],
-        "errors": [] if found.refused else list(_errors(found)),
-        "figure": "" if found.curves is None else Markup(_figure(found, found.curves, anchor)),
+        "errors": [] if found.refused else _errors(found),
+        "figure": "" if found.curves is None else _figure(found, found.curves, anchor),
         "changes": [
             (each.name, change_in_words(each), number(each.significance, 2), each.significant) for each in found.changes
         ],
@@ -147,10 +141,10 @@ def _figure(found: Prediction, curves: Recording, anchor: str) -> str:
     return file_figure(FileResult(found.name), picture, f"{anchor}-figure")
 
 
-def predict_files(found: Sequence[Prediction]) -> dict[str, str]:
-    """Return the predictions as JSON, by file name."""
-    made_by = f"strainwave {metadata.version('strainwave')}"
-    return {"results.json": results_json({"made_by": made_by, "files": [_json(each) for each in found]})}
+def predict_files(found: Sequence[Prediction], gear_set: GearSet, provenance: Provenance | None = None) -> dict[str, str]:
+    """Return the predictions as JSON, and the page, by file name."""
+    results = {"made_by": f"strainwave {metadata.version('strainwave')}", "files": [_json(each) for each in found]}
+    return {"results.json": results_json(results), "report.html": predict_report(found, gear_set, provenance)}
 
 
 def _json(found: Prediction) -> dict[str, Any]:

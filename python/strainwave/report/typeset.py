@@ -50,10 +50,26 @@ def uncertain(value: float, sigma: float) -> str:
         return number(value)
     if not math.isfinite(sigma) or sigma <= abs(value) * 10.0**-_FINEST:
         return f"{number(value)} ± {number(sigma, 2)}"
-    decade = _decade(max(abs(value), sigma), 2)
+    return _to_digits_of(sigma, (value, sigma), " ± ")
+
+
+def interval(low: float, high: float, sigma: float) -> str:
+    """An interval, its ends to the digits of a standard deviation.
+
+    >>> interval(0.945, 1.0117, 0.017), interval(7.83e-6, 17.0e-6, 2.3e-6), interval(1.0, 1.0, 0.0)
+    ('0.945 to 1.012', '(7.8 to 17.0) × 10⁻⁶', '1 to 1')
+    """
+    if not math.isfinite(sigma) or sigma <= max(abs(low), abs(high)) * 10.0**-_FINEST:
+        return f"{number(low)} to {number(high)}"
+    return _to_digits_of(sigma, (low, high), " to ")
+
+
+def _to_digits_of(sigma: float, numbers: tuple[float, float], between: str) -> str:
+    """Two numbers with as many digits as a standard deviation of two, and one power of ten."""
+    decade = _decade(max(*map(abs, numbers), sigma), 2)
     power = 3 * math.floor(decade / 3) if _decade(sigma, 2) < -5 else _power(decade)
     places = 1 - _decade(sigma / 10.0**power, 2)
-    pair = " ± ".join(fixed(x / 10.0**power, places) for x in (value, sigma))
+    pair = between.join(fixed(each / 10.0**power, places) for each in numbers)
     return f"({pair}){_times(power)}" if power else pair
 
 

@@ -135,6 +135,10 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
             ["identify", "hfuc-25-100", "table.csv", "--column", "speed"],
             ("--column speed", "name=value"),
         ),
+        (
+            ["identify", "hfuc-25-100", "table.csv", "--column", "torque=tork"],
+            ("--column torque=tork", 'no file has a column "tork"', "there are speed, torque"),
+        ),
     ],
 )
 def test_a_bad_command_line_is_refused(tmp_path: Path, arguments: list[str], expected: tuple[str, ...]) -> None:
@@ -351,10 +355,10 @@ def test_a_single_branch_gives_the_spring(tmp_path: Path) -> None:
     assert "columns not used: room" in result.stdout
 
 
-@pytest.mark.parametrize("verb", ["identify", "rank", "orders"])
+@pytest.mark.parametrize("verb", ["identify", "predict", "rank", "orders"])
 def test_the_help_of_a_kind_names_every_kind(verb: str, tmp_path: Path) -> None:
     shown = " ".join(strainwave(verb, "--help", folder=tmp_path).stdout.split())
-    assert f"What files are that may be two things: {', '.join(KINDS)}." in shown
+    assert f"Kind of files that may be of two kinds: {', '.join(KINDS)}." in shown
 
 
 def test_without_a_verb_help_is_shown(tmp_path: Path) -> None:

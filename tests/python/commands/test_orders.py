@@ -76,3 +76,11 @@ def test_what_cannot_be_is_refused_in_one_line(folder: Path) -> None:
     refused(folder, ["orders", "hfuc-20-80", "joint.csv"], "hfuc-20-80 is a gear set", "leave it out")
     refused(folder, ["orders", "steady.csv"], "steady.csv")
     refused(folder, ["orders", "both.csv", "--side", "left"], "--side left must be one of input, output")
+
+
+def test_a_ratio_given_as_a_constant_is_that_of_the_option(folder: Path) -> None:
+    for option in (["--ratio", 80], ["--constant", "ratio=80"]):
+        result = strainwave("orders", "both.csv", *option, "--out", "given", folder=folder)
+        assert "ratio −80 (measured" in result.stdout, result.stderr
+        numbers = json.loads((folder / "given" / "results.json").read_text())["recordings"]
+        assert numbers[0]["ripple"]["ratio"] == 80.0

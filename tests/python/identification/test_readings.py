@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.commands.file_options import mapping_from_options
+from strainwave.commands.file_options import FileOptions
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.source import measurement_files
@@ -43,7 +43,7 @@ def with_options(path: Path, options: str) -> Identified:
         given.setdefault(name, []).append(value)
     files = measurement_files([path])
     side = given.get("--side", [None])[0]
-    said = mapping_from_options(None, given.get("--column"), given.get("--unit"), None, side, None, files=files.files)
+    said = FileOptions(column=given.get("--column"), unit=given.get("--unit"), side=side).mapping_of(files.files)
     return identify("csg-20-100", files, mapping=said)
 
 

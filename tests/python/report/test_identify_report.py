@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -56,8 +57,8 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
     path.write_text("Drehzahl [1/min];Reibmoment [mNm]\n600;41,2\n-600;-40,9\n1200;50,1\n")
     read, drawn, bare = recognise(path), (Picture(curves(), "table"),), (Picture(curves(sigma=False), "table"),)
     findings = (
-        FileResult("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), 0.02, ("a remark of warm",), pictures=drawn),
-        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), 0.03, pictures=drawn),
+        FileResult("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), ("a remark of warm",), pictures=drawn),
+        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), pictures=drawn),
         FileResult("copy.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), same_as="warm.csv", pictures=bare),
         FileResult(
             "loop.csv", read, "a spring",
@@ -112,16 +113,23 @@ def test_what_is_fine_needs_no_alarm(found: Identified) -> None:
     one = found.files[0]
     html = identify_report(Identified(START, (one,), combine((one,)), START))
     assert not [each for each in Page(html).root.walk() if each.attributes.get("role") == "alert"]
-    assert "1 file: 1 determines 1 parameter; no check applied." in text_of(html)
+    assert "The file determines 1 parameter; no check applied." in text_of(html)
     assert "Files beside each other" not in text_of(html)
 
 
 def test_the_error_on_data_held_out_stands_beside_plain_least_squares(found: Identified) -> None:
     held_out = HeldOut("last 30 % of the motion", "current", "A", 0.281, 1.2, 0.363, 900)
     warm = replace(found.files[0], held_out=held_out)
-    text = section(identify_report(Identified(START, (warm,), combine((warm,)), START)), "measured").text
-    for expected in ("last 30 % of the motion", "0.281 A, 23 %", "Plain least squares there", "0.363 A", "1.2 A"):
+    html = identify_report(Identified(START, (warm,), combine((warm,)), START))
+    text = section(html, "measured").text
+    for expected in (
+        "last 30 % of the motion",
+        "This model0.281 A23 %",
+        "Plain least squares0.363 A30 %",
+        "Predicting the mean1.2 A100 %",
+    ):
         assert expected in text, expected
+    assert "; 23 % of what varies on data held out is unexplained; " in text_of(html)
 
 
 def test_each_file_is_listed_with_what_it_is_and_why(page: str) -> None:
@@ -136,7 +144,7 @@ def test_each_file_is_listed_with_what_it_is_and_why(page: str) -> None:
 def test_each_parameter_stands_with_its_file_the_start_set_and_the_others(page: str) -> None:
     row = next(each for each in section(page, "parameters").find("tr") if "coulomb" in each.text)
     assert "0.0500 ± 0.0010" in row.text
-    assert "0.048 to 0.052" in row.text
+    assert "0.0480 to 0.0520" in row.text
     assert "warm.csv" in row.text
     assert f"{gear_numbers(START.gear)[COULOMB][0]:.4g}" in row.text
     assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart: contradiction)" in row.text
@@ -144,8 +152,22 @@ def test_each_parameter_stands_with_its_file_the_start_set_and_the_others(page: 
 
 
 def test_parameters_are_grouped_by_effect(page: str) -> None:
-    headings = [each.text for each in section(page, "parameters").find("h3")]
-    assert headings[:2] == ["Friction", "Stiffness"]
+    headings = [each.text for each in section(page, "parameters").find("th") if each.attributes.get("scope") == "rowgroup"]
+    assert headings == ["Friction", "Stiffness"]
+
+
+def test_columns_that_no_parameter_fills_are_left_out(page: str, found: Identified) -> None:
+    one = replace(found.files[0], estimates=(told("load.inertia", 1.2, 0.1, "kg.m2"),))
+    alone = identify_report(Identified(START, (one,), combine((one,)), START))
+    for title in ("Start set", "Each file"):
+        assert title in section(page, "parameters").text
+        assert title not in section(alone, "parameters").text
+
+
+def test_an_option_in_a_remedy_is_shown_as_it_is_typed(found: Identified) -> None:
+    check = Check("friction", "warm.csv", 2.0, 1.0, "1", True, "too large", "give --column input_torque=tau_1")
+    warm = replace(found.files[0], checks=(check,))
+    assert "--column input_torque=tau_1" in text_of(identify_report(Identified(START, (warm,), (), START, (check,))))
 
 
 def test_what_is_not_determined_stands_with_its_state_and_reason(page: str) -> None:
@@ -216,6 +238,16 @@ def test_any_length_can_be_drawn(over: str, count: int) -> None:
     picture = Picture(Recording(columns, units), look)
     drawing = identify_figures.file_figure(FileResult("long.csv"), picture, "long")
     assert len(drawing) < 300_000
+
+
+def test_the_fitted_loop_is_a_line_through_the_points() -> None:
+    twist = 1e-3 * np.cos(np.linspace(0.0, 6.0, 50))
+    recording = Recording(
+        {"twist": twist, "torque": twist, "modelled": twist}, {"twist": "rad", "torque": "N.m", "modelled": "N.m"}
+    )
+    drawing = identify_figures.file_figure(FileResult("loop.csv"), Picture(recording, "loop"), "loop")
+    lines = re.findall(r'<path d="([^"]*)"[^>]*stroke: var\(--model', drawing)
+    assert max(len(re.findall(r"[\d.]+ [\d.]+", line)) for line in lines) == 50
 
 
 def test_what_is_left_of_two_encoders_is_what_orders_and_loads_do_not_explain() -> None:

@@ -47,7 +47,7 @@ def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         if warm is None:
             raise
         unused = f"not used along its motion: {error}"
-        finding, after = FileResult(name, file, "friction over the temperature", (), np.nan, (*file.remarks, unused)), known
+        finding, after = FileResult(name, file, "friction over the temperature", remarks=(*file.remarks, unused)), known
         finding = replace(finding, pictures=(warm.picture,))
     if warm is None:
         return finding, after
@@ -89,7 +89,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(
-            name, file, best.name, tuple(told), held_out.relative, every, tuple(checks), pictures=pictures, held_out=held_out,
+            name, file, best.name, tuple(told), every, tuple(checks), pictures=pictures, held_out=held_out,
             fit=best.fit, bend=best.bend,
         ),
         known,

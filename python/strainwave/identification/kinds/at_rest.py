@@ -16,6 +16,7 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, plain, with_torque
+from strainwave.identification.results.held_out import HeldOut
 
 SIGNIFICANCE_SIGMA = 3.0  # beyond which two numbers differ
 MAX_RELATIVE_SIGMA = 0.5  # of an estimate that is determined
@@ -37,7 +38,6 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     slid = best.reach >= 1.0 and slides is None
     estimates = tuple(_elements(best, uncertain, slid=slid))
     begun = np.arange(len(loop.angle)) >= loop.turns[0]
-    error = best.error / float(np.std(loop.torque[begun]))
     remarks = [*file.remarks]
     if slides is not None:
         remarks.append(
@@ -69,9 +69,13 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     curves = Recording({name: values[begun] for name, values in compared.items()}, units)
     picture = Picture(curves, "loop", "torque at the input")
     checks = tuple(friction_at_rest(0.5 * float(np.ptp(loop.torque)), known.initial.gear, file.path.name))
+    held_out = HeldOut(
+        "each part of the loop, predicted from the others", "torque at rest", "N.m", best.error,
+        float(np.std(loop.torque[begun])), samples=int(begun.sum()),
+    )  # fmt: skip
     return FileResult(
-        file.path.name, file, _in_words(best), estimates, error, tuple(remarks), checks, pictures=(picture,)
-    ), after  # fmt: skip
+        file.path.name, file, _in_words(best), estimates, tuple(remarks), checks, pictures=(picture,), held_out=held_out
+    ), after
 
 
 def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:
@@ -134,7 +138,7 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
                 f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
             )
     checks = tuple(friction_at_rest(both.value, known.initial.gear, file.path.name))
-    return FileResult(file.path.name, file, "breakaway of each ramp", estimates, np.nan, tuple(remarks), checks), after
+    return FileResult(file.path.name, file, "breakaway of each ramp", estimates, tuple(remarks), checks), after
 
 
 def _has_breakaway(known: GearSoFar) -> bool:

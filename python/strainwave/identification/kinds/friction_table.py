@@ -119,7 +119,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
-        name, file, best.name, estimates, best.error / float(np.std(experiment.torque)),
+        name, file, best.name, estimates,
         (*file.remarks, *_remarks(table, best, known.initial), *hints_of_levels(table)),
         (*checks, *([] if any(check.failed for check in checks) else [whole])),
         pictures=(Picture(curves_of(best.fit), "table", "friction torque, at the input"),),

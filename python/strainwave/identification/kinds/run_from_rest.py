@@ -54,11 +54,10 @@ class RunFromRest(Kind):
             whole = _with_cause(whole, found.fit, recording, drive, free)
         fitted = Fitted(found.fit, name, kept, not whole.failed, prefix="")
         estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
-        held_out = _held_out(found)
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
-            held_out.relative, (*file.remarks, *_remarks(recording, log, found.fit, kept, known)), (whole,),
-            pictures=pictures_of_channels(found.fit), held_out=held_out, fit=found.fit,
+            (*file.remarks, *_remarks(recording, log, found.fit, kept, known)), (whole,),
+            pictures=pictures_of_channels(found.fit), held_out=_held_out(found), fit=found.fit,
         )  # fmt: skip
         if whole.failed:
             return result, known

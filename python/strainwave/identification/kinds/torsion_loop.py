@@ -54,13 +54,12 @@ class Torsion(Kind):
         shared = _shared(best, gear, loop, friction_measured)
         fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, shared)
         estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
-        error = float(best.fit.rms(held_out=True)[0])
         result = FileResult(
-            name, file, best.name, estimates, error / float(np.std(loop.torque)),
+            name, file, best.name, estimates,
             (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start)),
             (*checks, *([] if any(check.failed for check in checks) else [whole])),
             pictures=(Picture(curves_of(best.fit), "loop", "torque" + _place(loop)),),
-            held_out=_held_out(best, error),
+            held_out=_held_out(best),
             candidates=tuple((each.name, each.error) for each in (best, *others)), fit=best.fit,
         )  # fmt: skip
         if whole.failed or known.knows_better("stiffness", estimates):
@@ -86,10 +85,12 @@ def _place(loop: TorsionLoop) -> str:
     return " at the output" if loop.input_ratio is None else ", referred to the output"
 
 
-def _held_out(best: TorsionCandidate, error: float) -> HeldOut:
+def _held_out(best: TorsionCandidate) -> HeldOut | None:
     rows = ~best.fit.training
-    torque = best.loop.torque[rows] if rows.any() else best.loop.torque
-    return HeldOut("blocks of the loop", "torque", "N.m", error, float(np.std(torque)), samples=int(rows.sum()))
+    if not rows.any():
+        return None
+    error, varies = float(best.fit.rms(held_out=True)[0]), float(np.std(best.loop.torque[rows]))
+    return HeldOut("blocks of the loop", "torque", "N.m", error, varies, samples=int(rows.sum()))
 
 
 def _remarks(

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kinds import ColumnRoles, encoder_roles
@@ -31,7 +29,7 @@ class TwoEncoders(Kind):
         found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=…")
         name = file.path.name
         remarks, pictures = (*file.remarks, *found.remarks), (Picture(curves_of_orders(found)),)
-        result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), np.nan, remarks, pictures=pictures)
+        result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), remarks, pictures=pictures)
         return result, with_error(known, found, name)
 
 

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 MAX_NAME = 60  # letters of the name of a gear that is made of those of its files
 MIN_LOAD_DIFFERENCE = 3.0  # standard deviations: two logs that differ by more carry different loads
 NO_LOAD = (
-    "the load is not written: the torque constant is not known, and its numbers are in A; give --constant torque_constant=…"
+    "the load is not written: the torque constant is not known, and its numbers are in A (give --constant torque_constant)"
 )
 
 

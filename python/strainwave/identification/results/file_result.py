@@ -11,6 +11,7 @@ import numpy as np
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
@@ -47,7 +48,7 @@ class FileEstimate:
 
     @property
     def state(self) -> State:
-        """Whether the file determines it."""
+        """State of the parameter by this file."""
         return "identified" if not self.why else "identified in combination" if self.in_combination else "not identified"
 
     @property
@@ -119,7 +120,6 @@ class FileResult(ComparedByFields):
         recognised: its kind and channels, with the reasons; None if it could not be read
         model: the model chosen, in words
         estimates: of its parameters
-        error: rms on data held out over the rms of what varied [1]; not a number if nothing was held out
         remarks: assumptions and limits, in short sentences
         checks: consistency checks of the file
         refused: why the file cannot be used; empty if it can
@@ -137,7 +137,6 @@ class FileResult(ComparedByFields):
     recognised: Recognised | None = None
     model: str = ""
     estimates: tuple[FileEstimate, ...] = ()
-    error: float = np.nan
     remarks: tuple[str, ...] = ()
     checks: tuple[Check, ...] = ()
     refused: str = ""
@@ -149,6 +148,11 @@ class FileResult(ComparedByFields):
     candidates: tuple[tuple[str, float], ...] = ()
     fit: Fit | None = None
     bend: float = 0.0
+
+    @property
+    def title(self) -> str:
+        """What the file is, in words."""
+        return self.what or ("not read" if self.recognised is None else KINDS[self.recognised.kind].title)
 
     @property
     def failed(self) -> tuple[Check, ...]:

@@ -13,6 +13,8 @@ from strainwave.identification.results.file_result import FileResult, State
 from strainwave.identification.results.gear_so_far import plain
 from strainwave.parameters import gear_numbers
 
+UNDETERMINED = "no file determines it"
+
 
 @dataclass(frozen=True)
 class ParameterState:
@@ -51,7 +53,7 @@ def states_of(
         source = "" if entry is None else entry.source
         if path in start.sources and start.sources[path] == entry and value == known:
             failed = (each := combined.get(path)) is not None and each.source in in_doubt
-            why = f"a check of {each.source} failed" if each is not None and failed else "no file determines it"
+            why = f"a check of {each.source} failed" if each is not None and failed else UNDETERMINED
             yield ParameterState(path, unit, known, value, np.nan, "kept", f"{why}; {source}")
         elif source.startswith("assumed"):
             yield ParameterState(path, unit, known, value, np.nan, "kept", source.removeprefix("assumed: "))

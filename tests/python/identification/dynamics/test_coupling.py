@@ -47,7 +47,7 @@ def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> 
     (said,) = (remark for remark in finding.remarks if "move too" in remark)
     assert said.startswith("joints 1, 3 move too: ")
     told = {each.path.rpartition(".")[2]: each.value for each in finding.estimates}
-    print(f"\n{told}, truth {joint}, error held out {finding.error:.3g}")
+    print(f"\n{told}, truth {joint}, error held out {finding.held_out.relative:.3g}")
     assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.05)
     assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
 

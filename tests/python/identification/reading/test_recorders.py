@@ -301,7 +301,7 @@ def test_the_joint_in_the_name_of_a_file_goes_before_others_that_move(tmp_path: 
 
 
 def test_each_file_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from strainwave.commands.file_options import mapping_from_options
+    from strainwave.commands.file_options import FileOptions
     from strainwave.identification.reading import source
 
     header = "t [s],q_1 [rad],q_2 [rad],tau_1 [Nm],tau_2 [Nm]\n"
@@ -315,7 +315,7 @@ def test_each_file_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     open_table = source.open_table
     monkeypatch.setattr(source, "open_table", counted)
     files = measurement_files([path])
-    mapping = mapping_from_options(None, ["joint_torque=tau"], ["torque=N.m"], None, None, None, files=files.files)
+    mapping = FileOptions(column=["joint_torque=tau"], unit=["torque=N.m"]).mapping_of(files.files)
     identify_joints("csg-20-100", files, mapping=mapping)
     assert opened == [path]
 
