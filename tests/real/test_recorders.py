@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from strainwave.commands.file_options import FileOptions
-from strainwave.identification.reading.consistent import consistent
 from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.several_files import consistent
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
 from strainwave.messages import with_options
 

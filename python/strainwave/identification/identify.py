@@ -16,13 +16,11 @@ from strainwave.files.tables import FORMATS
 from strainwave.identification.checks.comparisons import between_files, with_start_set
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.consistent import consistent
-from strainwave.identification.reading.duplicates import same_as
-from strainwave.identification.reading.joined_recordings import joined
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
+from strainwave.identification.reading.several_files import consistent, joined, same_as
 from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
 from strainwave.identification.readings import decided
 from strainwave.identification.results.check import Check

@@ -17,7 +17,7 @@ from strainwave.identification.candidates.plain import fit_plain, sliding_square
 from strainwave.identification.checks.sizes import input_speed
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Alternative, Recognised, recognise
-from strainwave.identification.reading.sides import SAID
+from strainwave.identification.reading.sides import GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.messages import listed, one_line
@@ -101,7 +101,7 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
 
 def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> Recognised:
     """Return the file in the best reading, with a remark of what each leaves."""
-    why = tuple(each for each in best.file.why if not (file.question and SAID in each))
+    why = tuple(each for each in best.file.why if not (file.question and GIVEN in each))
     return replace(best.file, question="", alternatives=(), why=why, remarks=(_report(best, others), *best.file.remarks))
 
 
@@ -146,7 +146,7 @@ def _asked(question: str, remaining: Sequence[_Reading]) -> str:
     if len(remaining) < 2:
         return question
     ways = " or ".join(f"{each.options} ({_described(each)}: {_percent(each)})" for each in remaining)
-    head, _, _ = question.partition("; say it")
+    head, _, _ = question.partition("; give it")
     return one_line(f"{head}: the fit does not decide between readings, so say which: {ways}")
 
 

@@ -142,7 +142,7 @@ def test_a_formula_is_never_evaluated_and_its_channel_is_named(tmp_path: Path, v
 
 def test_a_file_that_is_no_measurement_without_its_formula_names_the_channel(tmp_path: Path) -> None:
     save(tmp_path / "a.mf4", "4.10", {"q": None, "tau": {"formula": "X1*2"}})
-    with pytest.raises(ValueError, match=r"a\.mf4: it holds time, q, .*; tau is left out: its conversion is a formula"):
+    with pytest.raises(ValueError, match=r"a\.mf4: it has time, q, .*; tau is left out: its conversion is a formula"):
         recognise(tmp_path / "a.mf4", FileMapping(units={"q": "rad"}))
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.identify import Identified, identify
-from strainwave.identification.reading.duplicates import same_as
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
+from strainwave.identification.reading.several_files import same_as
 
 from tests.python.command import strainwave
 from tests.python.identification.candidates.test_motion import TRUTH, record

@@ -17,7 +17,7 @@ from strainwave.identification.experiments.steady_motion import Levels, constant
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.sides import FAST
+from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
 from strainwave.identification.reading.steady import stretches
 from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
@@ -123,7 +123,7 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
             speed, parts = np.full(rows, file.constants["speed"]), [slice(0, rows)]
         else:
             continue
-        fast = bool(np.median(np.abs(speed)) > FAST)
+        fast = bool(np.median(np.abs(speed)) > MIN_MOTOR_SPEED)
         if of is None and side is None and not fast:
             assumed.append("no side is stated, the input is taken; --side output says that it was measured there")
         taken: Side = "output" if (of or side) == "output" and not fast else "input"

@@ -1,9 +1,9 @@
 """The time of a log whose stamps are crooked: jitter, gaps, repeated rows, restarts, or no stamps at all.
 
-Each row of a log was sampled at some tick of a clock. Where the stamps lie about a regular clock by much less than a step, the
+Each row of a log was sampled at some tick of a clock. If the stamps lie about a regular clock by much less than a step, the
 scatter is that of the stamps, and the regular time is taken: a line fitted to the stamps over the number of the tick, by least
-squares. But where the angle of a shaft is as uneven as the stamps are, the shaft was sampled at uneven instants, and the stamps
-are right. Where they do not lie about a regular clock, they are taken as they are, too.
+squares. But if the angle of a shaft is as uneven as the stamps are, the shaft was sampled at uneven instants, and the stamps
+are right. If they do not lie about a regular clock, they are taken as they are, too.
 """
 
 from __future__ import annotations
@@ -19,20 +19,21 @@ from strainwave.equality import ComparedByFields
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-REGULAR = 0.2  # of a step: root mean square of stamps about a regular clock, above which ticks could not be counted
-EXACT = 1e-3  # of a step: what scatters less is taken as it is
-SURE = 3.0  # standard deviations, by which an angle must follow its stamps rather than a clock
-AGAIN = 0.5  # of a step: a row with the values of the row before it and a stamp so near is a repetition
-RESTART = 10.0  # steps: a clock that goes back by more has begun anew
-COARSE = 0.05  # of the rows: where more share the stamp of the row before, stamps are coarser than the samples
-LARGEST = 1e12  # s: what lies beyond is no time
-MOST = 1e12  # ticks from the first row to the last: more are none of a clock
-LATE = 1e6  # s: stamps that begin later count from some epoch, and are counted from the first row instead
+MAX_SCATTER = 0.2  # of a step: root mean square of stamps about a regular clock, above which ticks could not be counted
+MAX_SCATTER_OF_EXACT = 1e-3  # of a step: such stamps are taken as they are
+SIGNIFICANCE_SIGMA = 3.0  # by which an angle follows its stamps rather than a clock
+REPEAT_WINDOW = 0.5  # of a step: a row with the values of the row before it and a stamp so near is a repetition
+MIN_STEPS_BACK = 10.0  # of a clock that has begun anew
+MAX_SHARED_STAMPS = 0.05  # of the rows: if more share the stamp of the row before, stamps are coarser than the samples
+MAX_TIME = 1e12  # s of a log
+MAX_TICKS = 1e12  # from the first row to the last
+MAX_BEGIN = 1e6  # s: later stamps count from some epoch
+FITS = 5  # at most, of a line to the ticks, until these stay the same
 
 
 @dataclass(frozen=True, eq=False)
 class Clock(ComparedByFields):
-    """When the rows of a log were sampled.
+    """The instants at which the rows of a log were sampled.
 
     Args:
         time: of each row that is kept [s], increasing, shape (n,)
@@ -48,23 +49,22 @@ class Clock(ComparedByFields):
 
 
 def regular(rows: int, rate: float) -> Clock:
-    """The time of rows without stamps that were sampled at a known rate [1/s].
+    """Return the time of rows without stamps that were sampled at a known rate [1/s].
 
     >>> regular(3, rate=500.0).time
     array([0.   , 0.002, 0.004])
     """
     arguments.number("rate", rate, "Hz", "()", low=0.0)
-    return Clock(
-        np.arange(rows, dtype=float) / rate, np.arange(rows), (f"it has no time: {rate:g} rows in a second, as was said",)
-    )
+    remark = f"it has no time: {rate:g} rows in a second, as was given"
+    return Clock(np.arange(rows, dtype=float) / rate, np.arange(rows), (remark,))
 
 
 def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array | None = None) -> Clock:
-    """When rows were sampled, from their time stamps.
+    """Return the instants of rows, from their time stamps.
 
     Args:
         stamps: as they were recorded [s], shape (n,)
-        repeated: whether a row holds the same values as the row before it, shape (n,); no row if not given
+        repeated: True for a row with the same values as the row before it, shape (n,); no row if not given
         angle: of a shaft, which shows whether the stamps or the samples scatter, shape (n,)
 
     Raises:
@@ -78,45 +78,37 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array
     1 row is missing: a gap of 0.02 s after 0.0199 s
     time stamps scatter by 0.0802 ms about a clock of 100.1 Hz, which is taken
     """
-    if (largest := float(np.abs(stamps).max())) > LARGEST:
+    if (largest := float(np.abs(stamps).max())) > MAX_TIME:
         raise ValueError(f"its time reaches {largest:g} s, which no log lasts; give its unit, with --unit time=UNIT")
-    whole = _longest_stretch(stamps)
-    rows, remarks = whole.rows, [*whole.remarks]
+    rows, remarks = _longest_stretch(stamps)
     step = _step(stamps[rows])
     if repeated is not None:
         again = np.zeros(len(rows), bool)
-        again[1:] = repeated[rows[1:]] & (np.abs(np.diff(stamps[rows])) < AGAIN * step)
+        again[1:] = repeated[rows[1:]] & (np.abs(np.diff(stamps[rows])) < REPEAT_WINDOW * step)
         if count := int(again.sum()):
             rows = rows[~again]
-            remarks.append(f"{_rows(count)} {_verb(count, 'repeats', 'repeat')} the row before and {_is(count)} left out")
+            remarks.append(f"{_rows(count, 'repeats', 'repeat')} the row before and {_are(count)} left out")
     found = _regular(stamps[rows], step, None if angle is None else angle[rows]) or _as_they_are(stamps[rows])
-    time, began = found.time, 0.0
-    if time[0] > LATE:
-        began = float(time[0])
-        time = time - began
-        remarks.append("its time is counted from its first row")
-    return Clock(time, rows[found.rows], (*remarks, *found.remarks), began)
+    began = float(found.time[0]) if found.time[0] > MAX_BEGIN else 0.0
+    remarks += ["its time is counted from its first row"] if began else []
+    return Clock(found.time - began, rows[found.rows], (*remarks, *found.remarks), began)
 
 
-def _longest_stretch(stamps: Array) -> Clock:
-    """The longest stretch between restarts of the clock."""
-    step = _step(stamps)
-    restarts = np.flatnonzero(np.diff(stamps) < -RESTART * step) + 1
-    if not restarts.size:
-        return Clock(stamps, np.arange(len(stamps)))
+def _longest_stretch(stamps: Array) -> tuple[Rows, list[str]]:
+    """Return the rows of the longest stretch between restarts of the clock, and what was left out."""
+    restarts = np.flatnonzero(np.diff(stamps) < -MIN_STEPS_BACK * _step(stamps)) + 1
     ends = np.array([0, *restarts, len(stamps)])
     longest = int(np.argmax(np.diff(ends)))
     rows = np.arange(ends[longest], ends[longest + 1])
+    if not restarts.size:
+        return rows, []
     places = ", ".join(str(row) for row in restarts[:5]) + (" …" if len(restarts) > 5 else "")
-    remark = (
-        f"its time begins anew at row {places}: {len(restarts) + 1} recordings in one file, of which the longest is taken, "
-        f"rows {rows[0]} to {rows[-1]}"
-    )
-    return Clock(stamps[rows], rows, (remark,))
+    of_several = f"{len(restarts) + 1} recordings in one file, of which the longest is taken, rows {rows[0]} to {rows[-1]}"
+    return rows, [f"its time begins anew at row {places}: {of_several}"]
 
 
 def _step(stamps: Array) -> float:
-    """The usual time from row to row."""
+    """Return the usual time from row to row [s]."""
     steps = np.diff(stamps)
     if not (forward := steps[steps > 0.0]).size:
         raise ValueError("its time does not run forward; give the rate of its rows instead, with --rate HZ")
@@ -124,36 +116,34 @@ def _step(stamps: Array) -> float:
 
 
 def _regular(stamps: Array, step: float, angle: Array | None) -> Clock | None:
-    """The time of a regular clock, if the stamps lie about one."""
-    if np.ptp(stamps) > MOST * step:
+    """Return the time of a regular clock; None if the stamps do not lie about one."""
+    if np.ptp(stamps) > MAX_TICKS * step:
         return None
-    same = np.diff(stamps) == 0.0
-    if same.mean() > COARSE:
-        return _of_coarse_stamps(stamps, step)
-    ticks = np.cumsum([0, *np.round(np.diff(stamps) / step).astype(int)])
-    for _ in range(5):
+    rows, steps = np.arange(len(stamps)), np.diff(stamps)
+    is_coarse, rises = (steps == 0.0).mean() > MAX_SHARED_STAMPS, bool((steps > 0.0).all())
+    ticks = rows if is_coarse else np.cumsum([0, *np.round(steps / step).astype(int)])
+    for _ in range(FITS):
         begin, period = _line(ticks, stamps)
-        if period <= 0.0:
-            return None
-        better = np.round((stamps - begin) / period).astype(int)
+        better = ticks if is_coarse or period <= 0.0 else np.round((stamps - begin) / period).astype(int)
         if np.array_equal(better, ticks):
             break
         ticks = better
     time = begin + period * ticks.astype(float)
     scatter = float(np.sqrt(np.mean((stamps - time) ** 2)))
-    if not (np.diff(ticks) > 0).all() or scatter > REGULAR * period:
+    is_near = np.abs(stamps - time).max() <= step if is_coarse else scatter <= MAX_SCATTER * period
+    if not (np.diff(time) > 0.0).all() or not is_near:
         return None
-    gaps = _gaps(ticks, stamps, period)
-    if scatter <= EXACT * period and (np.diff(stamps) > 0.0).all():
-        return Clock(stamps, np.arange(len(stamps)), gaps)
-    if angle is not None and (np.diff(stamps) > 0.0).all() and _follows(angle, time, stamps - time):
-        said = f"rows were sampled at uneven instants, as the angle shows: by {scatter * 1e3:.3g} ms about a clock of "
-        return Clock(stamps, np.arange(len(stamps)), (*gaps, f"{said}{1.0 / period:.4g} Hz; the stamps are taken"))
-    return Clock(time, np.arange(len(stamps)), (*gaps, _told(scatter, period)))
+    gaps, of_clock = _gaps(ticks, stamps, period), f"about a clock of {1.0 / period:.4g} Hz"
+    if not is_coarse and rises and scatter <= MAX_SCATTER_OF_EXACT * period:
+        return Clock(stamps, rows, gaps)
+    if not is_coarse and rises and angle is not None and _follows(angle, time, stamps - time):
+        why = f"rows were sampled at uneven instants, as the angle shows: by {scatter * 1e3:.3g} ms {of_clock}"
+        return Clock(stamps, rows, (*gaps, f"{why}; the stamps are taken"))
+    return Clock(time, rows, (*gaps, f"time stamps scatter by {scatter * 1e3:.3g} ms {of_clock}, which is taken"))
 
 
 def _follows(angle: Array, time: Array, late: Array) -> bool:
-    """Whether an angle is as much further as a sample is late: second differences, which see little of the motion itself."""
+    """True if an angle is as much further as a sample is late: second differences contain little of the motion itself."""
     if len(angle) < 5:
         return False
     speed = np.gradient(angle, time)
@@ -164,50 +154,34 @@ def _follows(angle: Array, time: Array, late: Array) -> bool:
         return False
     slope = float(expected @ seen) / square
     sigma = float(np.sqrt(np.mean((seen - slope * expected) ** 2) / square))
-    return slope > 0.5 + SURE * sigma
+    return slope > 0.5 + SIGNIFICANCE_SIGMA * sigma
 
 
-def _of_coarse_stamps(stamps: Array, step: float) -> Clock | None:
-    """The time of a regular clock without gaps, whose stamps are coarser than its steps."""
-    ticks = np.arange(len(stamps))
-    begin, period = _line(ticks, stamps)
-    time = begin + period * ticks.astype(float)
-    if not (np.diff(time) > 0.0).all() or np.abs(stamps - time).max() > step:
-        return None
-    return Clock(time, ticks, (_told(float(np.sqrt(np.mean((stamps - time) ** 2))), period),))
-
-
-def _line(ticks: NDArray[np.int64], stamps: Array) -> tuple[float, float]:
-    """Begin and period of a clock by least squares."""
+def _line(ticks: Rows, stamps: Array) -> tuple[float, float]:
+    """Return begin and period of a clock [s] by least squares."""
     about = ticks - ticks.mean()
     period = float(about @ (stamps - stamps.mean()) / (about @ about))
     return float(stamps.mean() - period * ticks.mean()), period
 
 
-def _gaps(ticks: NDArray[np.int64], stamps: Array, period: float) -> tuple[str, ...]:
+def _gaps(ticks: Rows, stamps: Array, period: float) -> tuple[str, ...]:
     steps = np.diff(ticks)
     missing = int((steps - 1).sum())
     if not missing:
         return ()
     places, widest = int((steps > 1).sum()), int(np.argmax(steps))
     where = f"a gap of {steps[widest] * period:.3g} s after {stamps[widest]:.6g} s"
-    if places == 1:
-        return (f"{_rows(missing)} {_is(missing)} missing: {where}",)
-    return (f"{_rows(missing)} are missing at {places} places, the longest: {where}",)
-
-
-def _told(scatter: float, period: float) -> str:
-    return f"time stamps scatter by {scatter * 1e3:.3g} ms about a clock of {1.0 / period:.4g} Hz, which is taken"
+    at = "" if places == 1 else f" at {places} places, the longest"
+    return (f"{_rows(missing, 'is', 'are')} missing{at}: {where}",)
 
 
 def _as_they_are(stamps: Array) -> Clock:
-    """The stamps of a clock that is not regular, without the rows that do not lie behind all before them."""
+    """Return the stamps of a clock that is not regular, without the rows that do not lie behind all before them."""
     latest = np.maximum.accumulate(stamps)
     forward = np.concatenate([[True], stamps[1:] > latest[:-1]])
     remarks = []
     if count := int((~forward).sum()):
-        do = _verb(count, "does", "do")
-        remarks.append(f"{_rows(count)} {do} not lie after the row before in time and {_is(count)} left out")
+        remarks.append(f"{_rows(count, 'does', 'do')} not lie after the row before in time and {_are(count)} left out")
     rows = np.flatnonzero(forward)
     if len(rows) > 2:
         steps = np.diff(stamps[rows])
@@ -216,13 +190,9 @@ def _as_they_are(stamps: Array) -> Clock:
     return Clock(stamps[rows], rows, tuple(remarks))
 
 
-def _rows(count: int) -> str:
-    return "1 row" if count == 1 else f"{count} rows"
+def _rows(count: int, verb: str, of_several: str) -> str:
+    return f"1 row {verb}" if count == 1 else f"{count} rows {of_several}"
 
 
-def _is(count: int) -> str:
-    return _verb(count, "is", "are")
-
-
-def _verb(count: int, one: str, many: str) -> str:
-    return one if count == 1 else many
+def _are(count: int) -> str:
+    return "is" if count == 1 else "are"

@@ -5,132 +5,50 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
-from numpy.typing import NDArray
 
 from strainwave.files.labels import Source, places_of
 from strainwave.files.tables import OpenTable
+from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motor_effort import one_effort
-from strainwave.identification.reading.names import meaning, which_of, words_of
+from strainwave.identification.reading.names import QUANTITIES, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
 
-Array = NDArray[np.float64]
-
-
-STILL = 0.01  # of how far a joint moves, by which others move less that rest
-SEVERAL = ("other_angles", "regressors")  # as what a person names several columns
-ALIKE = (("angle", "speed"), ("torque", "current", "voltage"))  # of which a person names what is needed of one joint
+MIN_MOTION = 0.01  # of how far the joint moves that moves most: others that move by less rest
+SEVERAL = ("other_angles", "regressors")  # channels that may be several columns
+EXCHANGEABLE = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
 MEASURED = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
-FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
+USUAL_FIRST = ("time", "temperature")  # of which the first column is taken, if a file has several
+CURRENT, TORQUE = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
 
 
 def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[str]]:
-    """The columns that mean something, one for each channel: those that a person named, and those whose names tell.
+    """Return the columns with a meaning, one for each channel: those that a person named, and those with a known name.
 
-    Where a person says the rate of the rows, a column of time is taken only if the person names it.
+    If a person gives the rate of the rows, a column of time is taken only if the person names it.
 
     Returns:
         the columns, and what was decided between duplicates
     """
-    said = _said(table, mapping)
-    told = _of_one_time(_told(table, mapping, said))
-    own, remarks = one_effort(told if mapping.joint is not None else _beside(said, told))
-    found = said + _of_one_joint(table, own, mapping)
+    by_user = _by_user(table, mapping)
+    named = _of_one_time(_by_name(table, mapping, by_user))
+    own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
+    found = by_user + _of_one_joint(table, own, mapping)
     names = {column.name for column in found}
-    return found, [remark for name, remark in remarks if name in names]
-
-
-def _beside(said: Sequence[Column], told: Sequence[Column]) -> list[Column]:
-    """Those columns that stand beside what a person named, without several joints that move, or tell a torque, as that does."""
-    named = {place for place, group in enumerate(ALIKE) for column in said if column.channel.quantity in group and column.own}
-    return [
-        column
-        for column in told
-        if not any(
-            place in named and column.channel.quantity in group and sum(each.channel == column.channel for each in told) > 1
-            for place, group in enumerate(ALIKE)
-        )
-    ]
-
-
-def _told(table: OpenTable, mapping: FileMapping, said: Sequence[Column] = ()) -> list[Column]:
-    """The columns whose names tell, but for channels that a person named."""
-    taken = {column.position for column in said}
-    told = []
-    for position, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
-        if content == "other" or position in taken:
-            continue
-        found = meaning(label._replace(unit=None) if label.name in mapping.units else label)
-        if found is None or (content == "dates" and found.quantity != "time"):
-            continue
-        if found.quantity == "time" and "rate" in mapping.constants:
-            continue
-        sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
-        channel = Channel(found.quantity, found.side if sided else None, found.commanded)
-        if not any(column.channel == channel and column.own for column in said):
-            unit = "s" if content == "dates" else found.unit or label.unit or None
-            told.append(Column(position, label, channel, found.which, found.robot, unit=unit, estimated=found.estimated))
-    return _numbered_apart(_without_estimates(_of_measured_structure(told)))
-
-
-def _of_measured_structure(columns: Sequence[Column]) -> list[Column]:
-    """The columns; of a channel in several structures those of the ones with names for what was measured, as `rec.act_pos`."""
-    measured = {_structure(column) for column in columns if set(words_of(column.name)) & MEASURED}
-    channels = {column.channel for column in columns if _structure(column) in measured}
-    return [column for column in columns if _structure(column) in measured or column.channel not in channels]
-
-
-def _structure(column: Column) -> str:
-    return re.sub(r"\d+", "", column.name.rpartition(".")[0])
-
-
-def _without_estimates(columns: Sequence[Column]) -> list[Column]:
-    """The columns without estimates of what another one contains."""
-    own = {(column.channel, column.which) for column in columns if not column.estimated}
-    return [column for column in columns if not column.estimated or (column.channel, column.which) not in own]
-
-
-def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
-    """The columns, without those numbers in their names that all of one channel have: of the robot, and of no joint."""
-    groups: dict[Channel, list[list[str]]] = {}
-    for column in columns:
-        groups.setdefault(column.channel, []).append(column.which.split("."))
-    differing = {channel: _differing(group) for channel, group in groups.items()}
-    found = []
-    for column in columns:
-        parts = column.which.split(".")
-        own = [parts[place] for place in differing[column.channel]]
-        found.append(replace(column, which=".".join(own)) if own else column)
-    return found
-
-
-def _differing(group: Sequence[Sequence[str]]) -> list[int]:
-    """Which parts of names of numbers are not the same in all of them; none if the names are not of one form."""
-    if len(group) < 2 or not all(len(each) == len(group[0]) and "".join(each).isdigit() for each in group):
-        return []
-    return [place for place, parts in enumerate(zip(*group, strict=True)) if len(set(parts)) > 1]
-
-
-def _of_one_time(columns: Sequence[Column]) -> list[Column]:
-    """The columns with one time: the first whose name says nothing else, or the first."""
-    times = [column for column in columns if column.channel.quantity == "time"]
-    taken = next((column for column in times if not column.which), times[0] if times else None)
-    return [
-        replace(column, which="") if column is taken else column for column in columns if column not in times or column is taken
-    ]
+    return found, [remark for name, remark in remarks.items() if name in names]
 
 
 def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
-    """The joints whose angles change, of a file with several of which a person named none."""
+    """Return the joints whose angles change, of a file with several of which a person named none."""
     if mapping.joint is not None or "output_angle" in mapping.columns or "input_angle" in mapping.columns:
         return []
     groups = dict[Channel, dict[str, int]]()
-    for column in _told(table, mapping):
+    for column in _by_name(table, mapping):
         if column.channel.quantity == "angle" and column.channel.measured and column.which:
             angles = groups.setdefault(column.channel, {})
             if column.which in angles:
@@ -140,59 +58,159 @@ def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     if len(angles) < 2:
         return []
     numbers, _ = table.measured([Source(place, which, which, "1") for which, place in angles.items()])
-    finite = {which: values[np.isfinite(values)] for which, values in numbers.items()}
-    spans = {which: float(np.ptp(values)) for which, values in finite.items() if values.size}
-    least = STILL * max(spans.values(), default=0.0)
+    spans = {which: float(np.ptp(there)) for which, each in numbers.items() if (there := each[np.isfinite(each)]).size}
+    least = MIN_MOTION * max(spans.values(), default=0.0)
     return [which for which, span in spans.items() if span > 0.0 and span >= least]
 
 
-def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
-    """The columns that a person named."""
+# ---- By their names --------------------------------------------------------------------------------------------------
+
+
+def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
+    """Return the columns with a known name, but for channels that a person named."""
+    taken = {column.position for column in by_user}
+    columns = []
+    for position, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
+        if content == "other" or position in taken:
+            continue
+        found = meaning(label._replace(unit=None) if label.name in mapping.units else label)
+        is_time = found is not None and found.quantity == "time"
+        if found is None or (content == "dates" and not is_time) or (is_time and "rate" in mapping.constants):
+            continue
+        sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
+        channel = Channel(found.quantity, found.side if sided else None, found.commanded)
+        if not any(column.channel == channel and column.own for column in by_user):
+            unit = "s" if content == "dates" else found.unit or label.unit or None
+            columns.append(Column(position, label, channel, found.which, found.robot, unit=unit, estimated=found.estimated))
+    return _numbered_apart(_without_estimates(_of_measured_structure(columns)))
+
+
+def _of_measured_structure(columns: Sequence[Column]) -> list[Column]:
+    """Return the columns; of a channel in several structures those of the ones with measured values, as `rec.act_pos`."""
+    structures = [re.sub(r"\d+", "", column.name.rpartition(".")[0]) for column in columns]
+    pairs = list(zip(columns, structures, strict=True))
+    measured = {structure for column, structure in pairs if set(words_of(column.name)) & MEASURED}
+    channels = {column.channel for column, structure in pairs if structure in measured}
+    return [column for column, structure in pairs if structure in measured or column.channel not in channels]
+
+
+def _without_estimates(columns: Sequence[Column]) -> list[Column]:
+    """Return the columns without estimates of what another one contains."""
+    own = {(column.channel, column.which) for column in columns if not column.estimated}
+    return [column for column in columns if not column.estimated or (column.channel, column.which) not in own]
+
+
+def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
+    """Return the columns without the numbers in their names that all of one channel have: of the robot, and of no joint."""
+    groups, differs = dict[Channel, list[list[str]]](), dict[Channel, list[bool]]()
+    for column in columns:
+        groups.setdefault(column.channel, []).append(column.which.split("."))
+    for channel, group in groups.items():
+        is_even = len(group) > 1 and all(len(each) == len(group[0]) and "".join(each).isdigit() for each in group)
+        differs[channel] = [len(set(each)) > 1 for each in zip(*group, strict=True)] if is_even else []
+    own = [compress(column.which.split("."), differs[column.channel]) for column in columns]
+    return [replace(column, which=".".join(each) or column.which) for column, each in zip(columns, own, strict=True)]
+
+
+def _of_one_time(columns: Sequence[Column]) -> list[Column]:
+    """Return the columns with one time: the first whose name has no further word, or the first."""
+    times = [column for column in columns if column.channel.quantity == "time"]
+    taken = next((column for column in times if not column.which), times[0] if times else None)
+    return [replace(each, which="") if each is taken else each for each in columns if each not in times or each is taken]
+
+
+def _beside(by_user: Sequence[Column], named: Sequence[Column]) -> list[Column]:
+    """Return the named columns, without those of several joints whose channel or a like one a person named."""
+    taken = {group for group in EXCHANGEABLE for column in by_user if column.channel.quantity in group and column.own}
+    quantities = {quantity for group in taken for quantity in group}
+    channels = [column.channel for column in named]
+    return [each for each in named if each.channel.quantity not in quantities or channels.count(each.channel) == 1]
+
+
+def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]]:
+    """Return the columns with one torque or current of each joint, if several are duplicates; and remarks, by the one taken.
+
+    The torque of the motor contains the friction of the gear, that of a sensor behind the gear does not. So a torque from the
+    current goes before a current, and this before any other torque.
+    """
+    efforts = [each for each in columns if each.channel.quantity in ("torque", "current") and each.channel.measured]
+    efforts = [each for each in efforts if each.channel.side is None and each.own and not each.by_user]
+    taken, remarks = list(columns), dict[str, str]()
+    for joint in dict.fromkeys(column.which for column in efforts):
+        several = [column for column in efforts if column.which == joint]
+        words = {column.position: set(words_of(column.name)) for column in several}
+        from_current = [each for each in several if words[each.position] & CURRENT and words[each.position] & TORQUE]
+        others = [column for column in several if column not in from_current]
+        currents = [column for column in others if column.channel.quantity == "current"]
+        first = from_current if from_current and others else currents if len(others) - len(currents) > 1 else []
+        if len(first) != 1:
+            continue
+        (best,) = first
+        as_torque = best in from_current and (best.unit is None or measures(best.unit, "N.m"))
+        kept = replace(best, channel=best.channel._replace(quantity="torque")) if as_torque else best
+        taken = [kept if column is best else column for column in taken if column is best or column not in several]
+        what = "is the motor's torque from its current" if best in from_current else "is the current of the motor"
+        instead = f"--column joint_torque=NAME takes another one of {listed(each.name for each in several if each is not best)}"
+        remarks[best.name] = f"{best.name} {what}, which contains the friction, and is taken; {instead}"
+    return taken, remarks
+
+
+# ---- By a person -----------------------------------------------------------------------------------------------------
+
+
+def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
+    """Return the columns that a person named.
+
+    Raises:
+        ValueError: the file has no such column, or several
+        UndecidedError: it has one for each joint
+    """
     found = []
-    each = [(name, wanted) for name, wanted in mapping.columns.items() if name not in SEVERAL]
-    for name in SEVERAL:
-        each += [(name, wanted.strip()) for wanted in mapping.columns.get(name, "").split(",") if wanted.strip()]
-    for name, wanted in each:
-        channel = CHANNELS[ALIASES.get(name, name)]
-        places = places_of(table.labels, wanted) or _of_joint(table, wanted, mapping.joint)
-        if len(places) > 1 and mapping.joint is None and (joints := _numbers_of_joints(table, places)):
-            which = f"it holds {len(joints)} joints ({listed(joints)}), as {table.labels[places[0]].name}"
-            question = f"{which}; say which with --joint {joints[0]} or --joint all"
-            raise UndecidedError(question, (), f"--joint {joints[0]}", FileMapping(joint=joints[0]))
-        if len(places) != 1:
-            fault = f"has {len(places)} columns" if places else "has no column"
-            there = listed(label.name for label in table.labels)
-            raise ValueError(one_line(f"{table.file} {fault} {quoted(wanted)} to be the {name}; it has {there}"))
-        label = table.labels[places[0]]
-        told = meaning(label)
-        unit = label.unit or (told.unit if told and told.quantity == channel.quantity else None) or None
-        unit = "s" if table.contents[places[0]] == "dates" else unit
-        which = (told.which if told else "") or str(places[0] + 1)
-        neighbour, regressor = name == "other_angles", name == "regressors"
-        unit = channel.unit if name == "regressors" else unit  # of a regressor any unit is that of torque over its share's
-        kept = which if neighbour else ""
-        found.append(Column(places[0], label, channel, kept, by_user=True, neighbour=neighbour, regressor=regressor, unit=unit))
+    wanted = [(name, each) for name, each in mapping.columns.items() if name not in SEVERAL]
+    wanted += [(name, each.strip()) for name in SEVERAL for each in mapping.columns.get(name, "").split(",") if each.strip()]
+    for name, column in wanted:
+        place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[ALIASES.get(name, name)]
+        label, by_name = table.labels[place], meaning(table.labels[place])
+        unit = label.unit or (by_name.unit if by_name and by_name.quantity == channel.quantity else None) or None
+        unit = "s" if table.contents[place] == "dates" else unit
+        if name == "regressors":  # of one, any unit is that of torque over that of its share
+            found.append(Column(place, label, channel, by_user=True, regressor=True, unit=channel.unit))
+            continue
+        neighbour = name == "other_angles"
+        which = ((by_name.which if by_name else "") or str(place + 1)) if neighbour else ""
+        found.append(Column(place, label, channel, which, by_user=True, neighbour=neighbour, unit=unit))
     return found
 
 
-def _numbers_of_joints(table: OpenTable, places: Sequence[int]) -> list[str]:
-    """The numbers behind the names of columns that are one for each joint; empty if they are not."""
-    found = [match[0] if (match := re.search(r"\d+$", table.labels[place].name)) else "" for place in places]
-    return found if all(found) and len(set(found)) == len(found) else []
+def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> int:
+    """Return the position of a column that a person named; raises as `_by_user`."""
+    places = places_of(table.labels, column) or _of_joint(table, column, joint)
+    names = [table.labels[place].name for place in places]
+    joints = [match[0] for each in names if (match := re.search(r"\d+$", each))]
+    if len(places) > 1 and joint is None and len(set(joints)) == len(places):
+        raise _which_joint(joints, names[0], "")
+    if len(places) != 1:
+        fault = f"has {len(places)} columns" if places else "has no column"
+        there = listed(label.name for label in table.labels)
+        raise ValueError(one_line(f"{table.file} {fault} {quoted(column)} to be the {name}; it has {there}"))
+    return places[0]
 
 
 def _of_joint(table: OpenTable, wanted: str, joint: str | None) -> list[int]:
-    """Places of the columns of a joint whose name begins so, as `Cur` for `Cur4` or `block3` for `block3_4`; of all if None."""
+    """Return the places of columns of a joint by the begin of their name, as `Cur` for `Cur4`; of all joints if None."""
     number = r"\d+" if joint is None else f"0*{re.escape(which_of(words_of(joint)) or joint)}"
     name = re.compile(rf"{re.escape(wanted)}[_.]?{number}")
     places = [place for place, label in enumerate(table.labels) if name.fullmatch(label.name)]
     return places if joint is not None or len(places) > 1 else []
 
 
-def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> list[Column]:
-    """One column for each channel: those of the joint that is asked for, or the one whose name says nothing else.
+# ---- One for each channel --------------------------------------------------------------------------------------------
 
-    Where no name says a joint, they are those of the one that is asked for.
+
+def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> list[Column]:
+    """Return one column for each channel: those of the joint that is asked for, or the one whose name has no further word.
+
+    If no name contains a joint, they are those of the one that is asked for.
     """
     groups: dict[Channel, list[Column]] = {}
     for column in columns:
@@ -204,57 +222,50 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
         joint = mapping.joint if mapping.joint in known else which_of(words_of(mapping.joint))  # J3 is joint 3
         if joint not in known:
             raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
-        several_joints = len(known) > 1
-        own = [
-            replace(column, robot=column.robot or (several_joints and column.which == joint))
-            for column in columns
-            if column.which in ("", joint) or column.which not in known
-        ]
-        angle = next((column for column in own if column.channel.quantity == "angle" and column.which == joint), None)
-        return own + [
-            replace(column, neighbour=True)
-            for column in columns
-            if angle is not None and column.which in known and column.which != joint and column.channel == angle.channel
-        ]
-    if len(several) == 1 and _are_two_encoders(columns, several[0]):
+        return _with_neighbours(columns, joint, known)
+    quantities = {column.channel.quantity for column in columns} - set(USUAL_FIRST)
+    if len(several) == 1 and len(several[0]) == 2 and quantities == {"angle"}:  # two encoders
         return list(columns)
-    taken = []
-    for group in groups.values():
-        plain = [column for column in group if not column.which] if len(group) > 1 else group
-        if _may_be_of_both_shafts(plain):
-            taken += plain
-            continue
-        if plain and plain[0].channel.quantity in FIRST:
-            plain = plain[:1]
-        if len(plain) != 1:
-            raise _choice(group, joints)
-        taken += plain
-    return taken
+    return [column for group in groups.values() for column in _taken(group, joints)]
 
 
-def _may_be_of_both_shafts(group: Sequence[Column]) -> bool:
-    """Whether two angles or two speeds may be those of input and output, which their sizes tell."""
-    channel = group[0].channel if group else Channel("time")
-    return len(group) == 2 and channel.quantity in ("angle", "speed") and channel.side is None and channel.measured
+def _with_neighbours(columns: Sequence[Column], joint: str, known: Sequence[str]) -> list[Column]:
+    """Return the columns of a joint, and the angles of the others."""
+    own = [column for column in columns if column.which in ("", joint) or column.which not in known]
+    angle = next((column for column in own if column.channel.quantity == "angle" and column.which == joint), None)
+    of_others = [column for column in columns if column.which in known and column.which != joint]
+    neighbours = [column for column in of_others if angle is not None and column.channel == angle.channel]
+    return [
+        *(replace(each, robot=each.robot or (len(known) > 1 and each.which == joint)) for each in own),
+        *(replace(each, neighbour=True) for each in neighbours),
+    ]
 
 
-def _are_two_encoders(columns: Sequence[Column], group: Sequence[Column]) -> bool:
-    """Whether two angles are those of input and output: nothing else is measured beside them but time."""
-    others = {column.channel.quantity for column in columns} - {"time", "temperature"}
-    return len(group) == 2 and others == {"angle"}
+def _taken(group: Sequence[Column], joints: Sequence[str]) -> Sequence[Column]:
+    """Return the column of a channel that is taken; two, if their sizes show which is that of the input.
 
-
-def _choice(group: Sequence[Column], joints: Sequence[str]) -> UndecidedError:
-    """The question which of several columns is meant."""
+    Raises:
+        UndecidedError: each may be the channel
+    """
+    plain = [column for column in group if not column.which] if len(group) > 1 else group
     channel = group[0].channel
+    if len(plain) == 2 and channel.quantity in ("angle", "speed") and channel.side is None and channel.measured:
+        return plain
+    if plain and channel.quantity in USUAL_FIRST:
+        return plain[:1]
+    if len(plain) == 1:
+        return plain
     name = "command" if channel.commanded else "_".join(filter(None, (channel.side, channel.quantity)))
     side = "output" if channel.side == "output" or group[0].robot or len(joints) > 1 else "input"
     wanted = {"output_torque": "joint_torque", "angle": f"{side}_angle", "speed": f"{side}_speed"}.get(name, name)
-    option = as_option("column", wanted, group[0].name)
+    option, names = as_option("column", wanted, group[0].name), [column.name for column in group]
     if len({column.which for column in group}) == len(group) and len(joints) > 1:
-        few = listed(column.name for column in group[:2]) + (" …" if len(group) > 2 else "")
-        which = f"it holds {len(joints)} joints ({listed(joints)}), as {few}"
-        ways = f"--joint {joints[0]} or --joint all, or name columns, as {option}"
-        return UndecidedError(f"{which}; say which with {ways}", (), f"--joint {joints[0]}", FileMapping(joint=joints[0]))
-    names = listed(column.name for column in group)
-    return UndecidedError(f"each of {names} may be the {name}; say which, as with {option}", (), option)
+        raise _which_joint(joints, listed(names[:2]) + (" …" if len(names) > 2 else ""), f", or name columns, as {option}")
+    raise UndecidedError(f"each of {listed(names)} may be the {name}; choose one, as with {option}", (), option)
+
+
+def _which_joint(joints: Sequence[str], names: str, instead: str) -> UndecidedError:
+    """Return the question which joint is meant."""
+    option = f"--joint {joints[0]}"
+    question = f"it has {len(joints)} joints ({listed(joints)}), as {names}; choose with {option} or --joint all{instead}"
+    return UndecidedError(question, (), option, FileMapping(joint=joints[0]))

@@ -1,4 +1,4 @@
-"""Which side of the gear a channel sits on, where its name does not say so: by words of robots, speed and neighbours."""
+"""Sides of channels whose names contain none: by words of robots, by their speed, and by the channels beside them."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from strainwave.messages import as_option
 
 Array = NDArray[np.float64]
 
-JOINT_SPEED, JOINT_RANGE = 400.0, 720.0  # deg/s and deg: what is no larger may be a joint in degrees, where no unit is stated
-FAST = 60.0  # rad/s, 570 1/min: what turns faster is a motor, and no output of a strain wave gear
-ALIKE = (0.5, 2.0)  # between the speed of one channel and of another: they are of one side
-APART = 10.0  # times: of two angles of which one runs so much further it is that of the input
-SAID = "was said to be at the"
-OFTEN = 0.9  # of the time: a motor that is taken for one by its speed is slower for that share
+MAX_JOINT_SPEED, MAX_JOINT_RANGE = 400.0, 720.0  # deg/s and deg: beyond them, numbers without a unit are no joint in degrees
+MIN_MOTOR_SPEED = 60.0  # rad/s, 570 1/min: no output of a strain wave gear is as fast
+SPEED_QUANTILE = 0.9  # of the time, in which a motor that is recognised by its speed may be slower
+MAX_FACTOR_OF_SIDE = 2.0  # between the median speeds of two channels of one side
+MIN_FACTOR_OF_SIDES = 10.0  # between the ranges of the angles of input and output
+GIVEN = "as was given"  # of a side
 
 
 class UndecidedError(ValueError):
@@ -39,79 +39,80 @@ class UndecidedError(ValueError):
         self.ways, self.options, self.answer = tuple(ways), options, answer
 
 
-def side_of_table(speed: Column, torque: Column, said: Side | None) -> tuple[Side, str]:
-    """Where a table of friction was measured, and what tells so."""
-    if said is not None:
-        return said, f"it was said to be measured at the {said}"
+def side_of_table(speed: Column, torque: Column, given: Side | None) -> tuple[Side, str]:
+    """Return the side at which a table of friction was measured, and what determines it."""
+    if given is not None:
+        return given, f"it was measured at the {given}, {GIVEN}"
     if side := speed.channel.side or torque.channel.side:
-        return side, f"its names say that it was measured at the {side}"
+        return side, f"by its names it was measured at the {side}"
     if speed.robot or torque.robot:
         return "output", f"{pair(speed, torque)} are what robots call the channels of a joint: measured at the output"
     fastest = float(np.abs(speed.si).max())
-    if fastest > FAST:
+    if fastest > MIN_MOTOR_SPEED:
         return "input", f"it reaches {_per_minute(fastest)}, so it was measured at the input"
-    slow = f"{_per_minute(fastest)} at most"
-    return "input", f"no side is stated, the input is taken ({slow}); --side output says that it was measured there"
+    return "input", f"no side is stated, the input is taken ({_per_minute(fastest)} at most); otherwise add --side output"
 
 
-def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None, said: Side | None) -> tuple[Side, str]:
-    """The side of an angle or speed of a log, and what tells so, motions and torques beside it among others.
+def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None, given: Side | None) -> tuple[Side, str]:
+    """Return the side of an angle or speed of a log, and what determines it.
+
+    Args:
+        column: the angle or speed
+        beside: motions and torques of the log
+        time: of the log
+        given: the side that a person gave
 
     Raises:
-        UndecidedError: nothing does
+        UndecidedError: nothing determines it
     """
-    if column.channel.side is not None:
-        return column.channel.side, ""
-    if said is not None:
-        return said, f"{column.name} {SAID} {said}"
+    if side := column.channel.side or given:
+        return side, "" if column.channel.side else f"{column.name} is at the {side}, {GIVEN}"
     if column.robot:
-        why = "what robots call a channel of a joint" if _is_word_of_robots(column) else "a channel of one of several joints"
+        found = meaning(column.label)
+        is_word = found is not None and found.robot
+        why = "what robots call a channel of a joint" if is_word else "a channel of one of several joints"
         return "output", f"{column.name} is {why}: it is taken to be at the output"
-    for other in beside:
-        if (
-            (side := other.channel.side)
-            and {other.channel.quantity, column.channel.quantity} == {"angle", "speed"}
-            and _alike(column, other, time)
-        ):
+    motions = [each for each in beside if {each.channel.quantity, column.channel.quantity} == {"angle", "speed"}]
+    for other in motions:
+        if (side := other.channel.side) and _are_of_one_side(column, other, time):
             return side, f"{column.name} runs as {other.name} does, so it is at the {side} too"
-    fastest = 0.0 if time is None else float(np.quantile(np.abs(_speed(column, time)), OFTEN))
-    if fastest > FAST:
-        if (
-            not column.sure
-            and fastest < JOINT_SPEED
-            and (column.channel.quantity == "speed" or np.ptp(column.si) < JOINT_RANGE)
-        ):
-            unit = {"angle": "deg", "speed": "deg/s"}[column.channel.quantity]
-            joint = f"--side output {as_option('unit', column.name, unit)}"
-            may_be = f"{column.name} has no unit: it may be that of a motor in {column.unit}, or that of a joint in {unit}"
-            as_joint = FileMapping(side="output", units={column.name: unit})
-            raise UndecidedError(f"{may_be}; say it, with --side input, or with {joint}", [FileMapping(side="input"), as_joint])
+    fastest = 0.0 if time is None else float(np.quantile(np.abs(_speed(column, time)), SPEED_QUANTILE))
+    if fastest > MIN_MOTOR_SPEED:
+        _check_unit(column, fastest)
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
-    others = {other.channel.side or ("output" if other.robot else None) for other in beside} - {None}
-    if others == {"output"}:
+    if {other.channel.side or ("output" if other.robot else None) for other in beside} - {None} == {"output"}:
         return "output", f"{column.name} stands beside channels of a joint: it is taken to be at the output"
     ways = " or ".join(f"--column {side}_{column.channel.quantity}={column.name}" for side in ("input", "output"))
-    unknown = f"whether {column.name} was measured at the motor or at the output cannot be told"
-    sides = [FileMapping(side="output"), FileMapping(side="input")]
-    raise UndecidedError(f"{unknown}; say it with {ways}, or with --side for all", sides)
+    raise UndecidedError(
+        f"the side of {column.name} is not determined, motor or output; give it, with {ways}, or with --side for all",
+        [FileMapping(side="output"), FileMapping(side="input")],
+    )
 
 
-def _is_word_of_robots(column: Column) -> bool:
-    """True if the name itself is that of a joint's channel, and not only its number."""
-    found = meaning(column.label)
-    return found is not None and found.robot
-
-
-def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple[Side, str]:
-    """The side at which the torque of a log is counted, and what tells so.
+def _check_unit(column: Column, fastest: float) -> None:
+    """Ask for the unit of a motion that is as fast as a motor, but may be that of a joint in degrees.
 
     Raises:
-        UndecidedError: nothing does
+        UndecidedError: both are possible
     """
-    if column.channel.side is not None:
-        return column.channel.side, ""
-    if said is not None:
-        return said, f"{column.name} {SAID} {said}"
+    is_slow = fastest < MAX_JOINT_SPEED and (column.channel.quantity == "speed" or np.ptp(column.si) < MAX_JOINT_RANGE)
+    if column.sure or not is_slow:
+        return
+    unit = {"angle": "deg", "speed": "deg/s"}[column.channel.quantity]
+    joint = f"--side output {as_option('unit', column.name, unit)}"
+    may_be = f"{column.name} has no unit: it may be that of a motor in {column.unit}, or that of a joint in {unit}"
+    ways = [FileMapping(side="input"), FileMapping(side="output", units={column.name: unit})]
+    raise UndecidedError(f"{may_be}; give it, with --side input, or with {joint}", ways)
+
+
+def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tuple[Side, str]:
+    """Return the side at which the torque of a log is counted, and what determines it.
+
+    Raises:
+        UndecidedError: nothing determines it
+    """
+    if side := column.channel.side or given:
+        return side, "" if column.channel.side else f"{column.name} is at the {side}, {GIVEN}"
     if " of " in (column.unit or ""):
         return "input", f"{column.name} is a share of a rated torque, which is that of the motor"
     if column.robot:
@@ -120,28 +121,25 @@ def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple
         (side,) = sides
         return side, f"{column.name} stands beside motion of the {side} only: it is taken to be counted there"
     ways = f"--column input_torque={column.name} or --column joint_torque={column.name}"
-    unknown = f"whether {column.name} is counted at the motor or at the output cannot be told"
-    raise UndecidedError(f"{unknown}; say it with {ways}", (), ways)
+    question = f"the side at which {column.name} is counted is not determined, motor or output"
+    raise UndecidedError(f"{question}; give it, with {ways}", (), ways)
 
 
 def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:
-    """Which of two angles, or of two speeds, is that of the input and which that of the output, and what tells so.
+    """Return that of two angles, or of two speeds, at the input; that at the output; and what determines it.
 
     Raises:
-        UndecidedError: nothing does
+        UndecidedError: nothing determines it
     """
-    first, second = angles
-    if first.channel.side == "output" or second.channel.side == "input":
-        first, second = second, first
-    if first.channel.side or second.channel.side:
-        return first, second, ""
     slow, fast = sorted(angles, key=lambda column: float(np.ptp(column.si)))
-    if np.ptp(fast.si) < APART * np.ptp(slow.si):
+    named = [column.channel.side for column in angles]
+    if any(named):
+        first, second = angles[::-1] if named[0] == "output" or named[1] == "input" else angles
+        return first, second, ""
+    if np.ptp(fast.si) < MIN_FACTOR_OF_SIDES * np.ptp(slow.si):
         quantity = fast.channel.quantity
         ways = f"--column input_{quantity}={fast.name} --column output_{quantity}={slow.name}"
-        raise UndecidedError(
-            f"which of {pair(slow, fast)} is the {quantity} of the output cannot be told; say it, as with {ways}"
-        )
+        raise UndecidedError(f"the sides of {pair(slow, fast)} are not determined; give them, as with {ways}")
     times = "" if np.ptp(slow.si) == 0.0 else f" {np.ptp(fast.si) / np.ptp(slow.si):.3g} times as far as {slow.name}"
     return fast, slow, f"{fast.name} runs{times}, so it is that of the input"
 
@@ -154,22 +152,19 @@ def _per_minute(speed: float) -> str:
     return f"{speed * 30.0 / np.pi:.4g} 1/min"
 
 
-def _alike(first: Column, second: Column, time: Column | None) -> bool:
-    """Whether two channels, one of them an angle, run about equally fast."""
+def _are_of_one_side(first: Column, second: Column, time: Column | None) -> bool:
+    """True if two channels, one of them an angle, run about equally fast."""
     if time is None:
         return False
-    one, other = (float(np.median(np.abs(_speed(column, time)))) for column in (first, second))
-    return ALIKE[0] * other < one < ALIKE[1] * other
+    slow, fast = sorted(float(np.median(np.abs(_speed(column, time)))) for column in (first, second))
+    return fast < MAX_FACTOR_OF_SIDE * slow
 
 
 def _speed(column: Column, time: Column) -> Array:
-    """A speed, or that which an angle gives over a thousandth of the record, 0 where none does."""
+    """Return a speed, or that of an angle over a thousandth of the record; 0 if its time does not run forward."""
     if column.channel.quantity == "speed":
         return column.si
     apart = max(len(column.si) // 1000, 1)
-    elapsed = time.si[apart:] - time.si[:-apart]
+    elapsed, moved = time.si[apart:] - time.si[:-apart], column.si[apart:] - column.si[:-apart]
     forward = elapsed > 0.0
-    if not forward.any():
-        return np.zeros(1)
-    speed: Array = (column.si[apart:] - column.si[:-apart])[forward] / elapsed[forward]
-    return speed
+    return moved[forward] / elapsed[forward] if forward.any() else np.zeros(1)

@@ -84,7 +84,7 @@ def test_of_duplicates_the_torque_from_the_current_is_taken(tmp_path: Path, seen
 
 def test_u_of_a_robot_may_be_anything_that_drives_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     arms.log_text(tmp_path / "log.log", seen)
-    with pytest.raises(ValueError, match=r"u2 may be a torque, a current or a voltage; say it with --column joint_torque=u2 "):
+    with pytest.raises(ValueError, match=r"u2 may be a torque, a current or a voltage; name it with --column joint_torque=u2 "):
         recognise(tmp_path / "log.log", FileMapping(joint="2"))
     is_joint(recognise(tmp_path / "log.log", FileMapping(joint="2", columns={"joint_torque": "u2"})), seen, 1)
 
@@ -152,10 +152,10 @@ def test_the_joint_that_moves_alone_is_taken_and_told(tmp_path: Path, seen: dict
     arms.mat(tmp_path / "one.mat", alone)
     found = recognise(tmp_path / "one.mat")
     is_joint(found, alone, 2)
-    assert "joint 3 alone moves, and is taken; --joint says another one" in found.remarks
+    assert "joint 3 alone moves, and is taken; otherwise add --joint NAME" in found.remarks
     arms.mat(tmp_path / "all.mat", seen)
     with pytest.raises(
-        ValueError, match=r"it holds 3 joints \(1, 2, 3\).* say which with --joint 1 or .* --column output_angle=q_1"
+        ValueError, match=r"it has 3 joints \(1, 2, 3\).* choose with --joint 1 or .* --column output_angle=q_1"
     ):
         recognise(tmp_path / "all.mat")
 
@@ -195,7 +195,7 @@ def test_two_angles_are_told_apart_by_how_far_they_run(tmp_path: Path, seen: dic
     assert any("so it is that of the input" in why for why in found.why)
     scaled = columns | {"theta": columns["theta"] / JOINT.ratio}
     with pytest.raises(
-        ValueError, match=r"which of .* is the angle of the output cannot be told; say it, as with --column input_angle="
+        ValueError, match=r"the sides of .* are not determined; give them, as with --column input_angle="
     ):
         recognise(written(tmp_path / "b.csv", scaled))
 
@@ -213,7 +213,7 @@ def test_an_angle_without_a_unit_may_be_of_a_motor_or_of_a_joint_in_degrees(
     columns = {"t": seen["time"], "theta": np.degrees(seen["q"][1]), "tau": seen["joint_torque"][1]}
     path = written(tmp_path / "a.csv", columns)
     found = recognise(path)
-    assert "motor in rad, or that of a joint in deg; say it, with --side input, or with --side output --unit" in found.question
+    assert "motor in rad, or that of a joint in deg; give it, with --side input, or with --side output --unit" in found.question
     assert [each.mapping.units for each in found.alternatives if each.mapping.side == "output"] == [{"theta": "deg"}]
     is_joint(recognise(path, FileMapping(side="output")), seen, 1, "joint_torque")
     assert recognise(path, FileMapping(side="input")).units["input_angle"] == "rad"

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.identify import identify
-from strainwave.identification.reading.joined_recordings import joined
 from strainwave.identification.reading.recognise import recognise
+from strainwave.identification.reading.several_files import joined
 
 from tests import arms
 

@@ -129,7 +129,7 @@ def test_crooked_rows_are_left_out_and_told(tmp_path: Path) -> None:
 def test_several_joints_are_asked_for(tmp_path: Path) -> None:
     header = "time [s],q1 [rad],q2 [rad],tau1 [N.m],tau2 [N.m]"
     path = write(tmp_path / "arm.csv", header, TIME, SWING, 2.0 * SWING, SWING, 3.0 * SWING)
-    with pytest.raises(ValueError, match=r"it holds 2 joints \(1, 2\), as q1, q2; say which with --joint 1 or --joint all"):
+    with pytest.raises(ValueError, match=r"it has 2 joints \(1, 2\), as q1, q2; choose with --joint 1 or --joint all"):
         recognise(path)
     second = recognise(path, FileMapping(joint="2"))
     assert recognise(path, FileMapping(joint="J2")).columns == second.columns
@@ -153,7 +153,7 @@ def test_a_column_without_any_number_is_left_out_and_told(tmp_path: Path) -> Non
 def test_a_side_that_cannot_be_told_is_asked_for(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "time [s],position [rad],current [A]", TIME, SWING, SWING)
     found = recognise(path)
-    assert "say it with --column input_angle=position or --column output_angle=position, or" in found.question
+    assert "give it, with --column input_angle=position or --column output_angle=position, or" in found.question
     assert (found.side, [each.mapping.side for each in found.alternatives]) == ("output", ["input"])
     assert "output_angle" in recognise(path, FileMapping(side="output")).recording
     assert "input_angle" in recognise(path, FileMapping(columns={"input_angle": "position"})).recording
@@ -170,7 +170,7 @@ def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
 def test_what_is_no_measurement_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"no column has a name that is known: foo, bar; name it, as with --column speed=foo"):
         recognise(write(tmp_path / "a.csv", "foo,bar", [1.0, 2.0], [1.0, 2.0]))
-    with pytest.raises(ValueError, match=r"it holds time, position, which is no measurement that is known"):
+    with pytest.raises(ValueError, match=r"it has time, position, which is no measurement that is known"):
         recognise(write(tmp_path / "b.csv", "time [s],position [rad]", TIME, SWING))
 
 

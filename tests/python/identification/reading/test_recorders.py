@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 from strainwave.identification.identify import identify
 from strainwave.identification.joints import identify_joints
-from strainwave.identification.reading.consistent import consistent
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, joints_of, recognise
+from strainwave.identification.reading.several_files import consistent
 from strainwave.identification.reading.source import MeasurementFile, measurement_files, with_parts
 
 Array = NDArray[np.float64]

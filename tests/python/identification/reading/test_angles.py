@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
-from strainwave.identification.reading.wraps import unwrapped
+from strainwave.identification.reading.angles import unwrapped
 
 steps = arrays(np.float64, st.integers(5, 200), elements=st.floats(-0.24, 0.24))
 
@@ -30,5 +30,5 @@ def test_what_does_not_wrap_stays_as_it_is(angle: NDArray[np.float64]) -> None:
 
 
 def test_a_shaft_too_fast_for_its_samples_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"cannot be told which way the shaft went; record it more often"):
+    with pytest.raises(ValueError, match=r"do not show in which direction the shaft went; record it more often"):
         unwrapped(0.4 * np.arange(100) % 1.0, 1.0)
