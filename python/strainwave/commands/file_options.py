@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import wraps
-from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,7 +11,6 @@ import typer
 
 from strainwave.identification.kinds import KINDS
 from strainwave.messages import listed, pairs, quoted, unquoted
-from strainwave.number_texts import is_whole, number_in
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
@@ -24,7 +21,7 @@ Gear = Annotated[str, typer.Argument(help="Where to start: a catalogue set, as h
 
 @dataclass(frozen=True)
 class FileOptions:
-    """Options that state what measurement files contain; a verb that takes them has them as `--mapping`, `--column`, …"""
+    """Options that state what measurement files contain."""
 
     mapping: Annotated[Path | None, typer.Option(help="TOML file with the columns of all or some files.")] = None
     column: Annotated[
@@ -87,51 +84,9 @@ class FileOptions:
         return of
 
 
-def with_file_options(verb: Callable[..., None]) -> Callable[..., None]:
-    """Return a verb that has each of `FileOptions` as an option of its own, in place of its parameter `given`."""
-    own, options = signature(verb, eval_str=True), signature(FileOptions, eval_str=True).parameters
-    places = [options.values() if each.name == "given" else (each,) for each in own.parameters.values()]
-    parameters = [each for place in places for each in place]
-
-    @wraps(verb)
-    def expanded(**arguments: Any) -> None:
-        verb(given=FileOptions(**{name: arguments.pop(name) for name in options}), **arguments)
-
-    expanded.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
-    expanded.__annotations__ = {each.name: each.annotation for each in parameters}
-    return expanded
-
-
 def paths_in(files: MeasurementFiles) -> list[Path]:
     """Return the paths of all files that a command reads, those of a measurement in several files one by one."""
     return [part.path for file in files.files for part in file.parts or (file,)]
-
-
-def number_option(value: str | float) -> float:
-    """Return the number of an option; one that is not given stands for itself.
-
-    Raises:
-        typer.BadParameter: it is no number
-    """
-    if isinstance(value, float):
-        return value
-    try:
-        return number_in(value)
-    except ValueError as error:
-        raise typer.BadParameter(str(error)) from None
-
-
-def whole_option(value: str | int) -> int:
-    """Return the whole number of an option; one that is not given stands for itself.
-
-    Raises:
-        typer.BadParameter: it is no whole number
-    """
-    if isinstance(value, int):
-        return value
-    if not is_whole(value):
-        raise typer.BadParameter(f"{quoted(value)} is no whole number; write digits, at most 18")
-    return int(value)
 
 
 def _has(file: MeasurementFile, column: str) -> bool:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from strainwave.commands.file_options import FileOptions, Gear, paths_in, with_file_options
+from strainwave.commands.file_options import FileOptions, Gear, paths_in
+from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 FAILED = 3  # exit code if a check fails: no gear is written
 
 
-@with_file_options
+@with_groups
 def identify(
     gear: Gear,
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Measurements of one gear, or folders of them.")],

@@ -8,27 +8,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.commands.file_options import FileOptions, number_option, with_file_options
+from strainwave.commands.file_options import FileOptions
+from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
 
 if TYPE_CHECKING:
     from strainwave.orders.measured import OrdersFound
 
 
-@with_file_options
+@with_groups
 def orders(
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a drive, each examined separately.")],
     given: FileOptions,
-    ratio: Annotated[
-        float | None,
-        typer.Option(parser=number_option, help="Ratio of the gear, with all its digits; found, if the file determines it."),
-    ] = None,
-    rate: Annotated[
-        float | None, typer.Option(parser=number_option, help="Samples per second of files without time, in Hz.")
-    ] = None,
-    highest: Annotated[
-        float | None, typer.Option(parser=number_option, help="Order up to which ripple is looked for, at most 100000.")
-    ] = None,
+    ratio: Annotated[float | None, numeric("Ratio of the gear, with all its digits; found, if the file determines it.")] = None,
+    rate: Annotated[float | None, numeric("Samples per second of files without time, in Hz.")] = None,
+    highest: Annotated[float | None, numeric("Order up to which ripple is looked for, at most 100000.")] = None,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
 ) -> None:
     """Find the orders of a gear: its kinematic error from two encoders, its ripple from torque or current.

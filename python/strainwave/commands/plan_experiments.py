@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands.file_options import number_option
+from strainwave.commands.options import numeric
 from strainwave.number_texts import is_number, number_in
 
 
@@ -33,7 +33,7 @@ def plan_experiments(
             help="Smallest difference a sensor resolves, in SI units, as angle=1e-5; also torque, input_torque, input_angle."
         ),
     ] = None,
-    minutes: Annotated[float, typer.Option(parser=number_option, help="What all measurements may take together.")] = 30.0,
+    minutes: Annotated[float, numeric("What all measurements may take together.")] = 30.0,
     criterion: Annotated[str, typer.Option(help="A: sum of relative variances; D: determinant of the covariance.")] = "A",
     speed_limit: Annotated[str | None, typer.Option(help='Of the input, as "2000 rpm"; the rating, if not given.')] = None,
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,

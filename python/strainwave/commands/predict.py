@@ -7,13 +7,14 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands.file_options import FileOptions, paths_in, with_file_options
+from strainwave.commands.file_options import FileOptions, paths_in
+from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
 
 CONTRADICTS = 3  # exit code if a recording contradicts the saved gear
 
 
-@with_file_options
+@with_groups
 def predict(
     gear: Annotated[str, typer.Argument(help="The saved gear or drive, as gear.toml of identify, or a set by name.")],
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Later recordings of this gear, or folders of them.")],

@@ -7,11 +7,12 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands.file_options import FileOptions, Gear, with_file_options
+from strainwave.commands.file_options import FileOptions, Gear
+from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
 
 
-@with_file_options
+@with_groups
 def rank(
     gear: Gear,
     paths: Annotated[

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import inf, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from strainwave.commands.file_options import number_option, whole_option
+from strainwave.commands.options import numeric, whole, with_groups
 from strainwave.number_texts import number_in
 
 if TYPE_CHECKING:
@@ -26,37 +27,49 @@ if TYPE_CHECKING:
 rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
 
 DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
-POSITIONS = "0,60,120"
 MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
 
 RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
-PeakOption = Annotated[
-    float, typer.Option("--torque", parser=number_option, help="Peak torque in N.m; the nearest that the masses make is taken.")
-]
-StepOption = Annotated[
-    float | None,
-    typer.Option(
-        "--step", parser=number_option, help="Step of the torque in N.m; the smallest that the masses make, if not given."
-    ),
-]
-PositionsOption = Annotated[str, typer.Option(help="Positions of the flexspline in its mount in degrees, as 0,60,120.")]
-UnitsOption = Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")]
-CyclesOption = Annotated[int, typer.Option(parser=whole_option, help="Cycles at each position, one after the other.")]
-UnequalOption = Annotated[
-    bool, typer.Option("--unequal", help="Let both pans of a pair differ by one mass: half the step, but no pure couple.")
-]
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """Options of the plan of a test."""
+
+    torque: Annotated[float, numeric("Peak torque in N.m; the nearest that the masses make is taken.")] = 0.36
+    step: Annotated[float | None, numeric("Step of the torque in N.m; by default the smallest that the masses make.")] = None
+    positions: Annotated[str, typer.Option(help="Positions of the flexspline in its mount in degrees.")] = "0,60,120"
+    units: Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")] = ""
+    cycles: Annotated[int, whole("Cycles at each position, one after the other.")] = 1
+    unequal: Annotated[
+        bool, typer.Option("--unequal", help="Let both pans of a pair differ by one mass: half the step, but no pure couple.")
+    ] = False
+
+    def plan(self, bench: Rig) -> Plan:
+        """Return the plan for a rig.
+
+        Raises:
+            ValueError: a position or a specimen is named twice, or the masses do not make the torque
+        """
+        from strainwave.rig.running.plan import plan
+
+        places = [radians(each) for each in _numbers("--positions", self.positions)]
+        specimens = [each.strip() for each in self.units.split(",")]
+        if len(set(places)) < len(places) or len(set(specimens)) < len(specimens):
+            raise ValueError("--positions and --units must each name a thing once; --cycles repeats a position")
+        pans: Pans = "unequal" if self.unequal else "equal"
+        return plan(bench, self.torque, step=self.step, pans=pans, positions=places, units=specimens, cycles=self.cycles)
+
+
+USUAL_PLAN = PlanOptions()
 
 
 @rig.command("plan")
+@with_groups
 def plan_command(
     name: RigOption = "couple-rig",
-    torque: PeakOption = 0.36,
-    step: StepOption = None,
-    positions: PositionsOption = POSITIONS,
-    units: UnitsOption = "",
-    cycles: CyclesOption = 1,
-    unequal: UnequalOption = False,
+    options: PlanOptions = USUAL_PLAN,
     out: Annotated[Path | None, typer.Option(help="File for the steps, .csv, as steps.csv of a test has them.")] = None,
 ) -> None:
     """Print what to lay on the pans and take off, step by step.
@@ -67,7 +80,7 @@ def plan_command(
 
     if out is not None and out.suffix != ".csv":
         raise ValueError(f"--out {out} must end in .csv")
-    made = _plan(_rig(name), torque, step, positions, units, cycles, unequal)
+    made = options.plan(_rig(name))
     if out is not None:
         write_steps(made.steps, out)
     print(made)
@@ -76,19 +89,15 @@ def plan_command(
 
 
 @rig.command()
+@with_groups
 def simulate(
     gear: Annotated[
         str, typer.Argument(help="A set by name, a gear file, or document-t: the gears of document T's Table 2.")
     ] = DOCUMENT_T,
     name: RigOption = "couple-rig",
     out: Annotated[Path, typer.Option(help="Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
-    torque: PeakOption = 0.36,
-    step: StepOption = None,
-    positions: PositionsOption = POSITIONS,
-    units: UnitsOption = "",
-    cycles: CyclesOption = 1,
-    unequal: UnequalOption = False,
-    seed: Annotated[int, typer.Option(parser=whole_option, help="Of the noise of the photographs.")] = 0,
+    options: PlanOptions = USUAL_PLAN,
+    seed: Annotated[int, whole("Of the noise of the photographs.")] = 0,
 ) -> None:
     """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
     import sys
@@ -99,13 +108,13 @@ def simulate(
     from strainwave.rig.virtual.test import simulate_test
 
     bench = _rig(name)
-    made = _plan(bench, torque, step, positions, units, cycles, unequal)
+    made = options.plan(bench)
     steps = made.steps
     test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
     write_steps(steps, out / PLAN)
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
-    if abs(made.peak - torque) > 1e-9 * torque:
-        print(f"the peak is {made.peak:.4f} N.m: {torque:g} N.m is no step of the masses")
+    if abs(made.peak - options.torque) > 1e-9 * options.torque:
+        print(f"the peak is {made.peak:.4f} N.m: {options.torque:g} N.m is no step of the masses")
     if gear == DOCUMENT_T and (short := narrower(sorted({each.position for each in steps}), made.peak)):
         print(*short, sep="\n")
         print("more torque, or --unequal, which halves the steps, may reach it")
@@ -113,6 +122,7 @@ def simulate(
 
 
 @rig.command()
+@with_groups
 def measure(
     camera: Annotated[
         str, typer.Option(help="Number of a camera, a folder that another program fills with photographs, or virtual.")
@@ -121,20 +131,11 @@ def measure(
     name: Annotated[
         str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; couple-rig if not given.")
     ] = None,
-    torque: PeakOption = 0.36,
-    step: StepOption = None,
-    positions: PositionsOption = POSITIONS,
-    units: UnitsOption = "",
-    cycles: CyclesOption = 1,
-    unequal: UnequalOption = False,
+    options: PlanOptions = USUAL_PLAN,
     gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
-    pictures: Annotated[
-        int, typer.Option(parser=whole_option, help="Photographs in a row that must agree before a step counts as at rest.")
-    ] = 5,
-    interval: Annotated[float, typer.Option(parser=number_option, help="Time between two photographs in s.")] = 0.5,
-    patience: Annotated[
-        float, typer.Option(parser=number_option, help="Time in s after which a shaft that still moves is reported.")
-    ] = 60.0,
+    pictures: Annotated[int, whole("Photographs in a row that must agree before a step counts as at rest.")] = 5,
+    interval: Annotated[float, numeric("Time between two photographs in s.")] = 0.5,
+    patience: Annotated[float, numeric("Time in s after which a shaft that still moves is reported.")] = 60.0,
 ) -> None:
     """Guide a test step by step, and write each step down as soon as it is done.
 
@@ -148,7 +149,7 @@ def measure(
 
     settling = Settling(_count("--pictures", pictures), _positive("--interval", interval), _positive("--patience", patience))
     bench = _rig_of_test(out, name)
-    made = _plan(bench, torque, step, positions, units, cycles, unequal)
+    made = options.plan(bench)
     source = _source(camera, bench, made.steps, gear)
     with making(out), claiming(out):
         _keep_plan(made, out)
@@ -170,10 +171,7 @@ def analyse(
         str | None, typer.Option("--rig", help="The rig, instead of rig.toml of the folder: a name, or a .toml file.")
     ] = None,
     gear: Annotated[str | None, typer.Option(help="The gear on the rig: a set by name, or a gear file.")] = None,
-    rated_torque: Annotated[
-        float | None,
-        typer.Option(parser=number_option, help="Rated torque at the loaded shaft in N.m, instead of that of the gear."),
-    ] = None,
+    rated_torque: Annotated[float | None, numeric("Rated torque at the loaded shaft in N.m; by default of the gear.")] = None,
     reference: Annotated[
         str | None, typer.Option(help="Photograph whose angle is 0; the first at the positive peak, if not given.")
     ] = None,
@@ -243,10 +241,8 @@ def watch(
         Path | None,
         typer.Option(help="Steps that are to be made, .csv, where steps.csv lacks them; plan.csv of the folder, if not given."),
     ] = None,
-    idle: Annotated[
-        float | None, typer.Option(parser=number_option, help="End when no photograph came for so many s; never, if not given.")
-    ] = None,
-    interval: Annotated[float, typer.Option(parser=number_option, help="Time between two looks in s.")] = 0.5,
+    idle: Annotated[float | None, numeric("End when no photograph came for so many s; never, if not given.")] = None,
+    interval: Annotated[float, numeric("Time between two looks in s.")] = 0.5,
 ) -> None:
     """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
     from rich.console import Console
@@ -269,19 +265,14 @@ def watch(
 
     longest = inf if idle is None else _positive("--idle", idle)
     points = live(Console(stderr=True), look, longest, _positive("--interval", interval))
-    told = sum(not point.look.fault for point in points)
-    print(f"{len(points)} photographs, {told} of them told an angle")
+    read = sum(not point.look.fault for point in points)
+    print(f"{len(points)} photographs, {read} of them with an angle")
 
 
 @rig.command()
 def influence(
     gear: Annotated[str, typer.Argument(help="A set by name, or a gear file.")] = "csg-25-100",
-    torque: Annotated[
-        float | None,
-        typer.Option(
-            parser=number_option, help="Largest torque at the output in N.m; the rated torque of the set, if not given."
-        ),
-    ] = None,
+    torque: Annotated[float | None, numeric("Largest torque at the output in N.m; by default the rated one.")] = None,
     measured: Annotated[
         Path | None,
         typer.Option(help="A series of loops, .csv: what was varied, as torque_max or temperature, and area, width or file."),
@@ -300,9 +291,8 @@ def influence(
     from rich.console import Console
 
     from strainwave.files.gear_set import GearSet
-    from strainwave.files.writing import making, written
     from strainwave.report.influence import influence_report, summary, tables
-    from strainwave.report.page import write
+    from strainwave.report.page import write_results
     from strainwave.report.provenance import Provenance
     from strainwave.rig.influence.influence import influence as run
     from strainwave.rig.influence.series import read_series, series_of
@@ -314,12 +304,7 @@ def influence(
         found = run(GearSet.read(gear), torque, series, progress=status.update)
         status.update("report")
         html = influence_report(found, Provenance.of_this_command([] if series is None else series.files))
-    with making(out):
-        for name, table in tables(found).items():
-            table.to_csv(out / f"{name}.csv")
-            written.append(out / f"{name}.csv")
-        write(html, out / "report.html")
-        written.append(out / "report.html")
+    write_results(out, html, tables=tables(found))
     print(summary(found))
     print(f"wrote {out / 'report.html'} and {len(tables(found))} tables beside it")
 
@@ -348,7 +333,7 @@ def _provenance(read: Sequence[Path]) -> Provenance:
     return replace(Provenance.of_this_command([]), files=digests)
 
 
-# ---- What options say ------------------------------------------------------------------------------------------------
+# ---- Values of options ------------------------------------------------------------------------------------------------
 
 
 def _rig(name: str) -> Rig:
@@ -365,17 +350,6 @@ def _rig_of_test(folder: Path, name: str | None) -> Rig:
     if name is None and there.exists():
         return _rig(str(there))
     return _rig("couple-rig" if name is None else name)
-
-
-def _plan(bench: Rig, torque: float, step: float | None, positions: str, units: str, cycles: int, unequal: bool) -> Plan:
-    from strainwave.rig.running.plan import plan
-
-    places = [radians(each) for each in _numbers("--positions", positions)]
-    specimens = [each.strip() for each in units.split(",")]
-    if len(set(places)) < len(places) or len(set(specimens)) < len(specimens):
-        raise ValueError("--positions and --units must each name a thing once; --cycles repeats a position")
-    pans: Pans = "unequal" if unequal else "equal"
-    return plan(bench, torque, step=step, pans=pans, positions=places, units=specimens, cycles=cycles)
 
 
 def _numbers(option: str, text: str) -> list[float]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.commands.file_options import number_option
+from strainwave.commands.options import numeric
 from strainwave.messages import one_line
 from strainwave.number_texts import is_whole, number_in
 
@@ -28,12 +28,9 @@ def simulate(
     scenario: Annotated[Path, typer.Option(help="What it does: TOML, or CSV or Parquet with the columns time and command.")],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Recording to write, .parquet or .csv.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg, .png or .pdf.")] = None,
-    dt: Annotated[float | None, typer.Option(parser=number_option, help="Largest step in s, 0.0002 if not given.")] = None,
-    sample: Annotated[float, typer.Option(parser=number_option, help="Distance of samples in s.")] = 1e-3,
-    tolerance: Annotated[
-        float | None,
-        typer.Option(parser=number_option, help="Relative error, as 1e-8: steps as long as it allows, instead of --dt."),
-    ] = None,
+    dt: Annotated[float | None, numeric("Largest step in s, 0.0002 if not given.")] = None,
+    sample: Annotated[float, numeric("Distance of samples in s.")] = 1e-3,
+    tolerance: Annotated[float | None, numeric("Relative error, as 1e-8: steps as long as it allows, instead of --dt.")] = None,
     record: Annotated[list[str] | None, typer.Option(help="A column to keep; repeat as needed. All, if not given.")] = None,
     changed: Annotated[
         list[str] | None, typer.Option("--set", help="Another number, in SI units, as load.inertia=0.6; repeat as needed.")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands.file_options import number_option
+from strainwave.commands.options import numeric
 
 study = typer.Typer(help="Put questions of the literature to a drive, and answer them with numbers.")
 
@@ -28,8 +28,7 @@ def position_control(
     """
     from rich.console import Console
 
-    from strainwave.files.writing import making, written
-    from strainwave.report.page import write
+    from strainwave.report.page import write_results
     from strainwave.report.position_control import position_control_report, summary
     from strainwave.report.provenance import Provenance
     from strainwave.studies.position_control import position_control as run
@@ -39,15 +38,10 @@ def position_control(
         found = run(measured, progress=status.update)
         status.update("report")
         html = position_control_report(found, Provenance.of_this_command([] if measured is None else [measured]))
-    files = {out / f"{name}.parquet": recording for name, recording in recordings(found).items()}
-    with making(out):
-        for path, recording in files.items():
-            recording.to_parquet(path)
-            written.append(path)
-        write(html, out / "report.html")
-        written.append(out / "report.html")
+    runs = recordings(found)
+    write_results(out, html, runs=runs)
     print(summary(found))
-    print(f"wrote {out / 'report.html'} and {len(files)} recordings beside it: {', '.join(path.name for path in files)}")
+    print(f"wrote {out / 'report.html'} and {len(runs)} recordings beside it: {', '.join(f'{name}.parquet' for name in runs)}")
 
 
 @study.command("misalignment")
@@ -56,8 +50,8 @@ def misalignment(
     drive: Annotated[
         str, typer.Option(help="Drive to run: a name of `strainwave drives`, or a .toml file; its controller a cascade.")
     ] = "tilt-actuator",
-    stroke: Annotated[float, typer.Option(parser=number_option, help="Stroke of the output in degrees.")] = 90.0,
-    time: Annotated[float, typer.Option(parser=number_option, help="Time of the ramp through the stroke in s.")] = 5.0,
+    stroke: Annotated[float, numeric("Stroke of the output in degrees.")] = 90.0,
+    time: Annotated[float, numeric("Time of the ramp through the stroke in s.")] = 5.0,
     measured: Annotated[
         Path | None,
         typer.Option(help="A ramp of your own drive to lay over: time, and torque, current, output_angle or input_angle."),
@@ -77,9 +71,8 @@ def misalignment(
 
     from rich.console import Console
 
-    from strainwave.files.writing import making, written
     from strainwave.report.misalignment import misalignment_report, summary
-    from strainwave.report.page import write
+    from strainwave.report.page import write_results
     from strainwave.report.provenance import Provenance
     from strainwave.studies.misalignment import misalignment as run
     from strainwave.studies.misalignment import recordings, tables
@@ -90,14 +83,6 @@ def misalignment(
         read = [path for path in (measured, measured_error) if path is not None]
         html = misalignment_report(found, Provenance.of_this_command(read))
     runs, tabled = recordings(found), tables(found)
-    with making(out):
-        for name, recording in runs.items():
-            recording.to_parquet(out / f"{name}.parquet")
-            written.append(out / f"{name}.parquet")
-        for name, table in tabled.items():
-            table.to_csv(out / f"{name}.csv")
-            written.append(out / f"{name}.csv")
-        write(html, out / "report.html")
-        written.append(out / "report.html")
+    write_results(out, html, runs=runs, tables=tabled)
     print(summary(found))
     print(f"wrote {out / 'report.html'}, {len(runs)} recordings and {len(tabled)} tables beside it")

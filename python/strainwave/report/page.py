@@ -8,7 +8,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from strainwave.files.writing import replacing
+from strainwave.files.recording import Recording
+from strainwave.files.writing import making, replacing, written
 from strainwave.report import figures, typeset
 from strainwave.report.provenance import Provenance
 
@@ -51,6 +52,30 @@ def _environment() -> Environment:
     environment.filters |= {verb.__name__: verb for verb in (typeset.number, typeset.unit, typeset.symbols, typeset.breakable)}
     environment.globals["zip"] = zip
     return environment
+
+
+def write_results(
+    folder: Path, html: str, *, runs: Mapping[str, Recording] | None = None, tables: Mapping[str, Recording] | None = None
+) -> None:
+    """Write the results of a study to a folder: recordings as Parquet, tables as CSV, and last the page as report.html.
+
+    Args:
+        folder: made if it is not there
+        html: the page; what stood in its place stays until it is complete
+        runs, tables: by the name of the file without its ending
+
+    Raises:
+        OSError: folder or file cannot be written; says which, and why
+    """
+    with making(folder):
+        for name, run in (runs or {}).items():
+            run.to_parquet(folder / f"{name}.parquet")
+            written.append(folder / f"{name}.parquet")
+        for name, table in (tables or {}).items():
+            table.to_csv(folder / f"{name}.csv")
+            written.append(folder / f"{name}.csv")
+        write(html, folder / "report.html")
+        written.append(folder / "report.html")
 
 
 def write(html: str, path: str | Path) -> None:

@@ -394,7 +394,7 @@ def test_a_folder_is_followed(made: Path, tmp_path: Path) -> None:
     lines = result.stderr.splitlines()
     assert len(lines) == 29
     assert lines[0].startswith("step-001.png  +0.343 N·m  +0.0000°")
-    assert "29 photographs, 29 of them told an angle" in result.stdout
+    assert "29 photographs, 29 of them with an angle" in result.stdout
 
 
 def test_without_a_record_the_plan_tells_the_torque(test: Path, tmp_path: Path) -> None:
