@@ -35,7 +35,7 @@ class Channel(NamedTuple):
         return UNITS[self.quantity]
 
 
-# All channels by name. Where a name says no side, the kind of measurement or the other columns do.
+# All channels by name. If a name contains no side, the kind of measurement or the other columns determine it.
 CHANNELS: dict[str, Channel] = {
     "time": Channel("time"),
     "command": Channel("angle", commanded=True),

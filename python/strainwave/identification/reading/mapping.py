@@ -1,4 +1,4 @@
-"""What a person says of files: which column is which, in which unit, and what the file does not hold; also in a TOML file.
+"""What a person states of files: the column of a channel, its unit, and numbers that no column contains; also in a TOML file.
 
 side = "output"
 [columns]
@@ -18,9 +18,11 @@ constants.load_inertia = 0.85
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
+from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple, get_args
 
@@ -57,20 +59,21 @@ CONSTANTS = {
 }
 MAX_NAMED = 100  # columns of one channel, as of other_angles
 MAX_PATTERNS = 1000  # of file names: each file is compared with each
+TABLES = ("columns", "units", "sign", "constants")  # of a section
 WILD = "*?[."  # a section with one of these in its name is a pattern of file names
 
 
 @dataclass(frozen=True)
 class FileMapping:
-    """What a person says of a file; what is not said is found out, or asked for.
+    """What a person states of a file; the rest is determined from the file, or asked for.
 
     Args:
         columns: for each channel the name or the number of its column in the file
         units: unit of each channel whose header states none
         sign: 1 or -1 for each channel that counts the other way
         constants: numbers that belong to the recording, of `CONSTANTS`, in SI units
-        kind: what the file is, where it cannot be told
-        side: where a friction table was measured, or the channels of a log whose names say no side
+        kind: of measurement, if the file leaves it open
+        side: of a friction table, or of the channels of a log whose names contain none
         joint: number or name of the joint to take of several
 
     Raises:
@@ -109,7 +112,7 @@ class FileMapping:
                 _check_known(f"{name} = {shortened(value)}", value, choices, f"{name}s")
 
     def updated(self, other: FileMapping) -> FileMapping:
-        """This with what another says too; where both say something, the other holds."""
+        """Return this with the entries of another one, which replace those that both have."""
         both: dict[str, Any] = {}
         for each in fields(self):
             mine, its = getattr(self, each.name), getattr(other, each.name)
@@ -119,24 +122,24 @@ class FileMapping:
 
 @dataclass(frozen=True)
 class MappingFile:
-    """What a person says of several files: of all, and of those whose path fits a pattern."""
+    """What a person states of several files: of all, and of those whose path fits a pattern."""
 
     general: FileMapping
     patterns: Mapping[str, FileMapping]
 
     @staticmethod
     def read(path: str | Path) -> MappingFile:
-        """Reads a TOML file.
+        """Return the mappings in a TOML file.
 
         Raises:
-            ValueError: it cannot be read, or says what is not known; says where
+            ValueError: it cannot be read, or has an entry that is not known; names the place
 
         >>> import tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = Path(folder, "columns.toml")
         ...     _ = path.write_text('columns.speed = 3\\n["loads/*.csv"]\\nconstants.ratio = 80\\n')
-        ...     said = MappingFile.read(path)
-        >>> said.of("loads/heavy.csv").constants, said.of("other.csv").columns
+        ...     file = MappingFile.read(path)
+        >>> file.of("loads/heavy.csv").constants, file.of("other.csv").columns
         ({'ratio': 80.0}, {'speed': '3'})
         """
         with at(f"{path}"):
@@ -151,45 +154,43 @@ class MappingFile:
             raise ValueError(one_line(f"{path}: {error}")) from None
 
     def of(self, path: str | Path) -> FileMapping:
-        """What holds for a file: what is said of all, and of each pattern it fits, in the order of the file."""
-        found = self.general
-        for pattern, said in self.patterns.items():
-            if Path(path).match(pattern):
-                found = found.updated(said)
-        return found
+        """Return the mapping of a file: that of all, and of each pattern that it fits, in the order of the TOML file."""
+        return reduce(FileMapping.updated, [own for each, own in self.patterns.items() if Path(path).match(each)], self.general)
 
 
-_READ: dict[str, Any] = {
-    "columns": lambda place, value: str(value) if _is_whole(value) else _text(place, value),
-    "units": lambda place, value: _text(place, value),
-    "sign": lambda place, value: value,
-    "constants": lambda place, value: _constant(place, value),
-}
-
-
-def _mapping(place: str, said: Mapping[str, Any]) -> FileMapping:
-    """What a section says."""
+def _mapping(place: str, section: Mapping[str, Any]) -> FileMapping:
+    """Return the mapping in a section of a TOML file."""
     known = [each.name for each in fields(FileMapping)]
     found: dict[str, Any] = {}
-    for name, value in said.items():
+    for name, value in section.items():
         _check_known(f"{place}{name}", name, known, "keys")
-        if name not in _READ:
-            found[name] = str(value) if _is_whole(value) else _text(f"{place}{name}", value)
-        elif not isinstance(value, dict):
-            raise ValueError(f"{place}{name} = {shortened(value)} must be a table, with a line for each channel or constant")
+        if name not in TABLES:
+            found[name] = _entry(f"{place}{name}", name, value)
+        elif isinstance(value, dict):
+            found[name] = {key: _entry(f"{place}{name}.{key}", name, each) for key, each in value.items()}
         else:
-            found[name] = {key: _READ[name](f"{place}{name}.{key}", each) for key, each in value.items()}
+            raise ValueError(f"{place}{name} = {shortened(value)} must be a table, with a line for each channel or constant")
     try:
         return FileMapping(**found)
     except ValueError as error:
-        told = str(error)
-        for option, key in (("--column ", "columns."), ("--constant ", "constants."), ("--sign ", "sign.")):
-            told = told.replace(option, key)
-        raise ValueError(f"{place}{told}") from None
+        message = re.sub("--(column|constant) ", r"\1s.", str(error)).replace("--sign ", "sign.")
+        raise ValueError(f"{place}{message}") from None
+
+
+def _entry(place: str, name: str, value: object) -> Any:
+    if name == "constants":
+        return _constant(place, value)
+    if name == "sign":
+        return value
+    if name != "units" and isinstance(value, int) and not isinstance(value, bool):
+        return str(value)  # the number of a column, or of a joint
+    if not isinstance(value, str) or not value:
+        raise ValueError(f"{place} = {shortened(value)} must be a text")
+    return value
 
 
 def _constant(place: str, value: object) -> float:
-    """A number in SI units, or a text with a unit."""
+    """Return a constant in SI units, from a number in them or a text with a unit."""
     name = place.replace(" ", ".").rpartition(".")[2]
     _check_known(place, name, CONSTANTS, "constants")
     wanted = CONSTANTS[name].unit
@@ -227,22 +228,12 @@ def check_constant(place: str, name: str, value: float) -> float:
 
 
 def constant_of(name: str, value: str) -> float:
-    """A constant as an option gives it, in SI units.
+    """Return a constant in SI units, from the value of an option.
 
     >>> constant_of("torque_constant", "75 mN.m/A")
     0.075
     """
     return _constant(f"--constant {name}", value)
-
-
-def _text(place: str, value: object) -> str:
-    if not isinstance(value, str) or not value:
-        raise ValueError(f"{place} = {shortened(value)} must be a text")
-    return value
-
-
-def _is_whole(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def _check_known(place: str, name: str, known: Collection[str], what: str) -> None:

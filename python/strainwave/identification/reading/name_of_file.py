@@ -1,4 +1,4 @@
-"""What the name of a file contains: the speed of one record of many at constant speed, and the joint."""
+"""Joint and speed in the name of a file, as of one record of many at constant speed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _JOINT = re.compile(r"(?<![a-z0-9])(?:joint|jnt|gelenk|axis|achse|j|q)[ _-]?0*(?
 
 
 def joint_in(path: Path) -> str:
-    """The joint in the name of a file; empty if it contains none, or two.
+    """Return the joint in the name of a file; empty if it contains none, or two.
 
     >>> joint_in(Path("joint_3_trapez.csv")), joint_in(Path("q2_run_1.csv")), joint_in(Path("run_2.csv"))
     ('3', '2', '')
@@ -33,9 +33,9 @@ def joint_in(path: Path) -> str:
 
 
 def speed_in(path: Path) -> float | None:
-    """The speed that the name of a file says with its unit [rad/s]; None where it says none, or two.
+    """Return the speed with its unit in the name of a file [rad/s]; None if it contains none, or two.
 
-    A minus right behind a word may be a hyphen: what stands behind it is not taken.
+    A minus right behind a word may be a hyphen: a number behind it is not taken.
 
     >>> speed_in(Path("run_-20rpm.csv")), speed_in(Path("J2_0p5_rad_s.txt")), speed_in(Path("run_20.csv"))
     (-2.0943951023931953, 0.5, None)

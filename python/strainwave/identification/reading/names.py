@@ -1,4 +1,4 @@
-"""What the name of a column means: quantity, side, reference or not, and of which joint, in the spellings that logs have."""
+"""The meaning of the name of a column: quantity, side, reference or not, and joint, in the spellings that logs have."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ NEUTRAL = (
     "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
     "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady", "present",
 )  # fmt: skip
-# What is no measurement of the quantity beside it.
+# Words of what is no measurement of the quantity beside them.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
@@ -72,7 +72,7 @@ OTHERS = (
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
 SHARES = {"permille": "permille", "promille": "permille", "percent": "%", "pct": "%", "prozent": "%"}
-# Symbols that say two things at once.
+# Symbols with two meanings at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
     "qm": ("q", "motor"), "qg": ("q", "reference"), "ql": ("q", "link"), "qdes": ("q", "desired"), "qref": ("q", "reference"),
     "dqdes": ("dq", "desired"), "taudes": ("tau", "desired"), "dqm": ("dq", "motor"), "dql": ("dq", "link"),
@@ -83,7 +83,7 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "aipos": ("axis", "actual", "pos"), "aspos": ("axis", "soll", "pos"),
 }  # fmt: skip
 BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
-FAR = 2  # words behind a symbol at which its index stands, as in tau_J_d
+MAX_WORDS_TO_INDEX = 2  # from a symbol, as in tau_J_d
 ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts", "eff")  # what robots call their joints' channels
 
 QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
@@ -91,19 +91,19 @@ _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for wor
 _WORDS = (*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS, *ESTIMATED, *SHARES)
 _VOCABULARY = {word for word in _WORDS if len(word) > 2 and word not in ("par", "the")}
 _GREEK = str.maketrans({"ω": "omega", "τ": "tau", "θ": "theta", "φ": "phi"})
-_UNIT_NAMES = {"rpm": "rpm"}  # words that say quantity and unit
+_UNIT_NAMES = {"rpm": "rpm"}  # words for quantity and unit
 
 
 class Meaning(NamedTuple):
-    """What a column seems to hold.
+    """The meaning of the name of a column.
 
     Args:
         quantity: what is measured, in a unit that measures it
-        side: of which shaft, where the name says so
-        commanded: whether it is a reference and no measurement
-        which: what else the name says, as the number of a joint; empty where nothing
-        unit: the unit that the name states, as it is written there
-        robot: whether this is the word of robots for a joint's channel
+        side: of which shaft; None if the name contains none
+        commanded: True for a reference
+        which: the rest of the name, as the number of a joint
+        unit: the unit in the name, as it is written there
+        robot: True for the word of robots for a joint's channel
         estimated: True for an estimate of the quantity, as servo drives export of speeds
     """
 
@@ -117,7 +117,7 @@ class Meaning(NamedTuple):
 
 
 def meaning(label: Label) -> Meaning | None:
-    """What a column seems to hold; None where its name and unit say nothing that is known.
+    """Return the meaning of the name and unit of a column; None if they have none that is known.
 
     >>> meaning(Label("Motordrehzahl [U/min]", "Motordrehzahl", "U/min"))
     Meaning(quantity='speed', side='input', commanded=False, which='', unit='U/min', robot=False, estimated=False)
@@ -136,7 +136,7 @@ def meaning(label: Label) -> Meaning | None:
     unit = unit or next((SHARES[word] for word in words if word in SHARES), None)
     if quantity is None or (unit is not None and not _may_be_of(unit, quantity)):
         return None
-    words = [BEHIND.get(word, word) if 0 < place - at <= FAR else word for place, word in enumerate(words)]
+    words = [BEHIND.get(word, word) if 0 < place - at <= MAX_WORDS_TO_INDEX else word for place, word in enumerate(words)]
     sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
     return Meaning(
         quantity,
@@ -155,7 +155,7 @@ def _may_be_of(unit: str, quantity: Quantity) -> bool:
 
 
 def _of_last_part(name: str, words: list[str], unit: str | None) -> tuple[Quantity, int] | None:
-    """The quantity that the last part of a path names, as q in `robot.arm.q_1`, and the place of its word."""
+    """Return the quantity that the last part of a path names, as q in `robot.arm.q_1`, and the place of its word."""
     last = words_of(re.split(r"[./]", name)[-1])
     quantity, at = _quantity(last, unit)
     before = len(words) - len(last)
@@ -163,7 +163,7 @@ def _of_last_part(name: str, words: list[str], unit: str | None) -> tuple[Quanti
 
 
 def _of_unit_alone(name: str) -> Meaning | None:
-    """What a column holds whose name is nothing but a unit, as in `rpm,Nm`."""
+    """Return the meaning of a name that is nothing but a unit, as in `rpm,Nm`."""
     if len(name) < 2 or name.casefold() in _VOCABULARY - _UNIT_NAMES.keys():
         return None
     quantity = next((each for each, standard in UNITS.items() if measures(name, standard)), None)
@@ -171,32 +171,29 @@ def _of_unit_alone(name: str) -> Meaning | None:
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a name, in small letters without accents; compounds are taken apart.
+    """Return the words of a name, in small letters without accents; compounds are taken apart.
 
     >>> words_of("Sollposition Achse2"), words_of("motorCurrent"), words_of("theta_m")
     (['soll', 'position', 'achse', '2'], ['motor', 'current'], ['theta', 'm'])
     """
-    plain = unicodedata.normalize(
-        "NFKD", name.replace("ω", "omega").replace("τ", "tau").replace("θ", "theta").replace("φ", "phi")
-    )
+    plain = unicodedata.normalize("NFKD", name.translate(_GREEK))
     plain = "".join(each for each in plain if not unicodedata.combining(each))
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain)
     found: list[str] = []
     for word in re.findall(r"[a-z]+|\d+", apart.casefold()):
         found += SYMBOLS.get(word) or _parts(word) or _singular(word)
-    return (
-        [f"{found[0]}q", *found[2:]] if found[1:2] == ["q"] and found[0] in ("i", "u") else found
-    )  # of a field-oriented drive
+    is_of_drive = found[1:2] == ["q"] and found[0] in ("i", "u")  # i_q and u_q of a field-oriented one
+    return [f"{found[0]}q", *found[2:]] if is_of_drive else found
 
 
 def _singular(word: str) -> list[str]:
-    """A word that is not known, or the one of which it is the plural."""
+    """Return a word that is not known, or the one of which it is the plural."""
     return _parts(word[:-1]) or [word] if word.endswith("s") else [word]
 
 
 @lru_cache(maxsize=4096)
 def _parts(word: str) -> list[str] | None:
-    """A compound in words that are known; None where it is none."""
+    """Return the words of a compound; None if it is none of known words."""
     if word in _VOCABULARY:
         return [word]
     if len(word) > 60:  # a bound for the work that a text from outside can cause
@@ -208,7 +205,10 @@ def _parts(word: str) -> list[str] | None:
 
 
 def _without_unit(name: str) -> tuple[str, str | None]:
-    """A name whose last words are a unit of what the others name: `torque_Nm`, `speed rad/s`, `vel_deg_s`, `pos_deg_1`."""
+    """Return a name without its last words, if these are a unit of what the others name, and the unit.
+
+    As of `torque_Nm`, `speed rad/s`, `vel_deg_s`, `pos_deg_1`.
+    """
     words = re.split(r"[_\s.]+", name.strip())
     number = [words.pop()] if len(words) > 2 and words[-1].isdigit() else []
     for count in (3, 2, 1):
@@ -226,7 +226,7 @@ def _without_unit(name: str) -> tuple[str, str | None]:
 
 
 def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]:
-    """What the words name, and the place of the word that says so; where none does, what the unit measures, and -1."""
+    """Return the quantity that words name, and the place of its word; if none does, what the unit measures, and -1."""
     places = [place for place, word in enumerate(words) if word in QUANTITY_OF]
     beside = {*_SIDE_OF, *COMMANDED, *NEUTRAL}
     places = [place for place in places if len(words[place]) > 1] or [
@@ -250,7 +250,7 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
 
 
 def which_of(words: list[str]) -> str:
-    """What words say of a channel but its quantity and side: the number of a joint, or its name."""
+    """Return the words of a channel but for quantity and side: the number of a joint, or its name."""
     numbers = [word.lstrip("0") or "0" for word in words if word.isdigit()]
     known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, *ESTIMATED, *SHARES, "dot"}
     return ".".join(numbers) or "_".join(word for word in words if word not in known)

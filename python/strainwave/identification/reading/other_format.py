@@ -1,4 +1,4 @@
-"""Files whose name says that they are tables, but whose beginning shows another format."""
+"""Files with the suffix of a table, but the beginning of another format."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def other_format(path: Path) -> str | None:
     if separator := _other_separator(begin):
         return f'its columns are separated by "{separator}": separate them by commas, semicolons or tabs'
     found = next((what for letters, what in BEGINNINGS.items() if begin.startswith(letters)), None)
-    what = f"its name says {path.suffix}, but it is {found}"
+    what = f"its suffix is {path.suffix}, but it is {found}"
     return None if found is None else f"{what}: export the measurement as CSV with one header line"
 
 

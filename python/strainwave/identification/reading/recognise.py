@@ -1,4 +1,4 @@
-"""What a file of measurements seems to be, and why: its kind, the channel in each column, side, units and time."""
+"""Recognition of a file of measurements: its kind, the channel in each column, side, units and time."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}
 
 @dataclass(frozen=True)
 class Recognised:
-    """What a file seems to be.
+    """A file of measurements as it is read.
 
     Args:
         path: the file
@@ -103,7 +103,7 @@ class Alternative:
 
 
 def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = None) -> Recognised:
-    """Return what a file of measurements seems to be.
+    """Return a file of measurements as it is read, by its names and numbers.
 
     Args:
         file: of any of the formats of `Recording.read`; a `MeasurementFile` is opened once, however often it is read

@@ -21,14 +21,25 @@ from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import Layout, layout_of, nameless, rises_evenly
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS
 from strainwave.identification.reading.slopes import is_slope
-from strainwave.identification.reading.times import with_one_time
+from strainwave.identification.reading.times import merged, with_one_time
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
 
-BEHIND = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # what may stand behind a quantity in a name
+SUFFIXES = (
+    "d",
+    "dd",
+    "dot",
+    "ddot",
+    "des",
+    "desired",
+    "cmd",
+    "ref",
+    "meas",
+    "act",
+)  # what may stand behind a quantity in a name
 MAX_PARTS = 20  # files of one recording
-SETTINGS = {".json", ".jsonl"}  # of a folder these are seldom measurements, and are read where they are named
+SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
@@ -185,7 +196,7 @@ def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
 
 
 def beside(path: Path) -> list[Path]:
-    """Files in the folder of a file that are of its recording, by their names."""
+    """Return files in the folder of a file that are of its recording, by their names."""
     own = _quantity_in(path)
     if own is None or not path.is_file():
         return []
@@ -194,19 +205,19 @@ def beside(path: Path) -> list[Path]:
 
 
 def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
-    """The quantity that a name contains, as `q_d`, and the other words; None if it contains none."""
+    """Return the quantity that a name contains, as `q_d`, and the other words; None if it contains none."""
     words = [word for word in re.split(r"[_\-. ]+", path.stem) if word]
     for place, word in enumerate(words):
         plain, number = re.fullmatch(r"(.*?)(\d*)", word.casefold()).groups()  # type: ignore[union-attr]
         if plain in QUANTITY_OF or plain in SYMBOLS:
-            is_behind = place + 1 < len(words) and words[place + 1].casefold() in BEHIND
+            is_behind = place + 1 < len(words) and words[place + 1].casefold() in SUFFIXES
             end = place + 1 + is_behind
             return "_".join(words[place:end]), (*words[:place], f"*{number}", *words[end:])
     return None
 
 
 def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
-    """The table of a recording with one file for each quantity.
+    """Return the table of a recording with one file for each quantity.
 
     Raises:
         ValueError: the files have different numbers of rows and no time of their own
@@ -216,19 +227,17 @@ def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
     for place, part in enumerate(read):
         if part.name == "q_d" and angle is not None and is_slope(part.series, angle.series):
             read[place] = replace(part, name="dq")
-    own = [part for part in read if part.time is not None]
+    grids = [Grid(part.time, part.columns) for part in read if part.time is not None]
     file = one_line(listed(part.path.name for part in parts))
-    if own and len(own) == len([part for part in read if part.series]):
-        grids = [Grid(part.time, part.columns) for part in own if part.time is not None]
-        first = grids[0]
-        same = [grid for grid in grids if len(grid.time) == len(first.time) and np.array_equal(grid.time, first.time)]
-        merged = Grid(first.time, {name: values for grid in same for name, values in grid.columns.items()})
-        return grid_table(file, "", [merged, *(grid for grid in grids if grid not in same)], {})
-    rows = {part.rows for part in read}
-    if len(rows) > 1:
-        counts = listed(f"{part.path.name} has {each.rows}" for part, each in zip(parts, read, strict=True))
+    if grids and len(grids) == len([part for part in read if part.series]):
+        return grid_table(file, "", merged(grids), {})
+    rows = [len(part.series[0]) for part in read]
+    if len(set(rows)) > 1:
+        counts = listed(f"{part.path.name} has {count}" for part, count in zip(parts, rows, strict=True))
         raise ValueError(f"{file}: files of one recording need the same number of rows; {counts}")
-    columns = {name: values for part in read for name, values in part.all.items()}
+    columns = dict[str, Array]()
+    for part in read:
+        columns |= part.columns if part.time is None else {"time": part.time, **part.columns}
     return ArrayTable(file, "", [Label(name, name, None) for name in columns], list(columns.values()))
 
 
@@ -252,15 +261,7 @@ class _Part:
         return _Part(name, series if time is None else series[1:], time)
 
     @property
-    def rows(self) -> int:
-        return len(self.series[0])
-
-    @property
     def columns(self) -> dict[str, Array]:
         if len(self.series) == 1:
             return {self.name: self.series[0]}
         return {f"{self.name}_{number}": values for number, values in enumerate(self.series, start=1)}
-
-    @property
-    def all(self) -> dict[str, Array]:
-        return self.columns if self.time is None else {"time": self.time, **self.columns}

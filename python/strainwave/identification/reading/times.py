@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -92,10 +94,18 @@ def _with_own_times(table: OpenTable) -> OpenTable:
         time, values = convert(time[rows], _unit_of_time(labels[place]), "s"), values[rows]
         if not len(time) or not (np.diff(time) > 0.0).all():
             return table
-        same = next((at for at, grid in enumerate(grids) if np.array_equal(grid.time, time)), len(grids))
-        before = grids[same].columns if same < len(grids) else {}
-        grids[same : same + 1] = [Grid(time, {**before, name: values})]
-    return grid_table(table.file, table.title, grids, channels, [*remarks, *table.left_out])
+        grids.append(Grid(time, {name: values}))
+    return grid_table(table.file, table.title, merged(grids), channels, [*remarks, *table.left_out])
+
+
+def merged(grids: Sequence[Grid]) -> list[Grid]:
+    """Return grids, those of equal times as one."""
+    found = list[Grid]()
+    for grid in grids:
+        same = next((at for at, each in enumerate(found) if np.array_equal(each.time, grid.time)), len(found))
+        before = found[same].columns if same < len(found) else {}
+        found[same : same + 1] = [Grid(grid.time, {**before, **grid.columns})]
+    return found
 
 
 def _unit_of_time(label: Label) -> str:

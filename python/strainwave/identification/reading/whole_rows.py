@@ -1,4 +1,4 @@
-"""Rows in which each column holds a number, also of channels that were sampled at other instants."""
+"""Rows in which each column has a number, also of channels that were sampled at other instants."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MIN_WHOLE = 0.5  # of the rows of the slowest channel: with fewer whole rows the
 
 
 def whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str]) -> tuple[list[Column], list[str]]:
-    """The rows in which each column holds a number; of channels that were sampled at other instants those of the slowest."""
+    """Return the rows in which each column has a number, or those of the slowest channel; and the remarks with what was done."""
     whole = np.all([np.isfinite(column.si) for column in columns], axis=0)
     if whole.all():
         return list(columns), remarks
@@ -23,7 +23,7 @@ def whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str]) 
         return resampled[0], [*remarks, resampled[1]]
     if not whole.any():
         empty = listed(column.name for column in columns if not np.isfinite(column.si).any()) or "no single column"
-        raise ValueError(one_line(f"{table.file}: no row holds a number in each of its columns; all are missing in {empty}"))
+        raise ValueError(one_line(f"{table.file}: no row has a number in each of its columns; all are missing in {empty}"))
     lost = int((~whole).sum())
     rows = "1 row without a number in each column is" if lost == 1 else f"{lost} rows without a number in each column are"
     remarks.append(f"{rows} left out, the first at {table.place(int(np.argmin(whole)))}")
@@ -31,7 +31,7 @@ def whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str]) 
 
 
 def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
-    """The columns at the instants of the slowest of them but for temperatures, by linear interpolation; and what was done.
+    """Return the columns at the instants of the slowest but for temperatures, by linear interpolation; and a remark.
 
     None if most rows of this one are whole, or there is no time.
     """
@@ -60,5 +60,5 @@ def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
         moved.append(column.name)
         order = np.argsort(time[finite], kind="stable")
         found.append(replace(column, si=np.interp(time[rows], time[finite][order], column.si[finite][order])))
-    said = f"rows are of several channels: at the {int(rows.sum())} rows of {slowest.name}"
-    return found, f"{said}, {listed(moved)} is taken by linear interpolation"
+    remark = f"rows are of several channels: at the {int(rows.sum())} rows of {slowest.name}"
+    return found, f"{remark}, {listed(moved)} is taken by linear interpolation"
