@@ -27,21 +27,42 @@ SWIFT_WEIGHT = 0.5  # weight [1] of a sample that counts as moving
 
 
 @dataclass(frozen=True)
-class Line:
-    """A line, as it was found.
+class Part:
+    """Part of a line that grows with something.
 
     Attributes:
-        kind: what the line repeats with: `order` with the angle, `time` with the time, `joint` with the angle of another joint;
-            `either` if the record does not separate the angle from another explanation
+        name: `constant` (cogging), `direction` (friction), `load` (kinematic error), `speed squared` (inertia)
+        amplitude: at the root mean square of what it grows with, in the unit of the series
+        sigma: its standard deviation
+        false_alarm: probability that noise alone gives as much, over all parts of all lines
+    """
+
+    name: str
+    amplitude: float
+    sigma: float
+    false_alarm: float
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line in the spectrum of a series.
+
+    Attributes:
+        kind: `order` repeats with the angle, `time` with the time (mains, a resonance, a beat of the sampling), `joint` with
+            the angle of another joint; `either` if the record does not separate the angle from another explanation
         joint: name of the other joint of a `joint` line, else empty
-        rivals: explanations of an `either` line beside the angle: `time` or names of joints
-        order: periods per revolution, of a `joint` line per revolution of that joint; of a time line at the typical speed
-        order_sigma: its standard deviation
-        frequency: cycles per sample; of an order line at the typical speed
+        rivals: explanations of an `either` line beside the angle: `time`, or names of joints
+        order: per revolution of the shaft whose angle it is, of a `joint` line per revolution of that joint; of a time line at
+            the usual speed
+        order_sigma: its standard deviation by noise; a line whose phase changes with the speed, as near a resonance, moves by
+            up to a tenth of the resolution more
+        frequency: at the usual speed, in cycles per sample while lines are looked for, then in Hz; nan without time and rate
         evidence: logarithm of the likelihood that it adds
         false_alarm: probability that noise alone makes such a line anywhere in the spectra
-        forward, backward: complex amplitudes over the angle or over time; nan without enough such motion
-        sigma: standard deviation of their real and imaginary parts, the larger one of both
+        wave_forward, wave_backward: complex amplitudes over the angle or over time, of each direction; nan without such motion
+        sigma: standard deviation of the amplitude
+        per_input: its order per revolution of the input; nan if the ratio is not known
+        parts: what it grows with, if the record separates it
     """
 
     kind: Kind
@@ -52,14 +73,31 @@ class Line:
     frequency: float
     evidence: float
     false_alarm: float
-    forward: complex = complex("nan")
-    backward: complex = complex("nan")
+    wave_forward: complex = complex("nan")
+    wave_backward: complex = complex("nan")
     sigma: float = 0.0
+    per_input: float = float("nan")
+    parts: tuple[Part, ...] = ()
+
+    @property
+    def forward(self) -> float:
+        """Amplitude forward, in the unit of the series; nan without such motion."""
+        return abs(self.wave_forward)
+
+    @property
+    def backward(self) -> float:
+        """Amplitude backward, in the unit of the series; nan without such motion."""
+        return abs(self.wave_backward)
 
     @property
     def amplitude(self) -> float:
-        """The larger one of both directions."""
-        return float(np.nanmax([abs(self.forward), abs(self.backward)]))
+        """The larger one of both directions, in the unit of the series."""
+        return float(np.nanmax([self.forward, self.backward]))
+
+    @property
+    def phase(self) -> float:
+        """Phase where the angle is 0 [rad], as of a cosine, in the direction with the larger amplitude."""
+        return float(np.angle(self.wave_backward if self.amplitude > np.nan_to_num(self.forward) else self.wave_forward))
 
 
 @dataclass(frozen=True)
@@ -268,7 +306,7 @@ def refitted(moving: Moving, lines: Sequence[Line], floor: Floor) -> tuple[list[
             parts = [parts[0], parts[0]]
         elif len(parts) == 1:
             parts = [*parts, complex("nan")] if _forward_only(moving, line) else [complex("nan"), *parts]
-        done.append(replace(line, forward=parts[0], backward=parts[1], sigma=float(sigma)))
+        done.append(replace(line, wave_forward=parts[0], wave_backward=parts[1], sigma=float(sigma)))
         first = last
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(moving.weight > 0.0, left - (flat @ values) / moving.weight, left)

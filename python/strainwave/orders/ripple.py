@@ -8,7 +8,6 @@ from math import tau
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
@@ -16,12 +15,10 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS, Candidate, candidates, conclusive, lowest_usable, usable_lines
-from strainwave.orders.floor import Floor
-from strainwave.orders.lines import MERGE_PERIODS, MIN_PERIODS, Kind, Line, LineSearch, find_lines, waves, weighed_fit
+from strainwave.orders.lines import MERGE_PERIODS, MIN_PERIODS, Line, LineSearch, Part, find_lines, waves, weighed_fit
 from strainwave.orders.smooth_part import Moving, moving
 from strainwave.orders.turning import Evenly, beginning, evenly, unwrapped
 
-Array = NDArray[np.float64]
 Side = Literal["input", "output"]
 
 MIN_RATIO = float(RATIOS[0])  # of strain wave gears that makers offer
@@ -35,62 +32,6 @@ MIN_SPREAD = 0.1  # relative spread of speed or load [1], from which ripple is s
 MIN_INPUT_ORDER = 0.5  # slower ripple is not separated from friction and gravity
 MAX_SAMPLES = 2**19  # that are looked at
 MIN_GEAR_PERIODS = 3.0  # periods of the slowest order, that a record needs
-
-
-@dataclass(frozen=True)
-class Part:
-    """Part of a line that grows with something.
-
-    Attributes:
-        name: `constant` (cogging), `direction` (friction), `load` (kinematic error), `speed squared` (inertia)
-        amplitude: at the root mean square of what it grows with, in the unit of the series
-        sigma: its standard deviation
-        false_alarm: probability that noise alone gives as much, over all parts of all lines
-    """
-
-    name: str
-    amplitude: float
-    sigma: float
-    false_alarm: float
-
-
-@dataclass(frozen=True)
-class RippleLine:
-    """A line in the spectrum over the angle.
-
-    Attributes:
-        kind: `order` repeats with the angle, `time` with the time (mains, a resonance, a beat of the sampling), `joint` with
-            the angle of another joint; `either` if the record does not separate the angle from another explanation
-        joint: name of the other joint of a `joint` line, else empty
-        rivals: explanations of an `either` line beside the angle: `time`, or names of joints
-        order: per revolution of the shaft whose angle it is, of a `joint` line per revolution of that joint; of a time line at
-            the usual speed
-        order_sigma: its standard deviation by noise; a line whose phase changes with the speed, as near a resonance, moves by
-            up to a tenth of the resolution more
-        per_input: the same per revolution of the input; None where the ratio is not known
-        frequency: at the usual speed [Hz]; None where neither time nor rate is known
-        amplitude: the larger one of both directions, in the unit of the series
-        forward, backward: of each direction; None without such motion
-        phase: where the angle is 0 [rad], as of a cosine, in the direction with the larger amplitude
-        sigma: standard deviation of the amplitude
-        false_alarm: probability that noise alone makes such a line anywhere in the spectra
-        parts: what it grows with, if the record separates it
-    """
-
-    kind: Kind
-    joint: str
-    rivals: tuple[str, ...]
-    order: float
-    order_sigma: float
-    per_input: float | None
-    frequency: float | None
-    amplitude: float
-    forward: float | None
-    backward: float | None
-    phase: float
-    sigma: float
-    false_alarm: float
-    parts: tuple[Part, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +60,7 @@ class Ripple(ComparedByFields):
     column: str
     side: Side
     unit: str
-    lines: tuple[RippleLine, ...]
+    lines: tuple[Line, ...]
     candidates: tuple[Candidate, ...]
     concluded: tuple[int, ...]
     ratio: float | None
@@ -186,7 +127,7 @@ def ripple(
     _check_sampled(shaft, record, side, size, top, angle)
     found = find_lines(shaft, lowest, top, false_alarm)
     revolutions = shaft.own.revolutions
-    lines = tuple(_line(each, shaft, found, record, side, size, len(found.lines)) for each in found.lines)
+    lines = tuple(_line(each, shaft, found, record, side, size) for each in found.lines)
     blind = side == "output" and size is None
     likely = candidates(found.lines, 1.0 / revolutions, top) if blind else ()
     remarks = [*record.remarks, *_remarks(shaft, found, record, top)]
@@ -263,32 +204,18 @@ def _check_sampled(shaft: Moving, record: Evenly, side: Side, size: float | None
         )
 
 
-def _line(
-    line: Line, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None, count: int
-) -> RippleLine:
-    both = {"forward": line.forward, "backward": line.backward}
-    sizes = {name: None if np.isnan(value) else abs(value) for name, value in both.items()}
-    larger = max(both, key=lambda name: sizes[name] or 0.0)
-    per_input = line.order if side == "input" else None if size is None or line.joint else line.order / size
-    return RippleLine(
-        kind=line.kind,
-        joint=line.joint,
-        rivals=line.rivals,
-        order=line.order,
-        order_sigma=line.order_sigma,
-        per_input=per_input,
-        frequency=line.frequency / record.step if record.timed else None,
-        amplitude=line.amplitude,
-        forward=sizes["forward"],
-        backward=sizes["backward"],
-        phase=float(np.angle(both[larger])),
-        sigma=line.sigma,
-        false_alarm=line.false_alarm,
-        parts=_parts(line, shaft, found.floor, found.residual, count) if line.kind == "order" else (),
+def _line(line: Line, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None) -> Line:
+    """Return a line with its frequency in Hz, its order of the input, and its parts."""
+    by_ratio = np.nan if size is None or line.joint else line.order / size
+    return replace(
+        line,
+        per_input=line.order if side == "input" else by_ratio,
+        frequency=line.frequency / record.step if record.timed else np.nan,
+        parts=_parts(line, shaft, found) if line.kind == "order" else (),
     )
 
 
-def _parts(line: Line, shaft: Moving, floor: Floor, residual: Array, count: int) -> tuple[Part, ...]:
+def _parts(line: Line, shaft: Moving, found: LineSearch) -> tuple[Part, ...]:
     """Regress a line on what it may grow with: nothing, direction, load, speed squared (physics of the current signature)."""
     weight = shaft.weight
     share = weight / max(float(np.sqrt(np.mean(weight**2))), 1e-300)
@@ -307,14 +234,14 @@ def _parts(line: Line, shaft: Moving, floor: Floor, residual: Array, count: int)
     cosine, sine = weight * np.cos(phase), -weight * np.sin(phase)
     columns = np.stack([wave * each / sizes[name] for name, each in growing.items() for wave in (cosine, sine)], axis=1)
     shape = np.stack(waves(shaft, line), axis=1)
-    values = [part for part in (line.forward, line.backward) if not np.isnan(part)]
-    series = residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
-    coefficients, covariance = weighed_fit(columns, series, floor)
+    values = [part for part in (line.wave_forward, line.wave_backward) if not np.isnan(part)]
+    series = found.residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
+    coefficients, covariance = weighed_fit(columns, series, found.floor)
     parts = []
     for k, name in enumerate(growing):
         pair, within = coefficients[2 * k : 2 * k + 2], covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2]
         evidence = float(pair @ np.asarray(np.linalg.pinv(within)) @ pair)
-        alarm = min(1.0, count * len(growing) * float(np.exp(-0.5 * evidence)))
+        alarm = min(1.0, len(found.lines) * len(growing) * float(np.exp(-0.5 * evidence)))
         parts.append(Part(name, float(np.hypot(*pair)), float(np.sqrt(0.5 * np.trace(within))), alarm))
     return tuple(parts)
 

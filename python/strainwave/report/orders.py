@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from importlib import metadata
 from itertools import pairwise
+from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -14,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
+from strainwave.orders.lines import Line
 from strainwave.orders.measured import OrdersFound
-from strainwave.orders.ripple import Ripple, RippleLine
+from strainwave.orders.ripple import Ripple
 from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
 from strainwave.report import orders_figures as plots
 from strainwave.report.page import render
@@ -59,7 +61,7 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "title": f"{ripple.column.replace('_', ' ')} over the angle of the {ripple.side}",
             "facts": _facts(ripple),
             "lines": [_line(each, ripple) for each in ripple.lines],
-            "scaled": ripple.side == "output" and any(each.per_input is not None for each in ripple.lines),
+            "scaled": ripple.side == "output" and any(isfinite(each.per_input) for each in ripple.lines),
             "concluded": _concluded(ripple),
             "candidates": [_candidate(each.ratio, each.share, each.matched) for each in ripple.candidates],
             "spectrum": plots.spectrum_figure(ripple, f"spectrum-{place}"),
@@ -113,22 +115,22 @@ def _facts(ripple: Ripple) -> dict[str, str]:
     return facts
 
 
-def _line(line: RippleLine, ripple: Ripple) -> dict[str, str]:
+def _line(line: Line, ripple: Ripple) -> dict[str, str]:
     order = uncertain(line.order, line.order_sigma) if line.kind in ("order", "either") else ""
     return {
         "kind": _kind(line),
         "order": order,
-        "per_input": number(line.per_input, 5) if line.per_input is not None and ripple.side == "output" and order else "",
-        "frequency": "" if line.frequency is None else f"{number(line.frequency, 4)} Hz",
+        "per_input": number(line.per_input, 5) if isfinite(line.per_input) and ripple.side == "output" and order else "",
+        "frequency": f"{number(line.frequency, 4)} Hz" if isfinite(line.frequency) else "",
         "amplitude": uncertain_quantity(line.amplitude, line.sigma, ripple.unit),
-        "forward": "" if line.forward is None else quantity(line.forward, ripple.unit),
-        "backward": "" if line.backward is None else quantity(line.backward, ripple.unit),
+        "forward": quantity(line.forward, ripple.unit) if isfinite(line.forward) else "",
+        "backward": quantity(line.backward, ripple.unit) if isfinite(line.backward) else "",
         "alarm": _chance(line.false_alarm),
         "parts": ", ".join(_parts(line, ripple.unit)),
     }
 
 
-def _kind(line: RippleLine) -> str:
+def _kind(line: Line) -> str:
     """Return what a line repeats with, in words."""
     others = ["time" if name == "time" else f"joint {name}" for name in line.rivals]
     if line.kind == "joint":
@@ -136,12 +138,21 @@ def _kind(line: RippleLine) -> str:
     return f"{' or '.join(['order', *others] if line.kind == 'either' else [line.kind])} line"
 
 
-def line_words(line: RippleLine) -> str:
+def line_words(line: Line) -> str:
     """Return a line of a spectrum in words, as `order line 2.00`."""
     return f"{_kind(line)}{_place(line)}"
 
 
-def _parts(line: RippleLine, of: str) -> Iterator[str]:
+def line_numbers(line: Line) -> dict[str, Any]:
+    """Return the numbers of a line by name, as results.json contains them."""
+    names = (
+        "kind", "joint", "rivals", "order", "order_sigma", "per_input", "frequency", "amplitude", "forward", "backward",
+        "phase", "sigma", "false_alarm", "parts",
+    )  # fmt: skip
+    return {name: getattr(line, name) for name in names}
+
+
+def _parts(line: Line, of: str) -> Iterator[str]:
     """Return the parts of a line, the largest first; parts that noise explains are left out."""
     words = {"constant": "constant", "direction": "with the direction", "load": "with the load"}
     for part in sorted(line.parts, key=lambda each: -each.amplitude):
@@ -218,7 +229,7 @@ def _ripple_lines(ripple: Ripple) -> Iterator[str]:
     for line in ripple.lines:
         place = _place(line)
         text = f"    {_kind(line)}{place}: {uncertain_quantity(line.amplitude, line.sigma, ripple.unit)}"
-        if line.forward is not None and line.backward is not None and line.kind != "time":
+        if isfinite(line.forward + line.backward) and line.kind != "time":
             text += f"; forward {quantity(line.forward, ripple.unit)}, backward {quantity(line.backward, ripple.unit)}"
         if parts := list(_parts(line, ripple.unit)):
             text += f"; parts: {', '.join(parts)}"
@@ -237,14 +248,14 @@ def _concluded(ripple: Ripple) -> str:
     return f"{' or '.join(map(str, ripple.concluded))} ({number(100.0 * share, 3)} %)" if ripple.concluded else ""
 
 
-def _place(line: RippleLine) -> str:
+def _place(line: Line) -> str:
     """Return the order of a line, its frequency, or both if the record does not separate them; of another joint nothing."""
-    order, frequency = uncertain(line.order, line.order_sigma), f"{number(line.frequency or 0.0, 4)} Hz"
+    order, frequency = uncertain(line.order, line.order_sigma), f"{number(line.frequency, 4)} Hz"
     if line.kind == "joint":
         return ""
-    if line.kind == "time" and line.frequency is not None:
+    if line.kind == "time" and isfinite(line.frequency):
         return f" {frequency}"
-    return f" {order} or {frequency}" if "time" in line.rivals and line.frequency is not None else f" {order}"
+    return f" {order} or {frequency}" if "time" in line.rivals and isfinite(line.frequency) else f" {order}"
 
 
 def _strip(ripple: Ripple) -> str:
@@ -273,19 +284,18 @@ def orders_files(found: Sequence[OrdersFound], provenance: Provenance | None = N
 
 
 def _results(found: OrdersFound) -> dict[str, Any]:
-    def members_of(value: Any) -> dict[str, Any] | None:
-        if value is None:
-            return None
+    def members_of(value: Any) -> dict[str, Any]:
         members = {each.name: getattr(value, each.name) for each in fields(value)}
         return {name: member for name, member in members.items() if not isinstance(member, Recording)}
 
-    law = None if found.transmission is None else found.transmission.law
+    ripple, error = found.ripple, found.transmission
+    law = None if error is None else error.law
     return {
         "made_by": f"strainwave {metadata.version('strainwave')}",
         "name": found.name,
-        "two_encoders": members_of(found.transmission),
+        "two_encoders": None if error is None else members_of(error),
         "law": None if law is None else {name: list(getattr(law, name)) for name in ("order", "amplitude", "phase")},
-        "ripple": members_of(found.ripple),
+        "ripple": None if ripple is None else {**members_of(ripple), "lines": [line_numbers(each) for each in ripple.lines]},
         "remarks": _remarks(found),
     }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from importlib import metadata
+from math import isfinite
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
@@ -13,7 +14,7 @@ from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.prediction import Change, Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
 from strainwave.report.identify_figures import file_figure
-from strainwave.report.orders import line_words
+from strainwave.report.orders import line_numbers, line_words
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
@@ -125,7 +126,7 @@ def _section(found: Prediction, anchor: str) -> dict[str, Any]:
             (each.name, change_in_words(each), number(each.significance, 2), each.significant) for each in found.changes
         ],
         "lines": [
-            (line_words(each), "" if each.frequency is None else f"{number(each.frequency, 4)} Hz",
+            (line_words(each), f"{number(each.frequency, 4)} Hz" if isfinite(each.frequency) else "",
              uncertain_quantity(each.amplitude, each.sigma, found.unit))
             for each in found.lines
         ],
@@ -156,6 +157,6 @@ def _json(found: Prediction) -> dict[str, Any]:
         **{name: getattr(found, name) for name in names},
         "verdict": verdict(found).replace(NO_BREAK_SPACE, " "),
         "changes": [{**asdict(each), "significant": each.significant} for each in found.changes],
-        "lines": [asdict(each) for each in found.lines],
+        "lines": [line_numbers(each) for each in found.lines],
         "checks": [asdict(check) for check in found.checks],
     }

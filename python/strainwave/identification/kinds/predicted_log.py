@@ -38,7 +38,8 @@ from strainwave.identification.results.prediction import (
     slopes_by_numbers,
 )
 from strainwave.messages import listed
-from strainwave.orders.ripple import RippleLine, ripple
+from strainwave.orders.lines import Line
+from strainwave.orders.ripple import ripple
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -186,7 +187,7 @@ class _Compared(ComparedByFields):
         torque = log.recorded - log.induced(drive) - scale * log.extra / drive.gear.kinematics.ratio
         return float(np.std(torque[self.rows])) * float(np.sqrt(max(1.0 - fit_plain(log, drive).explained, 0.0)))
 
-    def _lines(self, residual: Array, file: Recognised) -> tuple[tuple[RippleLine, ...], tuple[str, ...]]:
+    def _lines(self, residual: Array, file: Recognised) -> tuple[tuple[Line, ...], tuple[str, ...]]:
         """Return the lines of the spectrum of a residual, or why there is none."""
         motion = self.log.motion
         columns = {"time": motion.time, "input_angle": motion.angle, "residual": residual}

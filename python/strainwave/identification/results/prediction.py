@@ -16,7 +16,7 @@ from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.motion_log import FRICTIONLESS
 from strainwave.identification.results.check import Check
-from strainwave.orders.ripple import RippleLine
+from strainwave.orders.lines import Line
 from strainwave.parameters import every
 
 Array = NDArray[np.float64]
@@ -120,7 +120,7 @@ class Prediction(ComparedByFields):
     samples: int = 0
     changes: tuple[Change, ...] = ()
     error_with_changes: float = np.nan
-    lines: tuple[RippleLine, ...] = ()
+    lines: tuple[Line, ...] = ()
     curves: Recording | None = None
     checks: tuple[Check, ...] = ()
     remarks: tuple[str, ...] = ()
