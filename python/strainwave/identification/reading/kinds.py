@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.identification.kinds import KINDS, kind_named
-from strainwave.identification.reading.at_rest import at_rest
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.motions import at_rest, averaged, stretches
 from strainwave.identification.reading.names import Quantity, Side
 from strainwave.identification.reading.sides import (
     MIN_FACTOR_OF_SIDES,
@@ -23,7 +23,6 @@ from strainwave.identification.reading.sides import (
     side_of_torque,
     sides_of_angles,
 )
-from strainwave.identification.reading.steady import averaged, stretches
 from strainwave.messages import as_option, listed
 
 Array = NDArray[np.float64]

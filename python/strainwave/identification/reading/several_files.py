@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,15 +29,10 @@ MAX_OFF_RUN = 4e-3  # usual deviations, between two encoders of one drive that m
 MAX_OFF_EFFORT = 0.2  # of the same: as much as noise and delay make
 SAMPLES_COMPARED = 500  # of two runs
 
+_Reading = tuple[Side | None, tuple[tuple[str, str], ...]]  # the side, and quantity and unit of each motion
+
 
 # ---- One reading -----------------------------------------------------------------------------------------------------
-
-
-class Reading(NamedTuple):
-    """One way to read a file: the side, and quantity and unit of each motion."""
-
-    side: Side | None
-    motions: tuple[tuple[str, str], ...]
 
 
 def consistent(files: Sequence[Recognised], opened: Mapping[Path, MeasurementFile]) -> list[Recognised]:
@@ -63,27 +57,28 @@ def consistent(files: Sequence[Recognised], opened: Mapping[Path, MeasurementFil
 def _in_one_reading(group: Sequence[Recognised], opened: Mapping[Path, MeasurementFile]) -> dict[Path, Recognised]:
     """Return the files of a recorder in the reading that all of the usual kind allow; empty if there is none, or several."""
     usual, _ = Counter(file.kind for file in group).most_common(1)[0]
-    readings = dict[Path, dict[Reading, Recognised]]()
+    readings = dict[Path, dict[_Reading, Recognised]]()
     for file in group:
         ways = [file, *(recognise(opened[file.path], each.mapping) for each in file.alternatives)]
         readings[file.path] = {_reading(each): each for each in ways}
-    common = set[Reading].intersection(*(set(readings[file.path]) for file in group if file.kind == usual))
+    common = set[_Reading].intersection(*(set(readings[file.path]) for file in group if file.kind == usual))
     if len(common) != 1:
         return {}
     (one,) = common
-    remark = f"in {', '.join(unit for _, unit in one.motions)}, as the other files with these columns allow nothing else"
+    _, motions = one
+    remark = f"in {', '.join(unit for _, unit in motions)}, as the other files with these columns allow nothing else"
     found = dict[Path, Recognised]()
     for file in group:
         own = readings[file.path]
-        same = own.get(one) or next((each for reading, each in own.items() if reading.motions == one.motions), file)
+        same = own.get(one) or next((each for (_, moved), each in own.items() if moved == motions), file)
         found[file.path] = replace(same, question="", alternatives=(), remarks=(remark, *same.remarks))
     return found
 
 
-def _reading(file: Recognised) -> Reading:
+def _reading(file: Recognised) -> _Reading:
     quantities = {name: str(CHANNELS[name].quantity) for name in file.units if name in CHANNELS}
     motions = {(quantity, file.units[name]) for name, quantity in quantities.items() if quantity in ("angle", "speed")}
-    return Reading(file.side, tuple(sorted(motions)))
+    return file.side, tuple(sorted(motions))
 
 
 # ---- Joined ----------------------------------------------------------------------------------------------------------

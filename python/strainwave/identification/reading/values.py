@@ -18,11 +18,11 @@ from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
 from strainwave.identification.reading.names import UNITS
-from strainwave.identification.reading.whole_rows import whole_rows
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
+MIN_WHOLE = 0.5  # of the rows of the slowest channel: with fewer whole rows the channels were sampled at other instants
 MAX_LISTED = 4  # names, if none is known
 
 
@@ -56,7 +56,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     if empty and len(empty) < len(found):
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
-    return whole_rows(table, found, remarks)
+    return _whole_rows(table, found, remarks)
 
 
 def _naming(table: OpenTable) -> str:
@@ -110,3 +110,56 @@ def _in_si(table: OpenTable, column: Column, unit: Assumed) -> Column:
         hint = as_option("unit", column.name, "counts/16384" if counts(unit.unit) else column.channel.unit)
         raise ValueError(one_line(f"{place} cannot be the {what}: {error}; give its unit, with {hint}")) from None
     return replace(found, si=values)
+
+
+# ---- Whole rows ------------------------------------------------------------------------------------------------------
+
+
+def _whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str]) -> tuple[list[Column], list[str]]:
+    """Return the rows in which each column has a number, or those of the slowest channel; and remarks."""
+    whole = np.all([np.isfinite(column.si) for column in columns], axis=0)
+    if whole.all():
+        return list(columns), remarks
+    if (resampled := _resampled(columns)) is not None:
+        return resampled[0], [*remarks, resampled[1]]
+    if not whole.any():
+        empty = listed(column.name for column in columns if not np.isfinite(column.si).any()) or "no single column"
+        raise ValueError(one_line(f"{table.file}: no row has a number in each of its columns; all are missing in {empty}"))
+    lost = int((~whole).sum())
+    rows = "1 row without a number in each column is" if lost == 1 else f"{lost} rows without a number in each column are"
+    remarks.append(f"{rows} left out, the first at {table.place(int(np.argmin(whole)))}")
+    return [replace(column, si=column.si[whole]) for column in columns], remarks
+
+
+def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
+    """Return the columns at the instants of the slowest but for temperatures, by linear interpolation; and a remark.
+
+    None if most rows of this one are whole, or there is no time.
+    """
+    time = next((column.si for column in columns if column.channel.quantity == "time"), None)
+    others = [column for column in columns if column.channel.quantity not in ("time", "temperature")]
+    if time is None or not others:
+        return None
+    stamped = np.isfinite(time)
+    there = {column.position: np.isfinite(column.si) & stamped for column in columns}
+    slowest = min(others, key=lambda column: int(there[column.position].sum()))
+    rows = there[slowest.position].copy()
+    whole = np.all(list(there.values()), axis=0)
+    if whole.sum() > MIN_WHOLE * rows.sum() or not all(each.sum() > 1 for each in there.values()):
+        return None
+    for column in others:
+        own = time[there[column.position]]
+        rows &= (time >= own.min()) & (time <= own.max())
+    if not rows.any():
+        return None
+    found, moved = [], []
+    for column in columns:
+        finite = there[column.position]
+        if (finite & rows).sum() == rows.sum():
+            found.append(replace(column, si=column.si[rows]))
+            continue
+        moved.append(column.name)
+        order = np.argsort(time[finite], kind="stable")
+        found.append(replace(column, si=np.interp(time[rows], time[finite][order], column.si[finite][order])))
+    remark = f"rows are of several channels: at the {int(rows.sum())} rows of {slowest.name}"
+    return found, f"{remark}, {listed(moved)} is taken by linear interpolation"

@@ -1,8 +1,9 @@
-"""Measurements at rest: presliding loops, and ramps of torque until the shaft breaks away."""
+"""Motions that determine the kind of a measurement: at rest, until it breaks away, or steady at one speed after another."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,16 @@ Array = NDArray[np.float64]
 
 MIN_RATIO = 2.0  # of a gear
 MAX_PRESLIDING = 0.05  # rad of the input: what moves to and fro by less has not slid far, and hardly twists the gear
-MAX_SPEED_AT_REST = 0.02  # of the fastest motion
+MAX_SPEED_AT_REST = 0.02  # of the largest speed
 MIN_LOAD = 0.1  # of the largest torque
 MIN_TIME_AT_REST = 0.5  # of the time under load, while ramps rise
 MIN_CORRELATION = 0.9  # of a ramp with time
 MOTIONS = 500  # over which a record is divided
 MIN_ROWS, MIN_ROWS_OF_RAMP = 100, 10
+MAX_CHANGE = 0.05  # of the speed within a stretch
+MIN_ROWS_OF_STRETCH = 50  # at one speed
+MAX_NOISE = 2.0  # median deviations of the speed between medians of rows beside: 4 standard deviations of these
+ROWS_OF_CHANGE = 10  # over which a change is computed
 
 
 def at_rest(columns: Sequence[Column], mapping: FileMapping) -> str | None:
@@ -54,12 +59,36 @@ def _ramps(time: Array, angle: Array, effort: Array) -> bool:
     loaded, resting = size > MIN_LOAD * size.max(), moved <= MAX_SPEED_AT_REST * moved.max()
     if not moved.max() > 0.0 or np.mean(resting[loaded]) < MIN_TIME_AT_REST:
         return False
-    ramps = [size[rows] for rows in runs_of(loaded & resting, MIN_ROWS_OF_RAMP)]
+    ramps = [size[rows] for rows in _runs_of(loaded & resting, MIN_ROWS_OF_RAMP)]
     rises = [float(np.corrcoef(np.arange(len(ramp)), ramp)[0, 1]) for ramp in ramps if np.ptp(ramp) > 0.0]
     return bool(rises) and float(np.median(rises)) > MIN_CORRELATION
 
 
-def runs_of(wanted: NDArray[np.bool_], min_rows: int) -> list[slice]:
+def stretches(speed: Array) -> list[slice]:
+    """Return the rows of each stretch of one speed, without its ends.
+
+    >>> speed = np.repeat([0.0, 0.5, -0.5, 1.0], 200)
+    >>> stretches(speed)
+    [slice(210, 390, None), slice(410, 590, None), slice(610, 790, None)]
+    """
+    from scipy import ndimage
+
+    apart = ROWS_OF_CHANGE
+    smooth = ndimage.median_filter(speed, 2 * apart + 1, mode="nearest")
+    change = np.full(len(speed), np.inf)
+    change[apart:-apart] = np.abs(smooth[2 * apart :] - smooth[: -2 * apart])
+    noise = MAX_NOISE * float(np.median(np.abs(speed - smooth)))
+    is_moving = np.abs(smooth) > MAX_SPEED_AT_REST * np.abs(smooth).max()
+    return _runs_of((change < np.maximum(MAX_CHANGE * np.abs(smooth), noise)) & is_moving, MIN_ROWS_OF_STRETCH)
+
+
+def averaged(columns: Mapping[str, Column], parts: Sequence[slice]) -> dict[str, Column]:
+    """Return columns whose rows are the means of stretches."""
+    means = {name: np.array([float(column.si[part].mean()) for part in parts]) for name, column in columns.items()}
+    return {name: replace(column, si=means[name]) for name, column in columns.items()}
+
+
+def _runs_of(wanted: NDArray[np.bool_], min_rows: int) -> list[slice]:
     """Return the stretches of rows that are wanted, those of at least so many rows."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(int)))
     return [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= min_rows]
