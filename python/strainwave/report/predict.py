@@ -10,8 +10,9 @@ from typing import Any
 
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.identification.results.changes import Change
 from strainwave.identification.results.file_result import FileResult, Picture
-from strainwave.identification.results.prediction import Change, Prediction
+from strainwave.identification.results.prediction import Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
 from strainwave.report.identify_figures import file_figure
 from strainwave.report.orders import line_numbers, line_words

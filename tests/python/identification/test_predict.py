@@ -13,7 +13,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Covariance
-from strainwave.identification.results.prediction import Change
+from strainwave.identification.results.changes import Change
 from strainwave.report.predict import verdict
 
 from tests.arms import Joint, Recorder, fourier, rtde, run

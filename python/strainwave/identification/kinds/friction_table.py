@@ -23,6 +23,7 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kinds import ColumnRoles, friction_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.changes import changes_of, friction_directions, slopes_by_numbers
 from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.determined import (
     AT_SPEEDS,
@@ -35,14 +36,7 @@ from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import Fitted
-from strainwave.identification.results.prediction import (
-    Prediction,
-    changes_of,
-    friction_directions,
-    judged,
-    model_error,
-    slopes_by_numbers,
-)
+from strainwave.identification.results.prediction import Prediction, judged, model_error
 
 Array = NDArray[np.float64]
 UNITS = {"speed": "rad/s", "torque": "N.m"}

@@ -19,8 +19,7 @@ from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.prediction import (
+from strainwave.identification.results.changes import (
     DRY,
     GRAVITY,
     INERTIA,
@@ -31,12 +30,12 @@ from strainwave.identification.results.prediction import (
     ZERO,
     Change,
     Direction,
-    Prediction,
     changes_of,
     friction_directions,
-    judged,
     slopes_by_numbers,
 )
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.prediction import Prediction, judged
 from strainwave.messages import listed
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import ripple

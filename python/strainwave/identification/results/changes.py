@@ -1,0 +1,201 @@
+"""What a recording shows of parts of a saved gear or drive: scales of its friction and load, a zero, a temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive
+from strainwave.equality import ComparedByFields
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.experiments.motion_log import FRICTIONLESS
+from strainwave.parameters import every
+
+Array = NDArray[np.float64]
+
+SIGNIFICANCE_SIGMA = 3.0  # standard deviations by which a change must differ from none
+MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
+MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
+DIFFERENCE = 0.1  # standard deviations of a number, over which the difference of two predictions is taken
+BLOCKS = 20  # contiguous ones of a recording, over which what is left scatters
+MIN_SAMPLES = 50  # of sliding, from which changes are determined
+DRY, VISCOUS, FRICTION, ZERO = "dry friction", "viscous friction", "friction", "zero"
+INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
+PLACES = ("friction_input", "friction_mesh", "friction_output")
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a recording shows of a part of a saved gear or drive.
+
+    Attributes:
+        name: of the part: `dry friction`, `viscous friction`, `friction` if the recording does not separate both, `zero` of the
+            channel, `inertia of the load`, `gravity of the load`, `friction over temperature`
+        value: its scale, 1 if it is as saved; of the zero its value; over temperature the relative change per kelvin
+        sigma: standard deviation of `value`, with that of the saved numbers
+        unit: of both
+        unchanged: `value` of the saved gear
+        smallest: difference from it that matters; a smaller one is none, however sure
+    """
+
+    name: str
+    value: float
+    sigma: float
+    unit: str
+    unchanged: float
+    smallest: float = 0.0
+
+    @property
+    def significance(self) -> float:
+        """The difference from the saved gear in standard deviations [1]."""
+        off = abs(self.value - self.unchanged)
+        return off / self.sigma if self.sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
+
+    @property
+    def significant(self) -> bool:
+        """True if it differs from the saved gear by what matters, and by more than chance makes."""
+        return self.significance > SIGNIFICANCE_SIGMA and abs(self.value - self.unchanged) >= self.smallest
+
+
+@dataclass(frozen=True, eq=False)
+class Direction(ComparedByFields):
+    """How a channel changes with a part of a gear.
+
+    Attributes:
+        name, unit, unchanged, smallest: as of a `Change`
+        effect: derivative of the channel, shape (n,)
+    """
+
+    name: str
+    unit: str
+    unchanged: float
+    effect: Array
+    smallest: float = MIN_CHANGE
+
+
+def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direction]:
+    """Yield how a channel changes with the scales of dry and of viscous friction.
+
+    Args:
+        gear: the saved one
+        at: what a gear predicts, shape (n,)
+    """
+    whole = at(gear)
+    total = whole - at(gear.replace(**dict.fromkeys(PLACES, FRICTIONLESS)))
+    numbers = _viscous_numbers(gear)
+    viscous = (
+        2.0 * (whole - at(gear.replace({path: 0.5 * value for path, value in numbers.items()}))) if numbers else 0.0 * whole
+    )
+    yield Direction(DRY, "1", 1.0, total - viscous)
+    yield Direction(VISCOUS, "1", 1.0, viscous)
+
+
+def _viscous_numbers(gear: Any) -> dict[str, float]:
+    """Return the numbers of a gear that its viscous friction grows with, by path."""
+    names = ("viscous", "viscous_torque")
+    found = {path: each.value for path, each in every(gear).items() if path.partition(".")[0] in PLACES}
+    return {path: value for path, value in found.items() if path.rpartition(".")[2] in names and value != 0.0}
+
+
+def changes_of(
+    left: Array, directions: Sequence[Direction], by_numbers: Array, covariance: Array, coherent: float = 0.0
+) -> tuple[tuple[Change, ...], Array]:
+    """Return what a residual shows of parts of a gear, and the part of the residual that they explain, shape (n,).
+
+    Least squares of the residual on all directions together. Their variance is the scatter of contiguous blocks, within which
+    residuals correlate (Liang and Zeger 1986), that of the saved numbers, and that by an error of the laws, which another
+    motion turns into other apparent changes: it is taken as coherent within each block. A scale that the residual does not
+    determine is left out; dry and viscous friction that it does not separate are one.
+
+    Args:
+        left: measured less predicted, shape (n,)
+        directions: of parts that may have changed
+        by_numbers: derivatives of what is predicted by the saved numbers, shape (n, p)
+        covariance: of these numbers, shape (p, p)
+        coherent: root mean square error of the laws, in the unit of the residual
+    """
+    asked = [each for each in directions if np.linalg.norm(each.effect) > 0.0]
+    while asked:
+        columns = np.stack([each.effect for each in asked], axis=1)
+        size = np.linalg.norm(columns, axis=0)
+        inverse = np.linalg.pinv(columns / size) / size[:, np.newaxis]
+        values = inverse @ left
+        explained = columns @ values
+        variance = _scatter(inverse, left - explained, len(asked)) + coherent**2 * _coherent(inverse)
+        sigma = np.sqrt(variance + _by_saved(inverse @ by_numbers, covariance))
+        unsure = [k for k, each in enumerate(asked) if each.unit == "1" and sigma[k] > MAX_SCALE_SIGMA]
+        if not unsure:
+            break
+        asked = _without(asked, max(unsure, key=lambda k: float(sigma[k])))
+    else:
+        return (), np.zeros_like(left)
+    shown = zip(asked, values.tolist(), sigma.tolist(), strict=True)
+    changes = (
+        Change(each.name, each.unchanged + value, s, each.unit, each.unchanged, each.smallest) for each, value, s in shown
+    )
+    return tuple(changes), explained
+
+
+def _without(asked: Sequence[Direction], worst: int) -> list[Direction]:
+    """Return the directions without one; dry and viscous friction become one first."""
+    names = {each.name: each for each in asked}
+    if asked[worst].name in (DRY, VISCOUS) and {DRY, VISCOUS} <= names.keys():
+        both = Direction(FRICTION, "1", 1.0, names[DRY].effect + names[VISCOUS].effect)
+        return [both, *(each for each in asked if each.name not in (DRY, VISCOUS))]
+    return [each for k, each in enumerate(asked) if k != worst]
+
+
+def _blocks(values: Array) -> Array:
+    """Return the sums over contiguous blocks, shape (k, n) becomes (blocks, k)."""
+    blocks = min(BLOCKS, max(values.shape[1] // 2, 1))
+    return np.array([part.sum(axis=1) for part in np.array_split(values, blocks, axis=1)])
+
+
+def _scatter(inverse: Array, left: Array, unknowns: int) -> Array:
+    """Return the variances of estimates by the scatter of blocks, shape (k,)."""
+    sums = _blocks(inverse * left)
+    return np.asarray((sums**2).sum(axis=0) * len(sums) / max(len(sums) - unknowns, 1))
+
+
+def _coherent(inverse: Array) -> Array:
+    """Return the variances of estimates by an error of size 1 that is coherent within each block, shape (k,)."""
+    return np.asarray((_blocks(np.abs(inverse)) ** 2).sum(axis=0))
+
+
+def _by_saved(slopes: Array, covariance: Array) -> Array:
+    """Return the variances of estimates by those of saved numbers, shape (k,)."""
+    return np.asarray(np.einsum("kp,pq,kq->k", slopes, covariance, slopes))
+
+
+def slopes_by_numbers(
+    gear_set: GearSet, model: Any, at: Callable[[Any], Array], beginnings: str | tuple[str, ...]
+) -> tuple[Array, Array]:
+    """Return the derivatives of a channel by saved numbers, shape (n, p), and the covariance of these, shape (p, p).
+
+    Args:
+        gear_set: the saved one
+        model: its gear or drive, at which they are taken
+        at: what such a model predicts, shape (n,)
+        beginnings: of the paths of numbers that the channel depends on
+    """
+    here, known = at(model), gear_set.covariance
+    own = None if known is None else known.among([path for path in known.paths if path.startswith(beginnings)])
+    if own is None:
+        return np.zeros((len(here), 0)), np.zeros((0, 0))
+    steps = DIFFERENCE * np.sqrt(np.diag(own.array))
+    prefix = "" if isinstance(model, Drive) else "gear."
+    slopes = [_slope(model, path.removeprefix(prefix), step, here, at) for path, step in zip(own.paths, steps, strict=True)]
+    return np.stack(slopes, axis=1), own.array
+
+
+def _slope(model: Any, path: str, step: float, here: Array, at: Callable[[Any], Array]) -> Array:
+    """Return the derivative of a channel by one number, shape (n,); 0 by one that the model lacks."""
+    if path not in (numbers := every(model)):
+        return np.zeros_like(here)
+    number = numbers[path]
+    move = step if number.value + step < number.high else -step
+    return np.asarray((at(model.replace({path: number.value + move})) - here) / move)
