@@ -22,14 +22,14 @@ def seen() -> dict[str, np.ndarray]:
 
 
 def is_joint(
-    found: Recognised, seen: dict[str, np.ndarray], joint: int, effort: str = "motor_torque", told: float = 1e-3
+    found: Recognised, seen: dict[str, np.ndarray], joint: int, effort: str = "motor_torque", resolution: float = 1e-3
 ) -> None:
     assert (found.kind, found.side) == ("log", "output")
     recording = found.recording
-    assert recording["output_angle"] == pytest.approx(seen["q"][joint], abs=told)
+    assert recording["output_angle"] == pytest.approx(seen["q"][joint], abs=resolution)
     assert np.diff(recording["time"]) == pytest.approx(np.diff(seen["time"]), abs=1e-3)
     name = "current" if effort == "current" else "joint_torque"
-    assert recording[name] == pytest.approx(seen[effort][joint], abs=told)
+    assert recording[name] == pytest.approx(seen[effort][joint], abs=resolution)
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_u_of_a_robot_may_be_anything_that_drives_it(tmp_path: Path, seen: dict[
     is_joint(recognise(tmp_path / "log.log", FileMapping(joint="2", columns={"joint_torque": "u2"})), seen, 1)
 
 
-def test_a_single_number_tells_the_rate_of_rows_without_time(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+def test_a_single_number_is_the_rate_of_rows_without_time(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     arms.hand_driven(tmp_path / "hand.mat", seen)
     found = recognise(tmp_path / "hand.mat", FileMapping(side="output"))
     assert "fs = 200 is taken for the rate of its rows: 200 Hz" in found.remarks
@@ -147,7 +147,7 @@ def test_constant_speed_in_the_words_of_robots_is_at_the_output(tmp_path: Path) 
     assert (found.kind, found.side) == ("effort", "output")
 
 
-def test_the_joint_that_moves_alone_is_taken_and_told(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+def test_the_joint_that_moves_alone_is_taken_with_a_remark(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     alone = arms.Recorder(rate=200.0)(arms.run((JOINT,) * 3, arms.fourier(4.0, (2,), seed=1)))
     arms.mat(tmp_path / "one.mat", alone)
     found = recognise(tmp_path / "one.mat")
@@ -188,15 +188,13 @@ def test_degrees_that_begin_anew_have_the_slope_of_their_speed(tmp_path: Path, s
     assert found.recording["output_speed"] == pytest.approx(seen["dq"][1], abs=1e-6)
 
 
-def test_two_angles_are_told_apart_by_how_far_they_run(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+def test_the_sides_of_two_angles_are_determined_by_their_ranges(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     columns = {"time": seen["time"], "theta": seen["theta"][1], "q": seen["q"][1], "tau_J": seen["joint_torque"][1]}
     found = recognise(written(tmp_path / "a.csv", columns))
     assert (found.columns["input_angle"], found.columns["output_angle"]) == ("theta", "q")
     assert any("so it is that of the input" in why for why in found.why)
     scaled = columns | {"theta": columns["theta"] / JOINT.ratio}
-    with pytest.raises(
-        ValueError, match=r"the sides of .* are not determined; give them, as with --column input_angle="
-    ):
+    with pytest.raises(ValueError, match=r"the sides of .* are not determined; give them, as with --column input_angle="):
         recognise(written(tmp_path / "b.csv", scaled))
 
 
@@ -221,7 +219,7 @@ def test_an_angle_without_a_unit_may_be_of_a_motor_or_of_a_joint_in_degrees(
     assert recognise(fast).side == "input"
 
 
-def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+def test_the_question_of_a_matrix_without_time_names_its_blocks(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     """Angles, speeds, accelerations and torques of all joints, as in data sets for learning inverse dynamics."""
     alone = arms.Recorder(rate=200.0)(arms.run((JOINT,) * 3, arms.fourier(4.0, (1,), seed=1)))
     rows = [*alone["q"], *alone["dq"], *np.gradient(alone["dq"], 0.005, axis=1), *alone["motor_torque"]]
@@ -229,8 +227,8 @@ def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path
     with pytest.raises(ValueError, match="columns 1 to 3 are the angle of joints, columns 4 to 6 are the speed") as refused:
         recognise(tmp_path / "a.txt")
     assert "block4 = columns 10 to 12, as with --column joint_torque=block4 --constant rate=HZ" in str(refused.value)
-    told = FileMapping(columns={"joint_torque": "block4"}, constants={"rate": 200.0})
-    assert recognise(tmp_path / "a.txt", told).recording["output_angle"] == pytest.approx(alone["q"][1])
+    mapping = FileMapping(columns={"joint_torque": "block4"}, constants={"rate": 200.0})
+    assert recognise(tmp_path / "a.txt", mapping).recording["output_angle"] == pytest.approx(alone["q"][1])
     np.savetxt(tmp_path / "b.txt", alone["current"][1])
     with pytest.raises(ValueError, match="name it if the speed was constant, as with --column current=1 --constant speed="):
         recognise(tmp_path / "b.txt")
@@ -239,8 +237,8 @@ def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path
 def test_what_a_person_names_needs_no_choice_of_what_is_like_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     """Names of a benchmark of nonlinear systems: inputs and outputs, in degrees."""
     columns = joints("y_train_{}", np.degrees(seen["q"])) | joints("u_train_{}", seen["motor_torque"])
-    said = FileMapping(columns={"output_angle": "y_train_2", "joint_torque": "u_train_2"}, units={"output_angle": "deg"})
-    found = recognise(written(tmp_path / "a.csv", {"time_train": seen["time"]} | columns), said)
+    mapping = FileMapping(columns={"output_angle": "y_train_2", "joint_torque": "u_train_2"}, units={"output_angle": "deg"})
+    found = recognise(written(tmp_path / "a.csv", {"time_train": seen["time"]} | columns), mapping)
     is_joint(found, seen, 1)
 
 

@@ -1,4 +1,4 @@
-"""Clocks whose truth is known: what is taken for the time of the rows, and what is said of it."""
+"""Clocks whose truth is known: the time of their rows, and the remarks on it."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_a_rate_must_be_positive() -> None:
 
 
 @pytest.mark.parametrize("samples", [True, False])
-def test_an_angle_tells_whether_its_samples_or_its_stamps_are_uneven(samples: bool) -> None:
+def test_an_angle_shows_that_its_samples_or_its_stamps_are_uneven(samples: bool) -> None:
     even = np.arange(0.0, 4.0, 0.002)
     uneven = even + np.random.default_rng(1).uniform(-2e-4, 2e-4, len(even))
     angle = np.round(np.sin(2.0 * (uneven if samples else even)) / 1e-5) * 1e-5

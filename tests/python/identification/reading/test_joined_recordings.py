@@ -25,7 +25,7 @@ def write(path: Path, rows: np.ndarray) -> Path:
 
 
 @pytest.mark.parametrize("epoch", [0.0, 1.7e9])
-def test_parts_in_any_order_tell_what_the_whole_tells(tmp_path: Path, rows: np.ndarray, epoch: float) -> None:
+def test_parts_in_any_order_give_the_whole(tmp_path: Path, rows: np.ndarray, epoch: float) -> None:
     rows = rows + np.array([epoch, 0.0, 0.0, 0.0])
     parts = [write(tmp_path / f"run_{place}.csv", part) for place, part in enumerate(np.array_split(rows, 3))]
     whole = identify("hfuc-25-100", [write(tmp_path / "whole.csv", rows)])

@@ -31,14 +31,14 @@ columns.joint_torque = "Last"
 """
 
 
-def said(folder: Path, text: str) -> MappingFile:
+def read_file(folder: Path, text: str) -> MappingFile:
     path = folder / "columns.toml"
     path.write_text(text)
     return MappingFile.read(path)
 
 
-def test_what_is_mapping_from_options_all_files_and_of_some(tmp_path: Path) -> None:
-    file = said(tmp_path, TEXT.replace("0.5 kHz", "500 Hz"))
+def test_a_mapping_holds_for_all_files_or_for_some(tmp_path: Path) -> None:
+    file = read_file(tmp_path, TEXT.replace("0.5 kHz", "500 Hz"))
     general = FileMapping(
         columns={"joint_torque": "Moment", "output_speed": "3"},
         units={"joint_torque": "mNm"},
@@ -92,7 +92,7 @@ def test_what_is_not_known_is_refused_with_its_place(tmp_path: Path, text: str, 
     separator = " " if message.startswith(("is ", "contains ")) else ": "
     begin = f"{tmp_path / 'columns.toml'}{separator}{message}"
     with pytest.raises(ValueError, match=f"^{re.escape(begin)}"):
-        said(tmp_path, text)
+        read_file(tmp_path, text)
 
 
 @pytest.mark.parametrize("name", CONSTANTS)
@@ -112,7 +112,7 @@ def test_a_mapping_is_read_from_a_small_regular_file_alone(tmp_path: Path) -> No
     with pytest.raises(ValueError, match="/dev/zero is not a regular file"):
         MappingFile.read("/dev/zero")
     with pytest.raises(ValueError, match=r"columns\.toml has more than 17 MB"):
-        said(tmp_path, "#" + 2**24 * " ")
+        read_file(tmp_path, "#" + 2**24 * " ")
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ mappings = st.builds(FileMapping, columns=names, side=st.sampled_from([None, "in
 
 
 @given(mappings, mappings, mappings)
-def test_updates_are_associative_and_nothing_said_changes_nothing(
+def test_updates_are_associative_and_an_empty_one_changes_nothing(
     one: FileMapping, two: FileMapping, three: FileMapping
 ) -> None:
     assert one.updated(two).updated(three) == one.updated(two.updated(three))

@@ -26,7 +26,7 @@ def log(folder: Path, header: str, *series: object) -> Recognised:
 
 @FOLDER
 @given(st.sampled_from(["rad", "deg", "rev"]), st.integers(8, 20))
-def test_the_steps_of_an_encoder_tell_the_unit_of_its_angle(tmp_path: Path, unit: str, bits: int) -> None:
+def test_the_steps_of_an_encoder_determine_the_unit_of_its_angle(tmp_path: Path, unit: str, bits: int) -> None:
     turn = float(convert(1.0, "rev", unit))
     counted = np.round(ANGLE / (2.0 * np.pi) * 2.0**bits) * turn / 2.0**bits
     found = log(tmp_path, "theta_m,i", counted, SPEED)
@@ -37,7 +37,9 @@ def test_the_steps_of_an_encoder_tell_the_unit_of_its_angle(tmp_path: Path, unit
 
 @FOLDER
 @given(st.sampled_from(["rad/s", "deg/s", "rpm"]), st.sampled_from(["rad", "deg", "rev"]), st.booleans())
-def test_an_angle_and_its_speed_tell_each_other_s_unit(tmp_path: Path, per_time: str, unit: str, angle_known: bool) -> None:
+def test_an_angle_and_its_speed_determine_each_other_s_unit(
+    tmp_path: Path, per_time: str, unit: str, angle_known: bool
+) -> None:
     angle, speed = convert(ANGLE, "rad", unit), convert(SPEED, "rad/s", per_time)
     header = f"q [{unit}],dq,tau" if angle_known else f"q,dq [{per_time}],tau"
     noise = 1e-4 * np.random.default_rng(1).standard_normal(len(TIME))
@@ -51,7 +53,7 @@ def test_a_joint_that_would_reach_too_far_is_in_degrees(tmp_path: Path) -> None:
     assert "as a joint does not reach 74.48 rad, dq in deg/s as it fits q" in " ".join(found.remarks)
 
 
-def test_radians_are_taken_where_nothing_tells(tmp_path: Path) -> None:
+def test_radians_are_taken_if_nothing_determines_the_unit(tmp_path: Path) -> None:
     found = log(tmp_path, "theta_m,i", ANGLE, SPEED)
     assert found.units["input_angle"] == "rad"
     assert "no unit is stated: t in s, theta_m in rad, i in A; otherwise add --unit NAME=UNIT" in found.remarks
@@ -75,7 +77,7 @@ def test_counts_without_those_of_a_revolution_are_asked_for(tmp_path: Path) -> N
     assert found.recording["input_speed"] == pytest.approx(SPEED / 4096 * 2.0 * np.pi)
 
 
-def test_what_is_said_goes_before_what_is_stated(tmp_path: Path) -> None:
+def test_a_given_unit_goes_before_a_stated_one(tmp_path: Path) -> None:
     log(tmp_path, "theta_m [deg],i [A]", ANGLE, SPEED)
     found = recognise(tmp_path / "log.csv", FileMapping(units={"theta_m": "rad"}))
     assert found.recording["input_angle"] == pytest.approx(ANGLE)
@@ -83,7 +85,7 @@ def test_what_is_said_goes_before_what_is_stated(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e6, "us"), (1e9, "ns")])
-def test_time_since_1970_tells_its_unit(tmp_path: Path, factor: float, unit: str) -> None:
+def test_time_since_1970_determines_its_unit(tmp_path: Path, factor: float, unit: str) -> None:
     path = tmp_path / "log.csv"
     stamps = np.round((1.7e9 + TIME) * factor)
     np.savetxt(path, np.column_stack([stamps, ANGLE, SPEED]), fmt="%.19g", delimiter=",", header="stamp,q,tau", comments="")

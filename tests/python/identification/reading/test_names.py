@@ -78,7 +78,7 @@ NO_NAMES = (
 
 
 @pytest.mark.parametrize("text", NAMES)
-def test_a_name_says_what_is_measured(text: str) -> None:
+def test_a_name_contains_what_is_measured(text: str) -> None:
     assert meaning(label_of(text)) == NAMES[text]
 
 

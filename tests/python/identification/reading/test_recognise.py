@@ -20,7 +20,7 @@ def write(path: Path, header: str, *series: object, delimiter: str = ",", form: 
     return path
 
 
-def told(found: Recognised) -> str:
+def words_of(found: Recognised) -> str:
     return " | ".join((*found.why, *found.remarks))
 
 
@@ -42,13 +42,13 @@ def test_a_table_of_friction(tmp_path: Path, header: str, side: str) -> None:
     assert (found.kind, found.side) == ("friction", side)
     assert found.recording["speed"] == pytest.approx(RPM * np.pi / 30.0)
     assert found.recording["torque"] == pytest.approx(np.sign(RPM) * 0.05)
-    assert "a table of steady friction" in told(found)
+    assert "a table of steady friction" in words_of(found)
 
 
-def test_a_slow_table_says_that_its_side_is_taken(tmp_path: Path) -> None:
+def test_a_slow_table_has_a_remark_on_its_side(tmp_path: Path) -> None:
     path = write(tmp_path / "table.csv", "speed [rpm],torque [N.m]", RPM / 100.0, np.sign(RPM))
     assert recognise(path).side == "input"
-    assert "--side output" in told(recognise(path))
+    assert "--side output" in words_of(recognise(path))
     assert recognise(path, FileMapping(side="output")).side == "output"
 
 
@@ -66,10 +66,10 @@ def test_a_torsion_loop_and_a_branch(tmp_path: Path, header: str, names: tuple[s
     angle = 10.0 * (SWING + 0.01 * np.sign(np.gradient(SWING)))  # of the input: less is friction before it slides
     loop = recognise(write(tmp_path / "loop.csv", header, angle, SWING))
     assert (loop.kind, loop.side, loop.recording.names) == ("torsion", side, names)
-    assert "a torsion loop with 2 reversals" in told(loop)
+    assert "a torsion loop with 2 reversals" in words_of(loop)
     branch = recognise(write(tmp_path / "branch.csv", header, SWING[:100], SWING[:100]))
     assert (branch.kind, branch.side) == ("torsion", side)
-    assert "one branch" in told(branch)
+    assert "one branch" in words_of(branch)
 
 
 @pytest.mark.parametrize(
@@ -105,13 +105,13 @@ def test_two_angles_without_torque_are_those_of_two_encoders(tmp_path: Path) -> 
 def test_torque_alone_or_at_one_speed(tmp_path: Path) -> None:
     alone = recognise(write(tmp_path / "torque.csv", "time_s,torque_Nm", TIME, SWING))
     assert alone.kind == "effort"
-    assert "nothing that moves" in told(alone)
+    assert "nothing that moves" in words_of(alone)
     steady = recognise(write(tmp_path / "steady.csv", "speed [rpm],torque [Nm]", 30.0 + 0.01 * SWING, SWING))
     assert steady.kind == "effort"
-    assert "at one speed, 3.142 rad/s" in told(steady)
+    assert "at one speed, 3.142 rad/s" in words_of(steady)
 
 
-def test_crooked_rows_are_left_out_and_told(tmp_path: Path) -> None:
+def test_crooked_rows_are_left_out_with_a_remark(tmp_path: Path) -> None:
     """A loop at 100 Hz whose stamps scatter, with rows that are repeated and rows that are missing."""
     random = np.random.default_rng(1)
     kept = np.sort(np.r_[np.delete(np.arange(1000), [200, 201, 500]), 100, 700])
@@ -120,7 +120,7 @@ def test_crooked_rows_are_left_out_and_told(tmp_path: Path) -> None:
     found = recognise(write(tmp_path / "log.csv", "t,q,dq,tau", stamps, values, np.cos(0.01 * kept), values))
     assert len(found.recording) == 997
     assert found.recording["output_angle"] == pytest.approx(np.sin(found.recording.time), abs=2e-4)
-    words = told(found)
+    words = words_of(found)
     assert "2 rows repeat the row before and are left out" in words
     assert "3 rows are missing at 2 places, the longest: a gap of 0.03 s after 1.9" in words
     assert "about a clock of 100 Hz" in words
@@ -142,7 +142,7 @@ def test_several_joints_are_asked_for(tmp_path: Path) -> None:
     assert (found.side, found.columns["output_angle"], found.columns["joint_torque"]) == ("output", "Position_A2", "Torque_A2")
 
 
-def test_a_column_without_any_number_is_left_out_and_told(tmp_path: Path) -> None:
+def test_a_column_without_any_number_is_left_out_with_a_remark(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text("t [s],q [rad],tau [N.m],temperature [degC]\n" + "".join(f"{i / 10},{i},{i},nan\n" for i in range(2000)))
     found = recognise(path)
@@ -150,7 +150,7 @@ def test_a_column_without_any_number_is_left_out_and_told(tmp_path: Path) -> Non
     assert "temperature" not in found.recording
 
 
-def test_a_side_that_cannot_be_told_is_asked_for(tmp_path: Path) -> None:
+def test_a_side_that_nothing_determines_is_asked_for(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "time [s],position [rad],current [A]", TIME, SWING, SWING)
     found = recognise(path)
     assert "give it, with --column input_angle=position or --column output_angle=position, or" in found.question
@@ -158,7 +158,7 @@ def test_a_side_that_cannot_be_told_is_asked_for(tmp_path: Path) -> None:
     assert "output_angle" in recognise(path, FileMapping(side="output")).recording
     assert "input_angle" in recognise(path, FileMapping(columns={"input_angle": "position"})).recording
     fast = write(tmp_path / "fast.csv", "time [s],position [rad],current [A]", TIME, 300.0 * TIME, SWING)
-    assert "reaches 2865 1/min, so it is at the input" in told(recognise(fast))
+    assert "reaches 2865 1/min, so it is at the input" in words_of(recognise(fast))
 
 
 def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
@@ -179,10 +179,10 @@ def test_an_angle_that_begins_anew_with_each_revolution_runs_on(tmp_path: Path) 
     header = "time [s],motor_angle [deg],current [A]"
     found = recognise(write(tmp_path / "log.csv", header, TIME, np.degrees(turning) % 360.0, SWING))
     assert np.diff(found.recording["input_angle"]) == pytest.approx(np.diff(turning), abs=1e-6)
-    assert "motor_angle begins anew with each revolution" in told(found)
+    assert "motor_angle begins anew with each revolution" in words_of(found)
 
 
-def test_rows_that_lack_a_number_and_a_torn_end_are_left_out_and_told(tmp_path: Path) -> None:
+def test_rows_that_lack_a_number_and_a_torn_end_are_left_out_with_a_remark(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text(
         "time [s];q [rad];tau [N.m];mode\n" + "".join(f"{i / 100:.2f};{i};2,5;on\n" for i in range(5)).replace(".", ",")
@@ -191,7 +191,7 @@ def test_rows_that_lack_a_number_and_a_torn_end_are_left_out_and_told(tmp_path: 
         file.write("0,05;;2,5;on\n0,06;6;2,5;on\n0,07;7;2")
     found = recognise(path)
     assert found.recording["output_angle"].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 6.0]
-    words = told(found)
+    words = words_of(found)
     assert 'its last row, line 9, ends too early and is left out: "0,07;7;2"' in words
     assert "1 row without a number in each column is left out, the first at line 7" in words
     assert "columns not used: mode" in words
@@ -214,7 +214,7 @@ def test_a_file_without_a_header_is_read_by_numbers(tmp_path: Path) -> None:
     assert recognise(path).columns == {"time": "t", "input_angle": "theta_m", "current": "i"}
 
 
-def test_signs_are_turned_where_that_is_said(tmp_path: Path) -> None:
+def test_signs_are_turned_if_the_mapping_states_it(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "t [s],q [rad],tau [N.m]", TIME, SWING, SWING)
     assert recognise(path, FileMapping(sign={"joint_torque": -1})).recording["joint_torque"] == pytest.approx(-SWING)
 

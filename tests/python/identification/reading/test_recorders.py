@@ -151,6 +151,17 @@ def test_a_table_of_several_topics(tmp_path: Path) -> None:
     assert found.recording["temperature"] == pytest.approx(np.full_like(TIME, 304.15))
 
 
+def test_the_unit_of_an_angle_is_determined_beside_another_topic(tmp_path: Path) -> None:
+    """The speed in the middle of two angles may be an empty cell."""
+    times = np.sort(np.concatenate([TIME, TIME[:-1:10] + 0.001]))
+    own = np.isin(times, TIME)
+    q, dq, tau = (np.full(len(times), np.nan) for _ in range(3))
+    q[own], dq[own], tau[own] = np.degrees(0.1 * ANGLE), np.degrees(0.1 * SPEED), TORQUE
+    header = "__time,q,dq [deg/s],tau,temp\n"
+    found = recognise(written(tmp_path / "plot.csv", header, [times, q, dq, tau, np.where(own, np.nan, 31.0)]))
+    assert found.units["output_angle"] == "deg"
+
+
 # ---- Matrices
 
 
