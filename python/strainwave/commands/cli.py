@@ -1,4 +1,4 @@
-"""The command `strainwave`: it assembles the verbs, each a file of this package, and prints what they say or what is wrong."""
+"""The command `strainwave`: it assembles the verbs, each a file of this package, and prints their output or the fault."""
 
 from __future__ import annotations
 
@@ -85,10 +85,10 @@ def _names_columns(words: list[str]) -> bool:
 
 
 def main() -> None:
-    """Runs the command; input that cannot be used ends in one line and exit code 2, with nothing written."""
-    said = StringIO()
+    """Run the command; input that cannot be used ends in one line and exit code 2, with nothing written."""
+    output = StringIO()
     try:
-        with redirect_stdout(said), warnings.catch_warnings():
+        with redirect_stdout(output), warnings.catch_warnings():
             warnings.showwarning = _warn
             code = app(sys.argv[1:] or ["--help"], standalone_mode=False)
     except MISUSED as error:
@@ -102,7 +102,7 @@ def main() -> None:
         _print(f"strainwave: {one_line(with_options(reason, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
         code = REFUSED
     finally:
-        _print(said.getvalue(), sys.stdout)
+        _print(output.getvalue(), sys.stdout)
     sys.exit(code)
 
 
@@ -119,7 +119,7 @@ def _warn(message: Warning | str, *_: object, **__: object) -> None:
 
 
 def _print(text: str, stream: TextIO) -> None:
-    """Prints what a verb has said. It has done its work, which no terminal and no full disk behind a pipe makes a failure."""
+    """Print the output of a verb. Its work is done, so that a missing terminal or a full disk behind a pipe is no failure."""
     if isinstance(stream, TextIOWrapper):
         stream.reconfigure(errors="replace")  # letters that the terminal lacks
     try:

@@ -62,13 +62,14 @@ class FileOptions:
         side: Any = self.side
         channels = {*CHANNELS, *ALIASES}
         columns = pairs("--column", self.column, channels)
-        names = dict.fromkeys(name for file in files for name in file.names) if columns or self.unit else {}
+        names = {name for file in files for name in file.names} if columns or self.unit else set[str]()
         for channel, column in columns.items() if names else ():
             if not any(_has(file, column) for file in files):
+                plain = listed(sorted(name for name in names if " [" not in name))
                 raise ValueError(
-                    f"--column {channel}={unquoted(column)}: no file has a column {quoted(column)}; there are {listed(names)}"
+                    f"--column {channel}={unquoted(column)}: no file has a column {quoted(column)}; there are {plain}"
                 )
-        units = pairs("--unit", self.unit, channels.union(names))
+        units = pairs("--unit", self.unit, channels | names)
         constants = pairs("--constant", self.constant, set(CONSTANTS))
         numbers = {name: constant_of(name, value) for name, value in constants.items()}
         from_file = MappingFile.read(self.mapping) if self.mapping is not None else None

@@ -18,7 +18,7 @@ def packaged(of: str, part: str) -> list[str]:
     """Return the sets that come with the package and have this part in their name.
 
     Raises:
-        ValueError: none has; says what is near
+        ValueError: none has; the message contains similar names
     """
     from difflib import get_close_matches
 

@@ -1,4 +1,4 @@
-"""The verb `plan-experiments` of the command line."""
+"""The command `strainwave plan-experiments`: which measurements to make next."""
 
 from __future__ import annotations
 
@@ -39,10 +39,11 @@ def plan_experiments(
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
     torque_limit: Annotated[str | None, typer.Option(help='At the output, as "50 N.m"; the rating, if not given.')] = None,
 ) -> None:
-    """Tell which measurements to make next, to know chosen numbers best.
+    """Plan which measurements to make next, to know chosen numbers best.
 
-    Speeds of a friction table and torsion loops within the limits of the gear are compared by what they tell in the time they
-    take. The standard deviations before and after are printed, and what would remain unknown, and why.
+    Speeds of a friction table and torsion loops within the limits of the gear are compared by the standard deviations that
+    they reach in the time they take. Printed are the standard deviations before and after, and what would remain
+    unknown, and why.
     """
     from typing import Any
 

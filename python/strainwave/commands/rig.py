@@ -139,7 +139,7 @@ def measure(
 ) -> None:
     """Guide a test step by step, and write each step down as soon as it is done.
 
-    Says which masses to move, waits until the shaft rests, and keeps the photograph. `steps.csv` in the folder of the test
+    Prints which masses to move, waits until the shaft rests, and keeps the photograph. `steps.csv` in the folder of the test
     holds what was done; Ctrl-C, or q, breaks off, and the same command goes on.
     """
     from rich.console import Console
@@ -285,8 +285,8 @@ def influence(
 ) -> None:
     """Put document T's table of influences to a gear, to the catalogue and to measured series.
 
-    Varies torque level, ratio, modulus, friction of the bearing and temperature, says which of the table's entries hold, with a
-    number for each, and tests measured series for trends.
+    Varies torque level, ratio, modulus, friction of the bearing and temperature, prints which of the table's entries hold,
+    with a number for each, and tests measured series for trends.
     """
     from rich.console import Console
 

@@ -22,9 +22,9 @@ def position_control(
 ) -> None:
     """Ask whether average friction suffices for position control.
 
-    Runs step, 1 Hz sine and pulse train of document P with its full and its simplified friction, and strokes of all sizes. Says
-    how far the two are apart, and up to which angle average friction suffices. Document P prints neither its controller nor its
-    measurements, so its Table 4 is not reproduced; report.html says why, and what is assumed.
+    Runs step, 1 Hz sine and pulse train of document P with its full and its simplified friction, and strokes of all sizes.
+    Prints how far the two are apart, and up to which angle average friction suffices. Document P prints neither its
+    controller nor its measurements, so its Table 4 is not reproduced; report.html gives the reason, and the assumptions.
     """
     from rich.console import Console
 
@@ -65,7 +65,7 @@ def misalignment(
 
     Runs the ramp of document A over levels of every misalignment, with the position loop closed on the output and on the motor
     encoder, over ramp times and gains. Confirms or corrects each of document A's claims with a number, and tries what a record
-    of a ramp tells of the misalignment.
+    of a ramp shows of the misalignment.
     """
     from math import radians
 

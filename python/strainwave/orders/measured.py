@@ -70,48 +70,29 @@ def orders_found(
     if side is not None:
         arguments.one_of("side", side, ("input", "output"))
     effort = next((each for each in EFFORTS if each in recording), None)
-    transmission = None
     if "input_angle" in recording and "output_angle" in recording:
-        transmission = transmission_error(_for_two_encoders(recording), ratio=ratio, rate=rate, ratio_option="--ratio")
+        load = next((each for each in ("joint_torque", "current") if each in recording), "")
+        both = [each for each in ("time", "input_angle", "output_angle", load) if each in recording]
+        found = transmission_error(recording.select(both), ratio=ratio, rate=rate, ratio_option="--ratio")
         if effort is None:
-            return OrdersFound(name, transmission, None)
-        in_joint_units = transmission.ratio.in_joint_units
-        size = ratio if in_joint_units else abs(transmission.ratio.used)
+            return OrdersFound(name, found, None)
+        in_joint_units = found.ratio.in_joint_units
         try:
-            found = ripple(
-                recording,
-                effort,
-                angle="input_angle",
-                side="output" if in_joint_units else "input",
-                ratio=size,
-                highest=highest,
-                rate=rate,
-                other_angles=other_angles,
-            )
-            return OrdersFound(name, transmission, found)
+            own = ripple(
+                recording, effort, angle="input_angle", side="output" if in_joint_units else "input",
+                ratio=ratio if in_joint_units else abs(found.ratio.used), highest=highest, rate=rate, other_angles=other_angles,
+            )  # fmt: skip
         except ValueError as error:
-            return OrdersFound(name, transmission, None, (f"ripple in {effort} is not determined: {error}",))
+            return OrdersFound(name, found, None, (f"ripple in {effort} is not determined: {error}",))
+        return OrdersFound(name, found, own)
     if effort is None:
         raise ValueError(
             f"orders need two angles, input_angle and output_angle, or a torque or current beside one angle; there are "
             f"{listed(recording.names)}"
         )
     turning, angle, known, remarks = _turning(recording, side, rate)
-    found = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
-    return OrdersFound(name, None, replace(found, remarks=(*remarks, *found.remarks)))
-
-
-def _for_two_encoders(recording: Recording) -> Recording:
-    """Return the recording with the names that `transmission_error` uses."""
-    names = {"input_angle": "input_angle", "output_angle": "output_angle", "time": "time"}
-    names |= {"joint_torque": "torque"} if "joint_torque" in recording else {}
-    names |= {"current": "current"} if "current" in recording and "joint_torque" not in recording else {}
-    kept = {old: new for old, new in names.items() if old in recording}
-    return Recording(
-        {new: recording[old] for old, new in kept.items()},
-        {new: recording.unit(old) for old, new in kept.items()},
-        recording.title,
-    )
+    lines = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
+    return OrdersFound(name, None, replace(lines, remarks=(*remarks, *lines.remarks)))
 
 
 def _turning(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
@@ -138,7 +119,7 @@ def _turning(recording: Recording, side: Side | None, rate: float | None) -> tup
 
 def _side(name: str, known: Side | None, given: Side | None) -> Side:
     if given is None and known is None:
-        raise ValueError(f"{name} may be that of the motor or that of the joint; say which, with --side input or --side output")
+        raise ValueError(f"{name} may be that of the motor or that of the joint; give --side input or --side output")
     if given is not None and known is not None and given != known:
         raise ValueError(f'side = "{given}" is given, but {name} is that of the {known}')
     return given or known or "output"

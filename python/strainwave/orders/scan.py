@@ -35,7 +35,7 @@ MAX_SPECTRUM_LINES = 2**23  # of a spectrum
 
 @dataclass(frozen=True)
 class Spectrum:
-    """How much of each order, or of each frequency, is in a series.
+    """Evidence and amplitude of each order, or of each frequency, in a series.
 
     Attributes:
         place: order [1], or frequency [cycles per sample], shape (n,)
@@ -54,7 +54,7 @@ class Spectrum:
     floors: float
 
     def false_alarm(self, evidence: Array | float, tested: float) -> Array:
-        """Probability that noise alone gives so much anywhere in so many lines: Bonferroni's bound.
+        """Return the probability that noise alone gives so much anywhere in so many lines: Bonferroni's bound.
 
         The floor is itself estimated, from few lines: tails of F instead of chi-squared.
         """
@@ -65,7 +65,7 @@ class Spectrum:
         return bounded
 
     def evidence_of(self, false_alarm: float, tested: float) -> float:
-        """Evidence that noise alone gives anywhere in so many lines with this probability."""
+        """Return the evidence that noise alone gives anywhere in so many lines with this probability."""
         from scipy.stats import f
 
         return self.parts * float(f.isf(false_alarm / tested, 2 * self.parts, 2.0 * self.floors))
@@ -113,7 +113,7 @@ def order_spectrum_of(weighed: Array, weight: Array, floor: Floor, shaft: Shaft,
 
 
 def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float) -> Spectrum:
-    """The spectrum over time, of the same kind, from the lowest frequency [cycles per sample] to half the sampling rate."""
+    """Return the spectrum over time, from the lowest frequency [cycles per sample] to half the sampling rate."""
     length = _good(LINES_PER_RESOLUTION * len(series))
     place: Array = np.fft.rfftfreq(length).astype(np.float64)
     kept = (place >= lowest) & (place < 0.5)
@@ -126,7 +126,7 @@ def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float) 
 
 
 def _levelled(spectrum: Spectrum) -> Spectrum:
-    """With the median of the lines around each where it belongs: the noise over angle may differ from that over time."""
+    """Return a spectrum with the expected median around each line: noise over an angle may differ from that over time."""
     from scipy.ndimage import median_filter
     from scipy.stats import chi2
 
@@ -148,7 +148,7 @@ def _levelled(spectrum: Spectrum) -> Spectrum:
 
 
 def _information(order: Array, speed: Array, weight: Array, floor: Floor) -> Array:
-    """I(n), from a histogram of the speed."""
+    """Return I(n), from a histogram of the speed."""
     fastest = float(speed.max()) or 1.0
     cells = np.minimum((speed / fastest * SPEED_BINS).astype(int), SPEED_BINS - 1)
     counts = np.bincount(cells, weight**2, SPEED_BINS)
@@ -167,7 +167,7 @@ def _good(length: int) -> int:
 
 
 def spread_of(angle: Array, weight: Array) -> float:
-    """Standard deviation of the angle [rad], samples counted by their weight."""
+    """Return the standard deviation of the angle [rad], samples counted by their weight."""
     share = weight**2 / float(weight @ weight)
     middle = float(share @ angle)
     return float(np.sqrt(share @ (angle - middle) ** 2))

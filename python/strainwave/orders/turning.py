@@ -82,9 +82,9 @@ def beginning(record: Evenly, count: int) -> Evenly:
     """Return the first samples of a long record, with a remark; a shorter record itself."""
     if len(record) <= count:
         return record
-    said = f"the first {count} of {len(record)} samples are used, which is enough for orders"
+    remark = f"the first {count} of {len(record)} samples are used, which is enough for orders"
     columns = {name: values[:count] for name, values in record.columns.items()}
-    return replace(record, columns=columns, measured=record.measured[:count], remarks=(*record.remarks, said))
+    return replace(record, columns=columns, measured=record.measured[:count], remarks=(*record.remarks, remark))
 
 
 def _placed(columns: dict[str, Array], time: Array) -> Evenly:
@@ -156,7 +156,7 @@ def _longest(place: NDArray[np.int_]) -> slice:
 
 
 def unwrapped(name: str, angle: Array) -> Array:
-    """An angle that goes on where a revolution ends [rad], shape (n,); as it is, where it goes on already.
+    """Return an angle that goes on where a revolution ends [rad], shape (n,); one that goes on already, unchanged.
 
     An angle that stays within one revolution, and jumps by more than half of one, is taken to wrap.
 

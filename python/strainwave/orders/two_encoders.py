@@ -34,6 +34,7 @@ OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gr
 MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow one or two periods of any wave
 MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
 MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
+LOADS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
 MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
 
@@ -124,7 +125,7 @@ def transmission_error(
 
     Args:
         recording: with `input_angle` and `output_angle`, of any zero and sense, that may wrap at each revolution; with `time`,
-            if the motion is not slow; and with `torque` or `current` for the wind-up
+            if the motion is not slow; and with `joint_torque`, `torque` or `current` for the wind-up
         ratio: input over output, if it is known; used with all its digits. Its sign is that of the recorded angles, and a
             remark follows if that differs. If both angles are counted in joint units, the input angle is multiplied by it
         orders: of the input to look for [1], shape (n,)
@@ -158,7 +159,7 @@ def transmission_error(
     if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
         raise ValueError("orders must be one series of positive numbers")
     false_alarm = arguments.probability("false_alarm", false_alarm)
-    load = next((name for name in ("torque", "current") if name in recording), None)
+    load = next((name for name in LOADS if name in recording), None)
     pair = _pair(recording, load, rate)
     pair, measured = ratio_of(pair, ratio)
     size = measured.used
@@ -292,7 +293,7 @@ def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) ->
     if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
         return None
     reach = reach_of(len(twist))
-    unit = {"torque": "N.m", "current": "A"}[load]
+    unit = LOADS[load]
     driven = convert(pair.record.columns[load], recording.unit(load), unit)
     speed = pair.speed
     acceleration = smooth_speed(speed, reach)

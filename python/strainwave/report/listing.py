@@ -21,16 +21,16 @@ from strainwave.messages import one_line
 
 Row = Sequence[str]
 MIN_CORRELATION = 0.5  # smaller ones are not listed
-_NONE = 1e-7  # a frequency beside others, or a damping ratio: a double zero is told to the root of the rounding
-_ROUNDING = 1e-12  # of the largest value of a column: what is smaller is rounding
+NO_FREQUENCY = 1e-7  # relative frequency or damping ratio [1] that counts as none: double zeros have the root of the rounding
+ROUNDING = 1e-12  # of the largest value of a column [1]: smaller values are rounding
 
 
 def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> str:
-    """A set as text: what it is, every number, its modes, its ratings, and where runs exceeded them.
+    """Return a set as text: its name, every number, its modes, its ratings, and where runs exceeded them.
 
     Args:
         gear_set: the set
-        runs: recordings to hold against the ratings, by what they are to be called
+        runs: recordings to compare with the ratings, by their names in the text
 
     >>> print(listing(GearSet.read("csg-25-100")).splitlines()[0])
     CSG-25-100, Harmonic Drive
@@ -46,7 +46,7 @@ def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> s
 
 
 def agreement_table(found: Sequence[Agreement]) -> str:
-    """How far columns of two recordings agree, one to a line.
+    """Return how far columns of two recordings agree, one to a line.
 
     >>> print(agreement_table([Agreement("torque", "N.m", rms=0.05, largest=0.1, time=2.0, correlation=0.99, samples=200)]))
             unit   rms  largest  at t [s]  correlation
@@ -60,7 +60,7 @@ def agreement_table(found: Sequence[Agreement]) -> str:
 
 
 def difference_table(found: Sequence[Difference]) -> str:
-    """Where two models differ, one place to a line.
+    """Return the places where two models differ, one to a line.
 
     >>> print(difference_table([Difference("gear.damping", 4.0, 5.0, "N.m.s/rad"), Difference("motor", None, "dc")]))
                     first  second  unit       change
@@ -75,7 +75,7 @@ def difference_table(found: Sequence[Difference]) -> str:
 
 
 def range_table(recording: Recording) -> str:
-    """Between which values each column of a recording lies, one to a line.
+    """Return the range of each column of a recording, one to a line.
 
     >>> print(range_table(Recording({"time": [0.0, 1.0], "torque": [2.0, 0.5]}, {"time": "s", "torque": "N.m"})))
             unit  smallest  largest  at the end
@@ -85,14 +85,14 @@ def range_table(recording: Recording) -> str:
     for name in recording.names:
         if name != "time":
             values = recording[name]
-            noise = _ROUNDING * np.abs(values).max()
+            noise = ROUNDING * np.abs(values).max()
             shown = (f"{0.0 if abs(each) < noise else each:.5g}" for each in (values.min(), values.max(), values[-1]))
             rows.append((name, recording.unit(name), *shown))
     return "\n".join(aligned(rows, "<<>>>"))
 
 
 def aligned(rows: Sequence[Row], sides: str) -> Iterator[str]:
-    """Rows as lines, each column as wide as its longest cell, set to the left (<) or to the right (>).
+    """Yield rows as lines, each column as wide as its longest cell, set to the left (<) or to the right (>).
 
     >>> print(*aligned([("torque", "2"), ("mass", "10")], "<>"), sep="\\n")
     torque   2
@@ -105,7 +105,7 @@ def aligned(rows: Sequence[Row], sides: str) -> Iterator[str]:
 
 
 def _printable(text: str) -> str:
-    """A text of a file as a terminal may have it: it must obey nothing in it."""
+    """Return a text of a file without control characters, which a terminal would obey."""
     return "".join(each if each.isprintable() else " " for each in text)
 
 
@@ -114,7 +114,7 @@ def _indented(lines: Iterator[str]) -> Iterator[str]:
 
 
 def _numbers(gear_set: GearSet, path: str, model: object) -> Iterator[str]:
-    """The numbers of a part, then those of the parts in it; of a part that does nothing it is said that it is not given."""
+    """Yield the numbers of a part, then those of the parts in it; a part that does nothing is listed as not given."""
     name = model.name  # type: ignore[attr-defined]
     if path in gear_set.left_out:
         yield f"[{path}] not given"
@@ -165,35 +165,35 @@ def _validation(gear_set: GearSet) -> Iterator[str]:
 
 
 def _vibration(gear_set: GearSet) -> Iterator[str]:
-    """The modes of a whole drive."""
+    """Yield the modes of a whole drive."""
     if gear_set.motor is None or gear_set.load is None:
         return
     yield from ("", "modes")
     try:
         rows = [(f"{name}, undamped", _frequencies(found.tolist()), "") for name, found in modes(gear_set.drive).items()]
     except ValueError as error:
-        yield f"  not told: {error}"
+        yield f"  not determined: {error}"
         return
     yield from _indented(aligned([*rows, _closed_loop(gear_set.drive)], "<<<"))
 
 
 def _closed_loop(drive: Drive) -> Row:
-    """How the drive vibrates about its rest, as its controller, its friction and its damping have it."""
+    """Return how the drive vibrates about its rest, with its controller, friction and damping."""
     name = "at rest, under its controller"
     try:
         linear, taken = _linear(drive)
     except ValueError as error:
-        return name, f"not told: {error}", ""
+        return name, f"not determined: {error}", ""
     stuck = " and ".join(side for side in ("input", "output") if f"{side}_speed" not in linear.states)
     fastest = max((abs(pole) for pole in linear.poles.tolist()), default=0.0)
-    pairs = [pole for pole in linear.poles.tolist() if pole.imag > _NONE * fastest]
+    pairs = [pole for pole in linear.poles.tolist() if pole.imag > NO_FREQUENCY * fastest]
     damping = ", ".join(f"{_rounded(-pole.real / abs(pole)):.3g}" for pole in pairs)
     remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck), *taken)
     return name, _frequencies([abs(pole) for pole in pairs]), "; ".join(filter(None, remarks))
 
 
 def _linear(drive: Drive) -> tuple[Linearisation, list[str]]:
-    """The drive about its rest, without what has no linear model; and in words what was taken to be otherwise."""
+    """Return the drive about its rest, without parts that have no linear model, and the assumptions made for it in words."""
     default, law, taken = Drive(), getattr(drive.control, "law", None), []
     plain = drive.replace(control=law or drive.control, thermal=default.thermal, meter=default.meter)
     if law:
@@ -205,7 +205,7 @@ def _linear(drive: Drive) -> tuple[Linearisation, list[str]]:
 
 
 def _rounded(ratio: float) -> float:
-    return 0.0 if abs(ratio) < _NONE else ratio
+    return 0.0 if abs(ratio) < NO_FREQUENCY else ratio
 
 
 def _frequencies(rates: Sequence[float]) -> str:

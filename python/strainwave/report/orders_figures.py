@@ -16,6 +16,7 @@ from strainwave.report.figures import LIGHT, WIDTH
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+TURN_BINS = 60  # of a revolution, over which samples are averaged
 TIME_BLOCKS = 40  # of time, in the map
 ORDER_CELLS = 90  # of the order, in the map
 SHADE_LIMITS = (0.25, 0.45, 0.7, 1.0)  # of a cell, over the largest amplitude
@@ -108,23 +109,16 @@ def turn_figure(error: TransmissionError, name: str) -> str:
     """Return the figure of the kinematic error over a revolution of the input, with the residual of the samples."""
     law = error.law
     turn = np.linspace(0.0, 1.0, 400)
-    found = sum(
-        (a * np.sin(n * tau * turn + p) for n, a, p in zip(law.order, law.amplitude, law.phase, strict=True)),
-        np.zeros_like(turn),
-    )
-    curves = error.curves
-    place = (curves["input_angle"] / tau) % 1.0
-    at = curves["input_angle"]
-    each = sum((a * np.sin(n * at + p) for n, a, p in zip(law.order, law.amplitude, law.phase, strict=True)), np.zeros_like(at))
-    bins = np.minimum((place * 60).astype(int), 59)
-    counts = np.bincount(bins, minlength=60)
-    measured = np.bincount(bins, each + curves["residual"], 60)[counts > 0] / counts[counts > 0]
-    middle = ((np.arange(60) + 0.5) / 60)[counts > 0]
+    angle, residual = error.curves["input_angle"], error.curves["residual"]
+    bins = ((angle / tau) % 1.0 * TURN_BINS).astype(int) % TURN_BINS
+    counts = np.bincount(bins, minlength=TURN_BINS)
+    measured = np.bincount(bins, law.error(angle) + residual, TURN_BINS)[counts > 0] / counts[counts > 0]
+    middle = ((np.arange(TURN_BINS) + 0.5) / TURN_BINS)[counts > 0]
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
         axes.plot(middle, measured, "o", color=LIGHT["measured"], markersize=2.8, label="mean of the samples")
-        axes.plot(turn, found, color=LIGHT["model"], label="significant orders")
+        axes.plot(turn, law.error(tau * turn), color=LIGHT["model"], label="significant orders")
         figures.label_axes(axes, "kinematic error", "rad", "revolution of the input", "1")
         figures.legend(figure, axes)
 

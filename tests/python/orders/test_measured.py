@@ -66,7 +66,7 @@ def test_what_is_missing_is_named() -> None:
     t = np.arange(100.0)
     with pytest.raises(ValueError, match="torque or current beside one angle; there are time, output_angle"):
         orders_found(sw.Recording({"time": t, "output_angle": t}, {"time": "s", "output_angle": "rad"}))
-    with pytest.raises(ValueError, match="say which, with --side input or --side output"):
+    with pytest.raises(ValueError, match="give --side input or --side output"):
         orders_found(sw.Recording({"angle": t, "torque": np.sin(t)}, {"angle": "rad", "torque": "N.m"}))
     with pytest.raises(ValueError, match="only over time; give the samples per second with --rate"):
         orders_found(sw.Recording({"input_speed": t, "torque": np.sin(t)}, {"input_speed": "rad/s", "torque": "N.m"}))

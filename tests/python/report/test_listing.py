@@ -81,7 +81,7 @@ def test_damping_of_the_gear_shows_in_the_damping_ratio() -> None:
 
 def test_a_drive_without_modes_says_why_and_a_gear_has_none() -> None:
     moved = sw.GearSet.of(DRIVE.replace(load=sw.loads.Prescribed()), name="x", source="y")
-    assert "\nmodes\n  not told: " in listing(moved)
+    assert "\nmodes\n  not determined: " in listing(moved)
     assert "modes" not in listing(sw.GearSet.of(GEAR, name="x", source="y"))
 
 

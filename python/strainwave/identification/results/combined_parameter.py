@@ -98,8 +98,8 @@ def mean_of(estimates: Sequence[FileEstimate]) -> tuple[FileEstimate, float]:
     """Return the weighted mean of the estimates of several files, the best first, and the factor of its standard deviation.
 
     It is the linear mean of least variance (Aitken1935): what is uncertain of the torque constant is common to all files that
-    rest on it, and does not become smaller with their number. No file counts less than nothing. Where files scatter more than
-    their standard deviations say, that of the mean is larger by the root of chi squared over its degrees of freedom
+    rest on it, and does not become smaller with their number. No file counts less than nothing. If files scatter more than
+    their standard deviations, that of the mean is larger by the root of chi squared over its degrees of freedom
     (Birge1932).
 
     >>> one, other = (FileEstimate("load.inertia", "kg.m2", value, 0.05, "", common=0.04) for value in (1.0, 1.03))

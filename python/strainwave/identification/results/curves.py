@@ -1,4 +1,4 @@
-"""What was measured in a file beside what its model says, with the uncertainty of both, to be drawn."""
+"""Curves to be drawn: a measurement, the prediction of its model, and the uncertainty of both."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ Array = NDArray[np.float64]
 
 
 def curves_of(fit: Fit, part: Part | None = None) -> Recording:
-    """What a model says of one measurement.
+    """Return a measurement and the prediction of its model.
 
     Args:
         fit: the model fitted
         part: the measurement, one of `fit.parts`; the first if not given
 
     Returns:
-        what it is drawn over (speed, twist or time); the first channel, under its name; `modelled`, what the model predicts;
-        `held_out`, 1 where a sample took no part in the fit; and `sigma`, the standard deviation of `modelled` by that of the
-        numbers fitted, where the data determine all of them
+        speed, twist or time; the first channel, under its name; `modelled`, the prediction; `held_out`, 1 where a sample took
+        no part in the fit; and `sigma`, the standard deviation of `modelled` by that of the estimates, if the data determine
+        all of them
 
-    The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of what
-    is predicted and C the covariance of the estimates (JCGM 100:2008, eq. 13).
+    The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of the
+    prediction and C the covariance of the estimates (JCGM 100:2008, eq. 13).
     """
     part = fit.parts[0] if part is None else part
     experiment, channel = part.experiment, part.experiment.channels[0]
@@ -48,11 +48,11 @@ def curves_of(fit: Fit, part: Part | None = None) -> Recording:
 
 
 def curves_of_orders(found: TransmissionError) -> Recording:
-    """What the orders of the input say of the transmission error.
+    """Return the transmission error and its significant orders.
 
     Returns:
-        time, or the input angle where there is no time; `transmission_error`; `modelled`, its significant orders; `residual`,
-        what neither orders nor loads explain; and `sigma`, the standard deviation of `modelled` by amplitudes and phases of the
+        time, or the input angle if there is no time; `transmission_error`; `modelled`, its significant orders; `residual`,
+        left by orders and loads; and `sigma`, the standard deviation of `modelled` by amplitudes and phases of the
         input's orders, taken as independent
     """
     curves = found.curves
@@ -71,7 +71,7 @@ def curves_of_orders(found: TransmissionError) -> Recording:
 
 
 def curves_of_shafts(fit: Fit) -> Recording:
-    """What a model says of the angle between the shafts in a log along the motion of its input, whose output is compared.
+    """Return the angle between the shafts in a log and its prediction along the motion of the input.
 
     Returns:
         time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`
@@ -111,7 +111,7 @@ def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:
 
 
 def _sigma(fit: Fit, part: Part) -> Array:
-    """Standard deviation of what is predicted for the first channel, shape (n,)."""
+    """Return the standard deviation of the prediction of the first channel, shape (n,)."""
     zeros = [each.name for each in part.experiment.nuisances]
     own: dict[str, int] = {}
     for place, estimate in enumerate(fit.estimates):

@@ -32,7 +32,7 @@ class FileEstimate:
         law: the law that it belongs to; parameters of different laws are not compared
         why: the reason why the file does not determine it; empty if it does
         common: the part of `sigma` that files share: of the torque constant, and of the inertia of the rotor
-        in_combination: True if the file determines it only together with another parameter, as `why` says
+        in_combination: True if the file determines it only together with another parameter, see `why`
         shift_by_kept: relative change by one standard deviation of each kept parameter that matters, by its path [1]
     """
 
@@ -124,7 +124,7 @@ class FileResult(ComparedByFields):
         checks: consistency checks of the file
         refused: why the file cannot be used; empty if it can
         same_as: the file that contains the same measurement; empty if none does
-        what: what the file is, if its kind does not say it
+        what: the file in words, if not the title of its kind
         part_of: the table that it is a point of, together with others; empty if it stands by itself
         pictures: measured against modelled
         held_out: error on data that took no part in the fit; None if nothing was held out

@@ -16,7 +16,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.parameters import gear_numbers
 
-ROTOR = 0.05  # relative standard deviation of an inertia of which a data sheet says none (assumed)
+ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
 
 
@@ -92,9 +92,9 @@ class GearSoFar:
         sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
         for path in (path for path in gear_numbers(gear) if is_of(path, parts)):
-            told = path in sigmas and np.isfinite(sigmas[path])
-            sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
-            determined_by |= {path: name} if told else {}
+            known = path in sigmas and np.isfinite(sigmas[path])
+            sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if known else None)
+            determined_by |= {path: name} if known else {}
         gear_set = replace(self.gear_set, gear=gear, sources=sources)
         return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
 
@@ -140,7 +140,7 @@ class GearSoFar:
             if path.startswith("gear.friction_input.") and path not in sigmas:
                 old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
-                sources[path] = before[old] if kept else Entry(source=f"assumed beside what {name} tells")
+                sources[path] = before[old] if kept else Entry(source=f"assumed beside the parameters that {name} determines")
                 determined_by |= {path: self.determined_by[old]} if kept and old in self.determined_by else {}
         return replace(after, gear_set=replace(after.gear_set, sources=sources), determined_by=determined_by)
 
@@ -166,8 +166,8 @@ def plain(path: str) -> str:
 def source_of(estimate: FileEstimate, name: str) -> Entry:
     """Return the source of an estimated number."""
     words = {"identified": "identified from {name}", "identified in combination": "identified in combination: {why}"}
-    said = words.get(estimate.state, "fitted but not identified: {why}").format(name=name, why=estimate.why)
-    return Entry(source=said, uncertainty=estimate.sigma if np.isfinite(estimate.sigma) else None)
+    source = words.get(estimate.state, "fitted but not identified: {why}").format(name=name, why=estimate.why)
+    return Entry(source=source, uncertainty=estimate.sigma if np.isfinite(estimate.sigma) else None)
 
 
 def _first_sigma(part: str, estimates: Sequence[FileEstimate]) -> float:
@@ -215,7 +215,7 @@ def _sigma(gear_set: GearSet, path: str, value: float) -> float:
     entry = gear_set.sources.get(path, Entry("not given"))
     if entry.uncertainty is not None:
         return entry.uncertainty
-    return value * (ROTOR if entry.spread is None else entry.spread)
+    return value * (ROTOR_SIGMA if entry.spread is None else entry.spread)
 
 
 def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
