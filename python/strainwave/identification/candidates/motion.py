@@ -172,9 +172,13 @@ class MotionCandidate(ComparedByFields):
         """Root mean square of the residuals of all stretches in the pass band."""
         return float(np.sqrt(np.mean(np.concatenate([each.in_band for each in self.folds]) ** 2)))
 
+    def predicts_no_worse_than(self, other: MotionCandidate) -> bool:
+        """True if its errors on all stretches and on the last one are no larger, but for chance."""
+        return MAX_ERROR * self.error < other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+
     def explains_more_than(self, other: MotionCandidate) -> bool:
         """True if it predicts sliding in the pass band clearly better, and the full band and the last stretch no worse."""
-        no_worse = MAX_ERROR * self.error < other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+        no_worse = self.predicts_no_worse_than(other)
         return no_worse and self.error_in_band < MAX_RELATIVE_ERROR * other.error_in_band
 
     def is_better_than(self, other: MotionCandidate) -> bool:
@@ -305,7 +309,7 @@ class _Search:
         return best
 
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
-        """Return the best model; if plain least squares predicts better, with bristles, or fitted in the full band."""
+        """Return the best model; if plain least squares predicts better, the best of those tried that is no worse than it."""
         log = best.log
         left = held_out_residuals(log, self.drive, self.held_out)
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
@@ -314,8 +318,8 @@ class _Search:
         bristled, limit = _with_bristles(best), MAX_RELATIVE_ERROR * best.errors[-1]
         if bristled is not None and bristled.error < best.error and bristled.errors[-1] < limit:  # no estimate moves
             return bristled
-        simple = self.tried(model)
-        return simple if simple is not None and simple.errors[-1] < limit else best
+        self.tried(model)
+        return min((each for each in self.every if each.errors[-1] < limit), key=lambda each: each.error, default=best)
 
 
 def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:

@@ -21,6 +21,7 @@ from strainwave.identification.checks.logs import held_out_error, ratio_of_encod
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
+from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import Between, between_encoders
@@ -60,10 +61,15 @@ def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
 def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
-    log = taken.log
-    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
-    variants = [log] if in_current else bands(log, drive)
-    best, *others = fit_motion(variants, drive, priors=priors)
+    best, *others = _fitted(taken, taken.log)
+    terms = tuple[str, ...]()
+    for each in taken.with_others:
+        more = _fitted(taken, each.log)
+        if more[0].predicts_no_worse_than(best) and more[0].error_in_band < best.error_in_band:
+            (best, *others), terms = more, each.terms
+    if file.neighbours and not file.regressors:
+        remarks.append(_other_joints(list(file.neighbours), terms))
+    log = best.log
     held_out, predicted = refit(best, drive)
     told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name))
     if not in_current:
@@ -94,6 +100,21 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         ),
         known,
     )  # fmt: skip
+
+
+def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
+    """Return the models of a log, best first."""
+    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
+    return fit_motion([log] if taken.in_current else bands(log, taken.drive), taken.drive, priors=priors)
+
+
+def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
+    """Return the sentence about the terms of other joints that move."""
+    which = f"joints {listed(names)} move too: "
+    if not terms:
+        return f"{which}none of their terms makes the model predict better; if they load it, record longer"
+    own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
+    return f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
 
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
