@@ -31,14 +31,22 @@ from strainwave.identification.candidates.motion_model import (
     with_loss_under_load,
     without,
 )
-from strainwave.identification.candidates.plain import Plain, fit_plain, held_out_residuals, moving, stretches
+from strainwave.identification.candidates.plain import (
+    MAX_DELAY_SAMPLES,
+    Plain,
+    best_delay,
+    fit_plain,
+    held_out_residuals,
+    moving,
+    stretches,
+)
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
 from strainwave.identification.fitting.fit import Fit, fit, problem_of, solved_problem
 from strainwave.identification.fitting.loss import LOSSES as COSTS
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -54,10 +62,10 @@ MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out res
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
-MAX_DELAY_SAMPLES = 5.0  # of the log
 SQUARED = COSTS["linear"]
 NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
+MAX_REFITS = 6  # models that are fitted to all but the last stretch if the best one is not confirmed
 MAX_STEPS = 8  # of a fit while models are compared
 SHAPES = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
 MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
@@ -183,12 +191,20 @@ class MotionCandidate(ComparedByFields):
 
     def is_better_than(self, other: MotionCandidate) -> bool:
         """True if it predicts better by more than chance makes, all over the motion, and the last stretch no worse."""
+        is_sure = self.gain_over(other) > MIN_GAIN_SIGMA
+        return is_sure and self.error < MAX_ERROR * other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+
+    def gain_over(self, other: MotionCandidate) -> float:
+        """Return by how many standard deviations the squares of the residuals are smaller than those of another model."""
         gains = np.array([block.sum() for pair in zip(other.residuals, self.residuals, strict=True) for block in _gain(*pair)])
         limit = MAX_GAIN * float(np.quantile(np.abs(gains), 0.75))  # so that a single event, as a jolt, decides nothing
         gains = np.clip(gains, -limit, limit)
         spread = float(np.std(gains, ddof=1)) * np.sqrt(len(gains))
-        is_sure = float(gains.sum()) > MIN_GAIN_SIGMA * spread
-        return is_sure and self.error < MAX_ERROR * other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+        return float(gains.sum()) / spread if spread > 0.0 else 0.0
+
+    def predicts_as_well_as(self, other: MotionCandidate) -> bool:
+        """True if its error in the pass band is no larger, but for chance: what bends at reversals is compared nowhere else."""
+        return MAX_RELATIVE_ERROR * self.error_in_band < other.error_in_band
 
     def is_clearer_than(self, other: MotionCandidate) -> bool:
         """True if it explains more of its own, narrower band, and predicts no worse."""
@@ -234,14 +250,31 @@ def fit_motion(
     logs = [each for each in logs if len(each.motion.rows) >= MIN_SLIDING] or [logs[0].in_full_band()]
     simple = _simple(logs[0], drive, inertia)
     best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
+    delay = best_delay(logs[0], drive)
+    late = [search.tried(each) for each in _delayed(best.model, delay)] if delay else []
+    best = _completed(search, best)
+    if found := [each for each in late if each is not None]:
+        other = _completed(search, min(found, key=lambda each: each.error_in_band))
+        best = other if other.explains_more_than(best) else best
+    best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
+    return best, *sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
+
+
+def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
+    """Return a model with a delay from where it starts, and with each other part beside it, as each may hide the other."""
+    late = with_delay(model, delay)
+    return [late] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
+
+
+def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
+    """Return the model without the parts that the record does not show, and with those that make it predict better."""
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
-    best = search.grown(best, [with_delay, with_curved_viscous_part, with_another_friction_at_low_speed, with_loss_under_load])
+    best = search.grown(best, list(PARTS))
     for more in (_with_bristles, _with_ripple):
         added = more(best)
         best = added if added is not None and added.is_better_than(best) else best
-    best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
-    return best, *sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
+    return best
 
 
 def _check_compared(log: MotionLog, held_out: Sequence[Rows]) -> None:
@@ -267,13 +300,15 @@ class _Search:
         self.every, self.failures = list[MotionCandidate](), list[str]()
 
     def tried(self, model: MotionModel | None) -> MotionCandidate | None:
-        """Return a model fitted to the log; None if it goes beyond what its laws allow."""
+        """Return a model fitted to the log; None if it goes beyond what its laws, a clock or the motion allow."""
         if model is None:
             return None
         try:
             found = _candidate(model, self.held_out, self.priors)
         except (ValueError, FloatingPointError) as error:
             self.failures.append(str(error))
+            return None
+        if not _is_sensible(found):
             return None
         self.every.append(found)
         return found
@@ -299,7 +334,7 @@ class _Search:
         """Return the model with those parts that explain more, the one that explains most first."""
         while parts:
             tried = {part: self.tried(part(best.model)) for part in parts}
-            found = {part: each for part, each in tried.items() if each is not None and _is_sensible(each)}
+            found = {part: each for part, each in tried.items() if each is not None}
             chosen = min(found, key=lambda part: found[part].error_in_band, default=None)
             if chosen is None or not found[chosen].explains_more_than(best):
                 break
@@ -372,6 +407,7 @@ def _without_viscous(best: MotionCandidate) -> MotionModel | None:
 # ---- Parts that may be added -------------------------------------------------------------------------------------------
 
 Part = Callable[[MotionModel], MotionModel | None]
+PARTS: tuple[Part, ...] = (with_delay, with_curved_viscous_part, with_another_friction_at_low_speed, with_loss_under_load)
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:
@@ -458,11 +494,34 @@ def _candidate(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str
     return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended.log, held_out)))
 
 
-def refit(best: MotionCandidate, drive: Drive) -> tuple[HeldOut, Recording]:
+def confirmed(
+    best: MotionCandidate, others: Sequence[MotionCandidate], drive: Drive
+) -> tuple[MotionCandidate, HeldOut, Recording]:
+    """Return the best model that predicts the last 30 % of the motion no worse than plain least squares and than their mean.
+
+    Models were compared by one step of Gauss and Newton, which may hide numbers that the rest of the motion does not determine.
+
+    Returns:
+        the model, of all tried the one with the smallest error if none is as good; its error and that of plain least squares,
+        with the terms of other joints or without, whichever is smaller; and its prediction, as `refit`
+    """
+    last, tried = best.folds[-1].stretch, []
+    logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
+    plain = min(float(np.sqrt(np.mean(held_out_residuals(log, drive, [last])[0] ** 2))) for log in logs)
+    for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
+        held_out, predicted = refit(each)
+        held_out = replace(held_out, plain=plain)
+        tried.append((each, held_out, predicted))
+        if held_out.share_of_plain < MAX_SHARE_OF_PLAIN and held_out.relative < 1.0:
+            return tried[-1]
+    return min(tried, key=lambda found: found[1].error)
+
+
+def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
     """Return the error on the last 30 % of the motion of the model fitted to what comes before, and its prediction of all.
 
     Returns:
-        the error, beside that of plain least squares; and time, effort, `modelled` and `held_out` (1 in the stretch), as
+        the error; and time, effort, `modelled` and `held_out` (1 in the stretch), as
         they are drawn, from the first motion to the last
     """
     log, last = best.log, best.folds[-1].stretch
@@ -470,14 +529,13 @@ def refit(best: MotionCandidate, drive: Drive) -> tuple[HeldOut, Recording]:
     residual = best.left(found.model, nuisances_of(found), ~last)
     left, rows = residual[last], moving(log)
     before = float(np.mean(log.recorded[rows & ~last]))
-    (plain,) = held_out_residuals(log, drive, [last])
     (part,) = found.parts
     spread = float(np.std(log.measured[0, ~part.training])) if not part.training.all() else 0.0
     in_band = float(part.rms(held_out=True)[0]) / spread if spread > 0.0 else np.nan
     held_out = HeldOut(
         "last 30 % of the motion", log.effort, log.units[0],
         float(np.sqrt(np.mean(left**2))), float(np.sqrt(np.mean((log.recorded[last] - before) ** 2))),
-        float(np.sqrt(np.mean(plain**2))), int(last.sum()), in_band,
+        samples=int(last.sum()), in_band=in_band,
     )  # fmt: skip
     columns = {
         "time": log.motion.time,
@@ -504,17 +562,27 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
 
 
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
-    """Return how far numbers lie apart in models that predict as well, by path: the choice of a model is part of it."""
+    """Return how far numbers lie apart in models of the same law that predict as well, by path: the choice of a model is part
+    of their uncertainty. A number of another law of friction has another meaning."""
     values = dict(zip(best.model.free, best.values, strict=True))
     found = dict.fromkeys(values, 0.0)
     for other in others:
-        if MAX_RELATIVE_ERROR * max(other.error / best.error, other.error_in_band / best.error_in_band) < 1.0:
+        if other.predicts_as_well_as(best) and type(other.model.law) is type(best.model.law):
             for path, value in zip(other.model.free, other.values, strict=True):
                 if path in found:
                     off = abs(value - values[path])
                     turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if path.endswith("_phase") else off
                     found[path] = max(found[path], float(turned))
     return found
+
+
+def other_laws(best: MotionCandidate, others: Sequence[MotionCandidate]) -> list[MotionCandidate]:
+    """Return the models with another law of friction that predict as well, the best of each law."""
+    laws = {type(best.model.law): best}
+    for other in sorted(others, key=lambda each: each.error_in_band):
+        if other.predicts_as_well_as(best):
+            laws.setdefault(type(other.model.law), other)
+    return list(laws.values())[1:]
 
 
 def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:

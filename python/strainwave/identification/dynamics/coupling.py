@@ -39,21 +39,8 @@ MIN_INDEPENDENT_WAVE = 0.02  # of the size of a sine or cosine of gravity, that 
 TERMS_AT_ONCE = 64  # that are filtered
 
 
-@dataclass(frozen=True)
-class Coupled:
-    """A log with terms of other joints.
-
-    Attributes:
-        log: with the terms as regressors
-        terms: their names
-    """
-
-    log: MotionLog
-    terms: tuple[str, ...]
-
-
-def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Array], joint: str = "") -> Iterator[Coupled]:
-    """Yield a log with what its torque shows of the terms of other joints: of gravity alone, and with those of the energy.
+def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Array], joint: str = "") -> Iterator[MotionLog]:
+    """Yield a log with terms of other joints as regressors: those of gravity alone, and with those of the energy.
 
     The last 30 % of the motion, which judge the models, take no part.
 
@@ -73,7 +60,7 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     gravity = _gravity(arm, own, torque[known], base[known][:, PLAIN_BASE], known)
     if gravity:
         with_gravity = _with_regressors(log, gravity)
-        yield Coupled(with_gravity, tuple(gravity))
+        yield with_gravity
         base = np.column_stack([base, own.filtered(np.stack(list(gravity.values()))).T])
         log = with_gravity
     yield from _with_energy(log, arm, torque, base, known)
@@ -101,7 +88,7 @@ def _gravity(arm: _Arm, own: Motion, torque: Array, base: Array, known: Rows) ->
     return {name: values for place, (name, values) in enumerate(waves.items()) if place in kept}
 
 
-def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: Rows) -> Iterator[Coupled]:
+def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: Rows) -> Iterator[MotionLog]:
     """Yield the log with terms of the kinetic energy, chosen beside a loss under load, which they can imitate, and without."""
     own, terms = log.motion, list(arm.terms())
     columns = _columns(own, arm, terms)
@@ -112,7 +99,7 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
     for places in dict.fromkeys(tuple(Selection(torque, each, plain, even, odd).best(columns)) for each in (lossy, base)):
         selected = {terms[place].name: terms[place].torque(arm) for place in places}
         if selected:
-            yield Coupled(_with_regressors(log, selected), tuple(log.regressors) + tuple(selected))
+            yield _with_regressors(log, selected)
 
 
 def _loss(torque: Array, base: Array, known: Rows) -> Array:

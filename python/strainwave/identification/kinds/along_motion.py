@@ -11,8 +11,9 @@ import numpy as np
 from strainwave.identification.candidates.motion import (
     MotionCandidate,
     bands,
+    confirmed,
     fit_motion,
-    refit,
+    other_laws,
     spread_by_blocks,
     spread_by_models,
 )
@@ -62,15 +63,14 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     best, *others = _fitted(taken, taken.log)
-    terms = tuple[str, ...]()
     for each in taken.with_others:
-        more = _fitted(taken, each.log)
-        if more[0].predicts_no_worse_than(best) and more[0].error_in_band < best.error_in_band:
-            (best, *others), terms = more, each.terms
-    if file.neighbours and not file.regressors:
-        remarks.append(_other_joints(list(file.neighbours), terms))
+        more, *rest = _fitted(taken, each)
+        takes_over = more.predicts_no_worse_than(best) and more.error_in_band < best.error_in_band
+        best, others = (more, [best, *others, *rest]) if takes_over else (best, [*others, more, *rest])
+    best, held_out, predicted = confirmed(best, others, drive)
     log = best.log
-    held_out, predicted = refit(best, drive)
+    if file.neighbours and not file.regressors:
+        remarks.append(_other_joints(list(file.neighbours), list(log.regressors)))
     told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
@@ -83,7 +83,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(between.known(known, file.path.name), errors, file.path.name)
-    remarks += _shares(best.fit, file.regressors)
+    remarks = [*_delay(best), *_other_laws(best, others, in_current), *remarks, *_shares(best.fit, file.regressors)]
     every = (*file.remarks, *remarks)
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
@@ -115,6 +115,23 @@ def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
         return f"{which}none of their terms makes the model predict better; if they load it, record longer"
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
     return f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
+
+
+def _delay(best: MotionCandidate) -> Iterator[str]:
+    """Yield the sentence about a delay that was fitted."""
+    for nuisance in best.fit.estimates:
+        if nuisance.path == "delay":
+            yield f"{best.log.effort} comes {1e3 * nuisance.value:.3g} ± {1e3 * nuisance.sigma:.2g} ms behind the motion"
+
+
+def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:
+    """Yield a sentence for each law of friction that predicts as well: numbers of friction belong to their law."""
+    for other in other_laws(best, others):
+        law, unit = other.model.law, "A" if in_current else "N·m"
+        yield (
+            f"another law of friction, {type(law).__name__}, predicts as well, with a Coulomb torque of {law.coulomb:.3g} "
+            f"{unit}: the record determines friction at the speeds measured, and numbers belong to their law"
+        )
 
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:

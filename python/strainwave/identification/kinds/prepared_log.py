@@ -13,7 +13,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
-from strainwave.identification.dynamics.coupling import Coupled, coupled
+from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, rotor_sigma
@@ -40,7 +40,7 @@ class PreparedLog(ComparedByFields):
     """
 
     log: MotionLog
-    with_others: tuple[Coupled, ...]
+    with_others: tuple[MotionLog, ...]
     drive: Drive
     recording: Recording
     remarks: tuple[str, ...]
@@ -78,7 +78,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"
     ] * is_of_speed
     others = {name: file.recording[at] for name, at in file.neighbours.items()}
-    with_others = tuple(coupled(log, drive, recording.time, others, file.joint)) if others and not file.regressors else ()
+    joint = file.joint or next(column for name, column in file.columns.items() if name.endswith("_angle"))
+    with_others = tuple(coupled(log, drive, recording.time, others, joint)) if others and not file.regressors else ()
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         share = 100.0 * spoilt_rows / len(recording)
