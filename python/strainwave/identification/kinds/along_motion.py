@@ -8,15 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.identification.candidates.motion import (
-    MotionCandidate,
-    bands,
-    confirmed,
-    fit_motion,
-    other_laws,
-    spread_by_blocks,
-    spread_by_models,
-)
+from strainwave.identification.candidates.confirmed import confirmed, other_laws, spread_by_blocks, spread_by_models
+from strainwave.identification.candidates.motion import bands, fit_motion
+from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
 from strainwave.identification.checks.motion import checks_of_motion

@@ -13,7 +13,7 @@ from strainwave import Drive, stiffness, structure
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
-from strainwave.identification.candidates.motion import MotionCandidate
+from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate

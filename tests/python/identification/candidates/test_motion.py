@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.candidates.motion import bands, fit_motion, refit
+from strainwave.identification.candidates.confirmed import refit
+from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_model import LOSSES
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
