@@ -190,7 +190,7 @@ class _Fits:
     def fit_all(self, files: Sequence[Recognised]) -> None:
         """Fit each file in the turn of its kind, and what files of a kind determine together."""
         kinds = [kind_named(name) for name in KINDS]
-        own = {file.path: next(kind for kind in kinds if kind.takes(file, self.known)) for file in files}
+        own = {file.path: next(kind for kind in kinds if kind.takes(file, self.known, files)) for file in files}
         turns = {file.path: own[file.path].turn(file, {kind.name for kind in own.values()}) for file in files}
         for kind in kinds:
             mine = [file for file in files if turns[file.path][0] == kind.name]
