@@ -224,3 +224,15 @@ def test_the_torque_that_a_model_of_the_arm_gives_is_taken_where_it_is_named(tmp
     found = recognise(path, FileMapping(columns={"rigid_torque": "model"}))
     assert found.columns == {"time": "t", "output_angle": "q", "joint_torque": "tau", "rigid_torque": "model"}
     assert found.recording["rigid_torque"] == pytest.approx(2.0 * SWING)
+
+
+def test_a_joint_that_sticks_and_slips_under_a_wave_of_torque_is_a_log(tmp_path: Path) -> None:
+    """Half of the time it rests under torques that rise and fall, which no ramp until it breaks away does."""
+    time = np.arange(0.0, 60.0, 0.01)
+    torque = 4.0 * np.sin(0.6 * time)
+    slides = np.abs(torque) > 3.2
+    angle = np.cumsum(np.where(slides, 0.05 * np.sign(torque), 0.0)) * 0.01
+    rows = np.column_stack([time, angle, torque])
+    path = tmp_path / "knee.csv"
+    np.savetxt(path, rows, delimiter=",", header="time [s],joint_angle [rad],joint_torque [N.m]", comments="")
+    assert recognise(path).kind == "log"
