@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
+from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -37,6 +38,7 @@ MAX_TWIST = 0.3  # rad of a gear at the output
 MAX_REFLECTED = 0.1  # relative difference of a motion of the input from that of the output, if it is divided by the ratio
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
+SPEEDS = ("rad/s", "rpm", "rev/s")  # in which tables of friction have their speeds
 MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 
 
@@ -144,6 +146,7 @@ def _over_speed(speed: Array) -> str:
 
 def friction_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     speed = _needed(columns, "speed", "friction")
+    _check_speed_unit(speed)
     columns, load, loaded = _with_load(columns, speed)
     effort, torque = _needed_effort(columns, "friction")
     side, why_side = side_of_table(speed, torque, mapping.side)
@@ -157,6 +160,21 @@ def friction_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRol
         found, order = averaged(found, parts), " at one speed after another"
     why = f"its columns are {pair(speed, torque)}{order}: {KINDS['friction'].title}"
     return ColumnRoles("friction", found, side, (why, why_side, *loaded), remarks)
+
+
+def _check_speed_unit(speed: Column) -> None:
+    """Ask for the unit of the speeds of a table, which friction alone does not determine; robots have radians.
+
+    Raises:
+        UndecidedError: no unit is stated
+    """
+    if speed.sure or speed.robot:
+        return
+    fastest = float(np.abs(speed.raw[np.isfinite(speed.raw)]).max(initial=0.0))
+    ways = [f"{as_option('unit', speed.name, each)} ({convert(fastest, each, 'rpm'):.0f} 1/min at most)" for each in SPEEDS]
+    question = f"the unit of {speed.name} is not stated, and a table of friction does not determine it; give it, with "
+    answer = FileMapping(units={speed.name: SPEEDS[0]})
+    raise UndecidedError(question + " or ".join(ways), (), as_option("unit", speed.name, SPEEDS[0]), answer)
 
 
 def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:

@@ -26,6 +26,7 @@ MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
 MAX_OFF_STEP = 1e-3  # relative difference of a step from a part of a revolution
 MIN_SHARE_OF_MULTIPLES = 0.95  # of the steps of an encoder
 MAX_JOINT_ANGLE = 4.0 * np.pi  # rad: two turns to each side, the most that joints have
+MIN_JOINT_RANGE = 0.1  # rad: a joint that moves by less in a log shows neither gravity nor inertia
 MAX_STEP_OF_LOG = 0.2  # s
 MIN_KELVIN = 200.0  # K: gears are not colder
 
@@ -63,8 +64,9 @@ def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
             continue
         slope = speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, found[time.position].unit, "s"))
         for column, other, own, unit in zip(pair, pair[::-1], known, next(_fitting(slope, *known), ()), strict=False):
+            is_usual = column is pair[0] and known[1] is None and unit == UNITS["angle"]
             if own is None:
-                found[column.position] = Assumed(unit, f"as it fits {other.name}")
+                found[column.position] = Assumed(unit, "as is usual" if is_usual else f"as it fits {other.name}")
     return found
 
 
@@ -86,7 +88,7 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
     for unit in ANGLES:
         factor = convert(1.0, unit, "rad") / convert(1.0, str(angles[0].unit), "rad")
         units_of_speeds = [_unit_of_size(factor * convert(1.0, str(speed.unit), "rad/s")) for speed in speeds]
-        if unit == angles[0].unit or None in units_of_speeds or any(_too_far(angle, factor) for angle in angles):
+        if unit == angles[0].unit or None in units_of_speeds or not all(_may_move(angle, factor) for angle in angles):
             continue
         paired = {speed.position: str(each) for speed, each in zip(speeds, units_of_speeds, strict=True)}
         found.append({**{angle.position: unit for angle in angles}, **paired})
@@ -104,9 +106,10 @@ def bits_of(counts: float, max_off: float) -> int | None:
     return bits if MIN_BITS <= bits <= MAX_BITS and abs(counts / 2.0**bits - 1.0) < max_off else None
 
 
-def _too_far(angle: Column, factor: float) -> bool:
-    """True if a joint would move further than joints do, were its angle so many times as large."""
-    return angle.at_joint and factor * float(np.abs(angle.si).max()) > MAX_JOINT_ANGLE
+def _may_move(angle: Column, factor: float) -> bool:
+    """True if a joint may move as far as it would, were its angle so many times as large."""
+    furthest, moved = factor * float(np.abs(angle.si).max()), factor * float(np.ptp(angle.si))
+    return not angle.at_joint or (furthest < MAX_JOINT_ANGLE and (moved > MIN_JOINT_RANGE or factor > 1.0))
 
 
 def _unit_of_size(size: float) -> str | None:

@@ -57,6 +57,7 @@ class Recognised:
         began: the stamp in the file from which the time is counted [s]
         alternatives: other ways to read it that its names and numbers leave open; the fit may decide between them
         question: what to ask if the fit does not decide; empty if this reading is the usual one
+        is_of_robot: True if its motions have the names of a robot's joints, which are in radians by convention
     """
 
     path: Path
@@ -75,6 +76,7 @@ class Recognised:
     began: float = 0.0
     alternatives: tuple[Alternative, ...] = ()
     question: str = ""
+    is_of_robot: bool = False
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -196,6 +198,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         unused=unused,
         began=began,
         alternatives=_other_units(columns, found.columns, given),
+        is_of_robot=any(column.robot and column.channel.quantity in ("angle", "speed") for column in found.columns.values()),
     )
 
 

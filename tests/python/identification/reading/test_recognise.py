@@ -45,6 +45,13 @@ def test_a_table_of_friction(tmp_path: Path, header: str, side: str) -> None:
     assert "a table of steady friction" in words_of(found)
 
 
+def test_the_unit_of_the_speeds_of_a_table_is_asked(tmp_path: Path) -> None:
+    path = write(tmp_path / "table.csv", "speed,torque [N.m]", RPM / 60.0, np.sign(RPM))
+    with pytest.raises(ValueError, match=r"unit of speed is not stated, .* --unit speed=rev/s .* \(3000 1/min at most\)"):
+        recognise(path)
+    assert recognise(path, FileMapping(units={"speed": "rev/s"})).recording["speed"] == pytest.approx(RPM * np.pi / 30.0)
+
+
 def test_a_slow_table_has_a_remark_on_its_side(tmp_path: Path) -> None:
     path = write(tmp_path / "table.csv", "speed [rpm],torque [N.m]", RPM / 100.0, np.sign(RPM))
     assert recognise(path).side == "input"
