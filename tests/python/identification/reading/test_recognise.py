@@ -243,3 +243,30 @@ def test_a_joint_that_sticks_and_slips_under_a_wave_of_torque_is_a_log(tmp_path:
     path = tmp_path / "knee.csv"
     np.savetxt(path, rows, delimiter=",", header="time [s],joint_angle [rad],joint_torque [N.m]", comments="")
     assert recognise(path).kind == "log"
+
+
+def arm(path: Path, angles: str, efforts: str) -> Path:
+    """A log of two joints that move, with names of the columns by the number of the joint."""
+    names = [name.format(joint) for joint in (1, 2) for name in (angles, efforts)]
+    header = ",".join(["time [s]", *names])
+    return write(path, header, TIME, SWING, 2.0 * SWING, np.cos(3.0 * TIME), 5.0 * SWING)
+
+
+def test_units_of_columns_of_other_joints_are_taken_along(tmp_path: Path) -> None:
+    path = arm(tmp_path / "log.csv", "q{} [rad]", "i{}")
+    for joint, size in (("1", 2.0), ("2", 5.0)):
+        found = recognise(path, FileMapping(units={"i1": "percent of 10 A", "i2": "percent of 10 A"}, joint=joint))
+        assert found.recording["current"] == pytest.approx(0.1 * size * SWING)
+    with pytest.raises(ValueError, match='a unit is given for "i3", which is not read'):
+        recognise(path, FileMapping(units={"i3": "percent of 10 A"}, joint="1"))
+
+
+@pytest.mark.parametrize("efforts", ["effort[{}]", "effort_{}", "effort{}"])
+def test_a_column_of_a_joint_is_named_by_the_stem_of_its_name(tmp_path: Path, efforts: str) -> None:
+    path = arm(tmp_path / "log.csv", "position[{}] [rad]", efforts)
+    found = recognise(path, FileMapping(columns={"current": "effort"}, joint="2"))
+    assert found.recording["current"] == pytest.approx(5.0 * SWING)
+    with pytest.raises(ValueError, match=r"it has 2 joints \(1, 2\), .*; choose with --joint 1"):
+        recognise(path, FileMapping(columns={"current": "effort"}))
+    with pytest.raises(ValueError, match='has no column "torque" to be the current'):
+        recognise(path, FileMapping(columns={"current": "torque"}, joint="2"))
