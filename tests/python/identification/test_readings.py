@@ -84,7 +84,7 @@ def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp
 def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path) -> None:
     """An upright joint: in revolutions or radians it leaves as little, and the side is in the names."""
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
-    with pytest.raises(ValueError, match="no unit is stated, and several explain it equally well: .* say which: ") as asked:
+    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well: .* say which: ") as asked:
         identify("csg-20-100", [path])
     (option,) = re.findall(r"or (--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
     identified = with_options(path, option)

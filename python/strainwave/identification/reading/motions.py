@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
+from strainwave.identification.reading.angles import jumps
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 
@@ -55,6 +56,8 @@ def _ramps(time: Array, angle: Array, effort: Array) -> bool:
     if len(time) < MIN_ROWS or not np.isfinite(time + angle + effort).all():
         return False
     apart = max(len(time) // MOTIONS, 1)
+    for row in jumps(angle, time):
+        angle = np.concatenate([angle[:row], angle[row:] - (angle[row] - angle[row - 1])])
     moved, size = np.abs(angle[apart:] - angle[:-apart]), np.abs(effort[apart:])
     loaded, resting = size > MIN_LOAD * size.max(), moved <= MAX_SPEED_AT_REST * moved.max()
     if not moved.max() > 0.0:

@@ -270,3 +270,25 @@ def test_a_column_of_a_joint_is_named_by_the_stem_of_its_name(tmp_path: Path, ef
         recognise(path, FileMapping(columns={"current": "effort"}))
     with pytest.raises(ValueError, match='has no column "torque" to be the current'):
         recognise(path, FileMapping(columns={"current": "torque"}, joint="2"))
+
+
+@pytest.mark.parametrize("sign", [{}, {"output_speed": 1}])
+def test_a_speed_that_is_counted_against_its_angle_is_turned_round(tmp_path: Path, sign: dict[str, int]) -> None:
+    speed = 2.0 * np.pi * np.cos(2.0 * np.pi * TIME)
+    path = write(tmp_path / "log.csv", "t [s],q [rad],dq [rad/s],tau [N.m]", TIME, SWING, -speed, SWING)
+    found = recognise(path, FileMapping(sign=sign))
+    assert found.recording["output_speed"] == pytest.approx(-speed if sign else speed)  # unless a person gave its sign
+    assert ("dq is counted against q: its sign is turned round" in found.remarks) == (not sign)
+
+
+@pytest.mark.parametrize("with_speed", [True, False])
+def test_a_file_whose_angle_jumps_is_of_two_recordings(tmp_path: Path, with_speed: bool) -> None:
+    angle, speed = SWING.copy(), 2.0 * np.pi * np.cos(2.0 * np.pi * TIME)
+    angle[250:] += 0.6
+    header, columns = "t [s],q [rad],tau [N.m]", [TIME, angle, SWING]
+    if with_speed:
+        header, columns = f"{header},dq [rad/s]", [*columns, speed]
+    found = recognise(write(tmp_path / "log.csv", header, *columns))
+    assert len(found.recording) == 250
+    assert "q jumps by 0.5" in words_of(found)
+    assert "2 recordings in one file, of which the longest is taken, rows 0 to 249" in words_of(found)
