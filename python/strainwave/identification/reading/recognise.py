@@ -236,7 +236,7 @@ def _other_units(columns: Sequence[Column], found: Mapping[str, Column], given: 
 def _unused(table: OpenTable, columns: Sequence[Column]) -> tuple[str, ...]:
     """Return the names in the file of the columns that are not among these."""
     used = {column.position for column in columns}
-    return tuple(label.text for place, label in enumerate(table.labels) if place not in used and label.name)
+    return tuple(one_line(label.text) for place, label in enumerate(table.labels) if place not in used and label.name)
 
 
 def _of_unused(names: Sequence[str]) -> list[str]:
