@@ -116,3 +116,11 @@ def test_spikes_of_a_torque_without_noise_are_outliers() -> None:
     found = spoilt(torque)
     assert found[places].all()
     assert np.mean(found) < MAX_OUTLIERS
+
+
+def test_a_motor_beside_a_joint_without_an_encoder_is_counted_at_the_joint() -> None:
+    """Channels of the joint are zero: as the motor's own angle, its inertia at the output was 57000 kg.m2."""
+    said = FileMapping(joint="6", columns={"input_torque": "rec.act_torque_abs_nm"}, constants={"ratio": 154.323})
+    found = recognise(DATA / "kuka-kr300" / "FF_A.mat", said)
+    assert {"reflected_angle", "reflected_speed"} <= set(found.columns)
+    assert not any(name.startswith("output_") for name in found.columns)
