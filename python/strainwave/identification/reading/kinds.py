@@ -36,9 +36,7 @@ MIN_ROWS = 4  # of a torsion loop or branch, and speeds of a table
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
 MAX_TWIST = 0.3  # rad of a gear at the output
 MAX_REFLECTED = 0.1  # relative difference of a motion of the input from that of the output, if it is divided by the ratio
-MAX_REFLECTED_RANGE = (
-    2.0 * np.pi
-)  # rad, rad/s: a motor that moves less, beside a joint without an encoder, is counted at the joint
+MAX_REFLECTED_RANGE = 2.0 * np.pi  # rad, rad/s: a motor that moves less, beside no encoder of the joint, is counted there
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
 SPEEDS = ("rad/s", "rpm", "rev/s")  # in which tables of friction have their speeds
