@@ -19,6 +19,7 @@ from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldO
 Array = NDArray[np.float64]
 
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
+MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
 MAX_REFITS = 6  # models that are fitted to all but the last stretch if the best one is not confirmed
 
 
@@ -105,9 +106,10 @@ def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -
 
 
 def other_laws(best: MotionCandidate, others: Sequence[MotionCandidate]) -> list[MotionCandidate]:
-    """Return the models with another law of friction that predict as well, the best of each law."""
+    """Return the models with another law of friction that predict as well with another Coulomb torque, the best of each law."""
     laws = {type(best.model.law): best}
     for other in sorted(others, key=lambda each: each.error_in_band):
         if other.predicts_as_well_as(best):
             laws.setdefault(type(other.model.law), other)
-    return list(laws.values())[1:]
+    coulomb = best.model.law.coulomb
+    return [each for each in laws.values() if abs(each.model.law.coulomb - coulomb) > MIN_COULOMB_DIFFERENCE * coulomb]
