@@ -58,8 +58,8 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
 
     Directions in which the parameters can change, each relative to its size, without a change of what is predicted that the
     noise would not hide: eigenvectors of the second derivatives of the cost in logarithmic parameters, with the unknowns of the
-    measurement fitted along. Of a direction in which two parameters change, the data determine what it leaves as it is: a sum or a
-    difference where both have one unit, a product of powers where the exponents are near ratios of whole numbers up to 3.
+    measurement fitted along. Of a direction in which two parameters change, the data determine what it leaves as it is: a sum
+    or a difference where both have one unit, a product of powers where the exponents are near ratios of whole numbers up to 3.
 
     Args:
         found: what `fit` found; parameters that are 0 take no part
@@ -130,7 +130,7 @@ def _wider(found: Fit, naive: Array) -> float:
 
 
 def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tuple[Array, Array]:
-    """Return directions of relative change, shape (k, k), and the standard deviation of the change in each, the largest first."""
+    """Return directions of relative change, shape (k, k), and the standard deviation of each change, the largest first."""
     others = np.delete(rows, chosen, axis=1)
     columns = rows[:, chosen] * size
     length = np.linalg.norm(others, axis=0)
@@ -147,7 +147,7 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
 
 
 def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Array) -> tuple[str, float, Array, str] | None:
-    """Return a formula of two parameters that stays the same when both move: words, value, derivatives by the parameters, unit."""
+    """Return a formula of two parameters that stays the same when both move: words, value, derivatives, unit."""
     alike = abs(abs(moves[0] / moves[1]) - 1.0) < WHOLE
     first = paths[0] <= paths[1] if alike else abs(moves[0]) <= abs(moves[1])  # the larger factor is 1, else by name
     if units[0] == units[1] and not first:
