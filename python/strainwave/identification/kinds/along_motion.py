@@ -56,15 +56,12 @@ def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
 def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
-    best, *others = _fitted(taken, taken.log)
-    for each in taken.with_others:
-        more, *rest = _fitted(taken, each)
-        takes_over = more.predicts_no_worse_than(best) and more.error_in_band < best.error_in_band
-        best, others = (more, [best, *others, *rest]) if takes_over else (best, [*others, more, *rest])
+    best, *others = _models(taken)
     best, held_out, predicted = confirmed(best, others, drive)
     log = best.log
+    of_model = [*_delay(best), *_other_laws(best, others, in_current)]
     if file.neighbours and not file.regressors:
-        remarks.append(_other_joints(list(file.neighbours), list(log.regressors)))
+        of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
@@ -77,8 +74,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(between.known(known, file.path.name), errors, file.path.name)
-    remarks = [*_delay(best), *_other_laws(best, others, in_current), *remarks, *_shares(best.fit, file.regressors)]
-    every = (*file.remarks, *remarks)
+    every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
@@ -94,6 +90,16 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         ),
         known,
     )  # fmt: skip
+
+
+def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:
+    """Return the models of a log, without terms of other joints and with them; the best one first."""
+    best, *others = _fitted(taken, taken.log)
+    for log in taken.with_others:
+        more, *rest = _fitted(taken, log)
+        takes_over = more.predicts_no_worse_than(best) and more.error_in_band < best.error_in_band
+        best, others = (more, [best, *others, *rest]) if takes_over else (best, [*others, more, *rest])
+    return best, *others
 
 
 def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
