@@ -107,10 +107,7 @@ def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
     best = search.grown(best, list(PARTS))
-    for more in (_with_bristles, _with_ripple):
-        added = more(best)
-        best = added if added is not None and added.is_better_than(best) else best
-    return best
+    return _with(best, _with_ripple(best))
 
 
 def _check_compared(log: MotionLog, held_out: Sequence[Rows]) -> None:
@@ -146,6 +143,7 @@ class _Search:
             return None
         if not _is_sensible(found):
             return None
+        found = _with(found, _with_bristles(found))
         self.every.append(found)
         return found
 
@@ -186,9 +184,7 @@ class _Search:
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
         if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
             return best
-        bristled, limit = _with_bristles(best), MAX_RELATIVE_ERROR * best.errors[-1]
-        if bristled is not None and bristled.error < best.error and bristled.errors[-1] < limit:  # no estimate moves
-            return bristled
+        limit = MAX_RELATIVE_ERROR * best.errors[-1]
         self.tried(model)
         return min((each for each in self.every if each.errors[-1] < limit), key=lambda each: each.error, default=best)
 
@@ -257,6 +253,11 @@ def _is_sensible(candidate: MotionCandidate) -> bool:
 
 
 # ---- Parts of the prediction alone -----------------------------------------------------------------------------------------
+
+
+def _with(candidate: MotionCandidate, more: MotionCandidate | None) -> MotionCandidate:
+    """Return a model with a part of the prediction, if that is better by more than chance."""
+    return more if more is not None and more.is_better_than(candidate) else candidate
 
 
 def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:

@@ -15,6 +15,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
 from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
+from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, rotor_sigma
 from strainwave.messages import as_option, listed
@@ -78,7 +79,7 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"
     ] * is_of_speed
     others = {name: file.recording[at] for name, at in file.neighbours.items()}
-    joint = file.joint or next(column for name, column in file.columns.items() if name.endswith("_angle"))
+    joint = file.joint or which_of(words_of(next(of for name, of in file.columns.items() if name.endswith("_angle"))))
     with_others = tuple(coupled(log, drive, recording.time, others, joint)) if others and not file.regressors else ()
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
