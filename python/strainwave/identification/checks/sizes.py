@@ -81,7 +81,7 @@ def opposes_motion(at_speeds: Iterable[FileEstimate], source: str) -> Iterator[C
     for each in at_speeds:
         yield Check(
             "friction against the motion", source, -each.value, 0.0, each.unit, each.value < 0.0,
-            f"{each.label} would be {each.value:.4g} ± {each.sigma:.2g} {each.unit}: a torque that drives the motion",
+            f"{each.label} would be {each.value:.4g} {each.unit}: a torque that drives the motion",
             "see whether torque and speed are counted in one sense, and whether gravity or a load is in the torque; record "
             "both directions",
         )  # fmt: skip
@@ -315,7 +315,7 @@ def levels_of_table(table: Recording, source: str) -> Check:
 
 
 def hints_of_levels(table: Recording) -> Iterator[str]:
-    """Yield what the torques and speeds of a friction table leave open."""
+    """Yield what the speeds of a friction table leave open."""
     speed = table["speed"]
     if (speed > 0.0).all() or (speed < 0.0).all():
         yield "it holds one direction only: a zero error of the torque is counted as Coulomb friction; measure both"

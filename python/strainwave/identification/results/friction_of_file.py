@@ -55,13 +55,8 @@ def friction_of(file: FileResult, speed: float, load: float) -> FileEstimate:
     assert fit is not None
     prefix = "" if isinstance(fit.model, Drive) else "gear."
     own = [by_path.get(prefix + each.path) for each in fit.estimates]
-    wider = np.array(
-        [
-            each.own / sigma if each is not None and 0.0 < sigma < np.inf and np.isfinite(each.own) else 1.0
-            for each, sigma in zip(own, np.sqrt(np.diag(fit.covariance)).tolist(), strict=True)
-        ]
-    )
-    paths = [each.path for each in fit.estimates]
-    found = steady_friction_at(fit.gear, paths, fit.covariance * np.outer(wider, wider), speed, load)
+    sigma = np.array([free.sigma if each is None else each.own for each, free in zip(own, fit.estimates, strict=True)])
+    with np.errstate(invalid="ignore"):  # what a file does not determine has no finite standard deviation, nor has the result
+        covariance = fit.correlation * np.outer(sigma, sigma)
     common = max((each.common / abs(each.value) for each in own if each is not None and each.value), default=0.0)
-    return found.resting_on(common)
+    return steady_friction_at(fit.gear, [each.path for each in fit.estimates], covariance, speed, load).resting_on(common)
