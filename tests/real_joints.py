@@ -219,7 +219,7 @@ def _readable(trial: Trial, folder: Path) -> str:
         from scipy.io import loadmat
 
         record = loadmat(ARMS / trial.file)["rec"][0, 0]
-        names = ("time_cont", "act_pos_se_deg", "act_vel_se_deg_per_s", "act_torque_abs_nm")
+        names = ("time_cont", "act_pos_mot_deg", "act_vel_mot_deg_per_s", "act_torque_abs_nm")
         blocks = [record[name].T for name in names]
     elif "*" in trial.file:
         blocks = [

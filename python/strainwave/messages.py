@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 _LONGEST_TEXT = 60  # characters of a text in quotes
 _LONGEST_LINE = 960  # characters of a whole message; with its options in both spellings a question has some 600
 _MOST_NAMES = 20  # of a list
+_CONTROLS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 def one_line(message: str) -> str:
@@ -24,6 +25,16 @@ def one_line(message: str) -> str:
     line = "".join(each if each.isprintable() else _escaped(each) for each in message)
     half = _LONGEST_LINE // 2
     return line if len(line) <= _LONGEST_LINE else f"{line[:half]} … {line[-half:]}"
+
+
+def printable(text: str) -> str:
+    """A text of several lines, in which control characters and those that turn the direction of writing are escaped.
+
+    >>> print(printable("red \\x1b[31m\\nand \\u202e"))
+    red \\x1b[31m
+    and \\u202e
+    """
+    return _CONTROLS.sub(lambda found: _escaped(found[0]), text)
 
 
 def quoted(text: str) -> str:

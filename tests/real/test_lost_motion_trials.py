@@ -57,3 +57,13 @@ def test_the_whole_loop_has_the_losses_and_the_spring_of_the_gear() -> None:
     assert abs(numbers["gear.stiffness.a1"].value - A1) < 3.0 * numbers["gear.stiffness.a1"].sigma < 0.02 * A1
     assert abs(numbers["gear.stiffness.a3"].value - A3) < 3.0 * numbers["gear.stiffness.a3"].sigma < 0.05 * A3
     assert numbers["gear.hysteresis.breakaway[0]"].value == pytest.approx(sum(BREAKAWAY), rel=0.05)
+
+
+def test_correlated_estimates_with_small_standard_deviations_are_identified() -> None:
+    found = identify("csg-20-100", [FOLDER / "lost.csv"])
+    numbers = {each.estimate.path: each.estimate for each in found.parameters}
+    assert numbers.keys() == {"gear.stiffness.k", "gear.hysteresis.stiffness[0]", "gear.hysteresis.breakaway[0]"}
+    truth = [A1 + STIFFNESS[1], STIFFNESS[0], BREAKAWAY[0]]  # of small loads, under which the second element never slips
+    assert [each.value for each in numbers.values()] == pytest.approx(truth, rel=0.01)
+    k = numbers["gear.stiffness.k"]
+    assert k.sigma < 0.02 * k.value  # although its correlation with the breakaway torque is -0.991

@@ -70,7 +70,7 @@ ARM = {
     "icub/left-hip-pitch/ref.mat": ("", {"time", "output_angle", "output_speed", "joint_torque"}, "block3"),
     "icub/right-ankle-roll/Idle.mat": ("", {"time", "output_angle", "output_speed", "joint_torque"}, "block3"),
     "icub/right-knee/idle.mat": ("", {"time", "output_angle", "output_speed", "joint_torque"}, "block3"),
-    "icub/right-knee/ref.mat": ("", {"time", "angle", "torque"}, "block3"),
+    "icub/right-knee/ref.mat": ("", {"time", "output_angle", "output_speed", "joint_torque"}, "block3"),
     "kuka-kr300/FF_A.mat": ("1", {"reflected_angle", "reflected_speed", "output_angle", "input_torque"}, "--joint 1"),
 }
 

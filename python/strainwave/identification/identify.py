@@ -30,7 +30,7 @@ from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
-from strainwave.messages import listed, shortened
+from strainwave.messages import listed, one_line, shortened
 
 Mapped = Callable[[Path], FileMapping] | FileMapping | None
 
@@ -218,7 +218,7 @@ class _Fits:
     def fit_all(self, files: Sequence[Recognised]) -> None:
         """Fit each file in the turn of its kind, and what files of a kind determine together."""
         kinds = [kind_named(name) for name in KINDS]
-        own = {file.path: next(kind for kind in kinds if kind.takes(file, self.known)) for file in files}
+        own = {file.path: next(kind for kind in kinds if kind.takes(file, self.known, files)) for file in files}
         turns = {file.path: own[file.path].turn(file, {kind.name for kind in own.values()}) for file in files}
         for kind in kinds:
             mine = [file for file in files if turns[file.path][0] == kind.name]
@@ -270,7 +270,7 @@ def _side(mapping: Mapped, file: Recognised) -> Side | None:
 
 def _named_apart(results: Sequence[FileResult], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[FileResult, ...]:
     """Return the results by the names of their files; with their folders, if names come twice."""
-    names = [path.name if sum(path.name == each.name for each in paths) == 1 else str(path) for path in paths]
+    names = [one_line(path.name if sum(path.name == each.name for each in paths) == 1 else str(path)) for path in paths]
     by_path = dict(zip(map(str, paths), names, strict=True))
     return tuple(
         replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))

@@ -31,6 +31,7 @@ MIN_GAIN_SIGMA = 3.0  # standard deviations of the difference of squares over th
 MAX_GAIN = 3.0  # times the upper quartile of the differences of blocks: a larger one counts as that
 MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction drives the motion
 UNITS_OPEN = "no unit is stated, and another one than the usual explains more"
+UNITS_EQUAL = "no unit is stated, and several explain it equally well"
 TORQUES = ("joint_torque", "input_torque")
 
 
@@ -69,8 +70,9 @@ class _Reading:
 def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
     """Return a log in the reading that leaves least unexplained; with its question, if several leave as little.
 
-    The usual reading of a log without a question is kept unless another one leaves clearly less: it is asked about then, and
-    given up if the other one leaves far less.
+    The usual reading of a log without a question is kept if it leaves clearly less than others, or if none explains the log.
+    If another one leaves far less, that one is taken. Between them it is asked about, but for joints of robots, whose usual
+    reading is kept unless another one leaves clearly less.
 
     Args:
         file: as it is usually read
@@ -91,8 +93,11 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
     if file.question:
         is_decided = best.error < MAX_UNEXPLAINED and len(remaining) == 1
         return _taken(best, others, file) if is_decided else replace(file, question=_asked(file.question, remaining))
-    if best.error >= MAX_UNEXPLAINED or (usual in remaining and len(remaining) > 1):
+    is_open = usual in remaining and len(remaining) > 1
+    if best.error >= MAX_UNEXPLAINED or (is_open and file.is_of_robot):
         return file
+    if is_open:
+        return replace(file, question=_asked(UNITS_EQUAL, remaining))
     rivals = [usual] if usual is not None and usual is not best and not usual.doubt else []
     if len(remaining) == 1 and all(best.is_better_than(each, MAX_OF_USUAL) for each in rivals):
         return _taken(best, others, file)

@@ -155,7 +155,7 @@ def identify_summary(found: Identified) -> Iterator[str]:
         yield from (f"  {result.name:{width}}  {result.model}" for result in points)
         yield from (f"  {remark}" for remark in dict.fromkeys(remark for result in points for remark in result.remarks))
     yield ""
-    yield from lines_of(found.parameters)
+    yield from lines_of([*found.parameters, *_in_combination(found)])
     yield from (check.message for check in found.checks if check.name == "agreement of files" and not check.failed)
 
 
@@ -164,6 +164,15 @@ def failed_lines(failed: Iterable[Check]) -> Iterator[str]:
     for check in failed:
         yield f"FAILED: {check.source}: {check.message}"
         yield f"  what to do: {check.remedy}"
+
+
+def _in_combination(found: Identified) -> Iterator[CombinedParameter]:
+    """Yield the estimates that a file determines in combination with others, unless another file determines them alone."""
+    alone = {each.estimate.label for each in found.parameters}
+    for file in found.files:
+        for each in file.estimates:
+            if each.in_combination and each.label not in alone:
+                yield CombinedParameter(each, f"{file.name}, identified in combination")
 
 
 def _of_file(result: FileResult) -> Iterator[str]:

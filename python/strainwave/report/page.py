@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from strainwave.files.recording import Recording
 from strainwave.files.writing import making, replacing, written
+from strainwave.messages import printable
 from strainwave.report import figures, typeset
 from strainwave.report.provenance import Provenance
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def render(template: str, content: Mapping[str, Any], provenance: Provenance | None = None) -> str:
-    """Return the HTML of a template of this folder; whatever is put into it is escaped.
+    """Return the HTML of a template of this folder; whatever is put into it is escaped, control characters too.
 
     Args:
         template: name of the file in templates/
@@ -34,7 +35,7 @@ def render(template: str, content: Mapping[str, Any], provenance: Provenance | N
         "light": figures.variables(figures.LIGHT),
         "dark": figures.variables(figures.DARK),
     }
-    return _environment().get_template(template).render(of_every_page | dict(content))
+    return printable(_environment().get_template(template).render(of_every_page | dict(content)))
 
 
 @cache

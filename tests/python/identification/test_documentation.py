@@ -9,7 +9,7 @@ import pytest
 from strainwave.identification.checks import comparisons, sizes, unexplained
 from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
-from strainwave.identification.results import combined_parameter, identifiability
+from strainwave.identification.results import combined_parameter, file_result, identifiability
 
 PAGE = " ".join(Path(__file__).parents[3].joinpath("docs", "identify.md").read_text(encoding="utf-8").split())
 NUMBERS = ("no", "one", "two", "three", "four", "five")
@@ -49,5 +49,5 @@ def test_a_threshold_is_stated_as_it_is(statement: str) -> None:
 
 def test_thresholds_stated_in_words_are_those() -> None:
     assert unexplained.MAX_SHARE_OF_LOOP == unexplained.MAX_SHARE_OF_MOTION
-    halves = (identifiability.MAX_RELATIVE_SIGMA, sizes.MAX_SHARE_BY_ACCELERATION, sizes.MAX_FRICTION_SHARE)
+    halves = (file_result.MAX_RELATIVE_SIGMA, sizes.MAX_SHARE_BY_ACCELERATION, sizes.MAX_FRICTION_SHARE)
     assert halves == (0.5, 0.5, 1.0 - 1.0 / 5.0)

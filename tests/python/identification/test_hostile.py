@@ -13,6 +13,7 @@ from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 from strainwave.identification.reading.several_files import same_as
+from strainwave.report.identify_files import identify_files, identify_summary
 
 from tests.python.command import strainwave
 from tests.python.identification.candidates.test_motion import TRUTH, record
@@ -289,3 +290,14 @@ def test_one_bad_file_does_not_stop_the_command_and_only_bad_files_do(tmp_path: 
     assert done.returncode == 2
     assert "Traceback" not in done.stdout + done.stderr
     assert not (tmp_path / "out2").exists()
+
+
+def test_names_with_control_characters_are_escaped_on_the_terminal_and_in_the_report(tmp_path: Path) -> None:
+    path = tmp_path / "a\x1b[31mb.csv"
+    rows = np.column_stack([LOG.time, ANGLE, CURRENT])
+    np.savetxt(path, rows, delimiter=",", header="time,q_motor\x1b[31m\u202e,current\x1b[0m", comments="", encoding="utf-8")
+    found = identify(START, [path], mapping=FileMapping(side="input"))
+    assert not found.files[0].refused
+    shown = [*identify_summary(found), *identify_files(found).values()]
+    assert not re.search("[\x1b\u202e]", "".join(shown))
+    assert any("q_motor\\x1b[31m\\u202e in rad" in line for line in shown)

@@ -81,6 +81,23 @@ def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp
     assert not with_options(path, options["rad, rad/s at the output"]).files[0].refused
 
 
+def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path) -> None:
+    """An upright joint: in revolutions or radians it leaves as little, and the side is in the names."""
+    path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
+    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well: .* say which: ") as asked:
+        identify("csg-20-100", [path])
+    (option,) = re.findall(r"or (--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
+    identified = with_options(path, option)
+    inertia = values(identified)["load.inertia"] + identified.gear_set.gear.input_inertia * RATIO**2
+    assert inertia == pytest.approx(INERTIA, rel=0.02)
+
+
+def test_an_upright_joint_of_a_robot_is_in_radians(tmp_path: Path) -> None:
+    path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("q", "dq", "tau"))
+    (file,) = identify("csg-20-100", [path]).files
+    assert "q in rad as is usual, dq in rad/s as it fits q" in " | ".join(file.remarks)
+
+
 def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("position", "velocity", "torque"), pace=2.5)
     with pytest.raises(ValueError, match="say which: ") as asked:

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.motion import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
+from strainwave.identification.candidates.motion_candidate import MAX_RELATIVE_ERROR
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
@@ -44,6 +45,7 @@ NEAR = 1e-3  # relative, of the cost: models are compared as near to their best 
 NEARER = 1e-4  # the same of the last fit: a step that promises a thousandth of it moves no number by a tenth of its deviation
 TRIALS = 15  # steps of a fit
 SQUARED = LOSSES["linear"]
+SPEED = 2  # place of the speed among what moves the angle between the shafts
 OUTER = 0.75  # of the largest torque: where a third segment is taken to begin, from which fits start (assumed)
 FAR = 10.0  # times the largest torque: a knee there does nothing
 DELAY = "output_angle_delay"
@@ -144,9 +146,11 @@ def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_err
     softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
     reach = float(np.abs(torque[motion.compared]).max())
     if not softness > SEEN * sigma:
+        late = 1e3 * ratio * weights[SPEED] / size[SPEED]
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
-            f"what else moves them leave {float(np.std(left)):.2g} rad unexplained: load it more, or measure the angles better"
+            f"what else moves them leave {float(np.std(left)):.2g} rad unexplained, beside {late:.3g} ms by which output_angle "
+            "comes behind input_angle: load it more, or measure the angles better"
         )
     return float(1.0 / softness), reach
 

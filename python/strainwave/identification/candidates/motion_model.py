@@ -52,12 +52,12 @@ def without(free: Sequence[str], name: str) -> tuple[str, ...]:
     return tuple(path for path in free if not path.rpartition(".")[2].startswith(name))
 
 
-def with_delay(model: MotionModel) -> MotionModel | None:
-    """With a delay of the effort behind the motion."""
+def with_delay(model: MotionModel, start: float = 0.0) -> MotionModel | None:
+    """With a delay of the effort behind the motion, from where a fit starts [s]."""
     if model.log.delayed:
         return None
     log = model.log.with_delay()
-    before = {each.name: each.start for each in model.log.nuisances}
+    before = {each.name: each.start for each in model.log.nuisances} | {"delay": start}
     return replace(
         model, name=f"{model.name}, a delay", log=log.starting([before.get(each.name, 0.0) for each in log.nuisances])
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 STRETCHES = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
-MAX_SPEED_ERROR = 0.98  # of the held-out error along the angle: along a recorded speed it must be less
+MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler log: along a recorded speed, or with a delay, it must be less
+MAX_DELAY_SAMPLES = 5  # of the log
 TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
 FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
@@ -91,13 +92,26 @@ def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tup
     measured = log.with_measured_speed(recording, drive.gear.kinematics.ratio)
     if measured is None:
         return log, False
-    is_better = held_out_rms(measured, drive) < MAX_SPEED_ERROR * held_out_rms(log, drive)
+    is_better = held_out_rms(measured, drive) < MAX_RELATIVE_ERROR * held_out_rms(log, drive)
     return (measured, True) if is_better else (log, False)
 
 
 def held_out_rms(log: MotionLog, drive: Drive) -> float:
     """Return the root mean square of what plain least squares leaves of stretches held out, in the unit of the effort."""
     return float(np.sqrt(np.mean(np.concatenate(held_out_residuals(log, drive, stretches(log))) ** 2)))
+
+
+def best_delay(log: MotionLog, drive: Drive) -> float:
+    """Return the delay of the effort behind the motion, in whole samples, with which plain least squares predicts best [s].
+
+    0 unless it predicts clearly better than without.
+    """
+    errors = {}
+    for shift in range(-MAX_DELAY_SAMPLES, MAX_DELAY_SAMPLES + 1):
+        series = {name: np.roll(getattr(log, name), -shift) for name in ("force", "recorded", "sound")}
+        errors[shift] = held_out_rms(replace(log, **series), drive)
+    best = min(errors, key=lambda shift: errors[shift])
+    return best * log.motion.step if errors[best] < MAX_RELATIVE_ERROR * errors[0] else 0.0
 
 
 def stretches(log: MotionLog) -> list[Rows]:

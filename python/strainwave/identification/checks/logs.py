@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
 from strainwave.messages import listed
 from strainwave.orders.shaft_pair import Ratio
 
 Array = NDArray[np.float64]
 
 MAX_UNEXPLAINED = 0.5  # of what varies on data held out
-MAX_OF_PLAIN = 1.02  # of the held-out error of plain least squares
 MIN_RATIO_SIGMA = 3.0  # standard deviations beyond which a measured ratio is another one
 MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by less
 MAX_CONSTANT_DIFFERENCE = 0.1  # relative, of a torque constant by the voltage: a resistance changes as much as a motor warms up
@@ -47,9 +46,9 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         "taken for",
     )  # fmt: skip
     if np.isfinite(held_out.plain):
-        share = held_out.error / max(held_out.plain, 1e-300)
+        share = held_out.share_of_plain
         yield Check(
-            "plain least squares", source, share, MAX_OF_PLAIN, "1", share > MAX_OF_PLAIN,
+            "plain least squares", source, share, MAX_SHARE_OF_PLAIN, "1", share > MAX_SHARE_OF_PLAIN,
             f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
             "record longer, at several speeds and both ways: the record does not determine more than its mean friction",
         )  # fmt: skip

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.motion import MotionCandidate
+from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.mistakes import wrong_units

@@ -6,13 +6,9 @@ Lagrange's equations make of each such term of the energy one of the torque, cen
 
 .. math:: \\frac{\\mathrm d}{\\mathrm dt} \\frac{\\partial E}{\\partial \\dot q_j} - \\frac{\\partial E}{\\partial q_j}
 
-Which terms an arm has, its geometry says, which is not known here. Two ways lead to them. Those are taken, one after another,
-that explain the torque best, for as long as they also predict blocks of time that they were not chosen by; a term of one more
-joint must explain twice as much. Of a long record that finds what there is. Of a short one it may fail: joints of an arm move
-in like periods, and many terms explain the same. Then all are taken, with shares that are normal about zero. Those of the
-energy are inertias of links, of one size but for sums of more angles; those of gravity are larger by its acceleration over a
-length. The combinations of terms that the record tells are unknowns of a fit; of the others the little that is told is taken
-as known. Of the two ways that one is gone which predicts blocks of time better that were left out.
+The geometry of an arm determines its terms, and is not known here. Gravity acts along a chain of joints (`chain`). Of the
+kinetic energy the terms that explain the torque best are added one by one, as long as they also predict blocks of time by which
+they were not chosen. A term of one more joint must explain twice as much, as joints of an arm move in like periods.
 """
 
 from __future__ import annotations
@@ -25,45 +21,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.identification.dynamics.selection import Selection
-from strainwave.identification.dynamics.shrinkage import Shrunk, Told
+from strainwave.identification.candidates.plain import stretches
+from strainwave.identification.dynamics.chain import Sum, best_chain, named
+from strainwave.identification.dynamics.selection import Selection, independent, shares_of
 from strainwave.identification.experiments.motion import Motion, motion_of
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
 
-BLOCKS = 10  # of time; the odd ones are left for who compares models, of the others each checks what the rest tell
-BETTER = 0.99  # of an error, that must be left at most
-PLAIN = 0.5  # what a term counts for each other joint in it, where terms are selected
-SMALLER = 0.3  # share of a term over that of one with an angle less in its sum (assumed)
-NAMED = 5  # terms that are named of combinations
+BLOCKS = 10  # of time: terms are chosen by the even ones, and checked by the odd ones
+SHARE_OF_JOINT = 0.5  # what a term counts for each other joint in it, where terms are selected
 SLOW = (0.1, 0.5)  # of the usual speed, at which friction may fall
-AT_ONCE = 64  # terms that are filtered at a time
-CROSSED = 3  # angles in a sum, for gravity
+RIGID, FRICTION = 3, 9  # ends of the columns of inertia and gravity, and of offset and friction, of a joint by itself
+PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that gravity is found beside: inertia, offset, Coulomb, viscous
+MIN_INDEPENDENT_WAVE = 0.02  # of the size of a sine or cosine of gravity, that those before it must not explain
+TERMS_AT_ONCE = 64  # that are filtered
 
 
-@dataclass(frozen=True)
-class Coupled:
-    """A log with the terms of other joints.
+def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Array], joint: str = "") -> Iterator[MotionLog]:
+    """Yield a log with terms of other joints as regressors: those of gravity alone, and with those of the energy.
 
-    Attributes:
-        log: with terms, or combinations of them, as regressors
-        joints: that move, too
-        terms: names of those that were selected, or of those with the largest part in the torque
-        combined: whether all terms are taken, in combinations
-        before, after: rms error on the blocks that check, over the rms of the torque about its mean, without and with the terms
-    """
-
-    log: MotionLog
-    joints: tuple[str, ...]
-    terms: tuple[str, ...]
-    combined: bool
-    before: float
-    after: float
-
-
-def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Array], joint: str = "") -> Coupled:
-    """A log with what its torque shows of the terms of other joints.
+    The last 30 % of the motion, which judge the models, take no part.
 
     Args:
         log: of the joint
@@ -75,47 +54,62 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     ratio = drive.gear.kinematics.ratio
     own = log.motion
     itself = replace(own, angle=own.angle / ratio, speed=own.speed / ratio, acceleration=own.acceleration / ratio)
-    moving = {joint: itself} | {name: motion_of(time, angle, own.cutoff) for name, angle in others.items()}
-    arm = _Arm(joint, moving)
+    arm = _Arm(joint, {joint: itself} | {name: motion_of(time, angle, own.cutoff) for name, angle in others.items()})
     torque = ratio * log.measured[0] / per_torque(drive, log.effort) - own.filtered(log.extra[np.newaxis])[0]
-    block = np.minimum((BLOCKS * (log.time - log.time[0]) / np.ptp(log.time)).astype(int), BLOCKS - 1)
-    terms = list(arm.terms())
-    columns, base = _columns(own, arm, terms), own.filtered(_alone(itself)).T
-    expected, is_energy = np.array([term.expected for term in terms]), np.array([bool(term.speeds) for term in terms])
-    shrunk = Shrunk(torque, base, columns, expected, is_energy)
-    even, checks = block % 2 == 0, [block == place for place in range(0, BLOCKS, 2)]
-    loss = shrunk.transmitted(even) * np.sign(own.speed[own.rows])
-    shrunk = replace(shrunk, base=np.column_stack([base, loss]))
-    plain = np.array([term.plain(joint) for term in terms])
-    places = Selection(torque, shrunk.base, plain, block % 4 == 0, block % 4 == 2).best(columns)
-    told = shrunk.told(even)
-    before, with_all = (shrunk.error(even, checks, scatter) for scatter in (np.zeros_like(told.scatter), told.scatter))
-    with_selected = shrunk.beside_base(columns[:, places]).error(even, checks, np.zeros(0))
-    joints = tuple(others)
-    if not min(with_selected, with_all) < BETTER * before:
-        return Coupled(log, joints, (), False, before, before)
-    if with_selected * BETTER <= with_all:
+    base, known = own.filtered(_alone(itself)).T, ~stretches(log)[-1][own.rows]
+    gravity = _gravity(arm, own, torque[known], base[known][:, PLAIN_BASE], known)
+    if gravity:
+        with_gravity = _with_regressors(log, gravity)
+        yield with_gravity
+        base = np.column_stack([base, own.filtered(np.stack(list(gravity.values()))).T])
+        log = with_gravity
+    yield from _with_energy(log, arm, torque, base, known)
+
+
+def _gravity(arm: _Arm, own: Motion, torque: Array, base: Array, known: Rows) -> dict[str, Array]:
+    """Return the sines and cosines of the sums of angles by which gravity acts on a joint, by name, shape (n,) each."""
+    names = arm.chain
+    angles = [arm.moving[name].angle for name in names]
+
+    def series(each: Sum) -> Array:
+        angle = sum((sense * angles[place] for place, sense in each), np.zeros_like(angles[0]))
+        return np.stack([np.sin(angle), np.cos(angle)])
+
+    found = best_chain(torque, base, lambda each: own.filtered(series(each)).T[known], names.index(arm.joint), len(names))
+    sums = [each for each in (found.sums() if found else ()) if len(each) > 1]  # its own angle has a place in the load
+    waves = {
+        f"{wave}({word})": values
+        for each, word in zip(sums, named(sums, names), strict=True)
+        for wave, values in zip(("sin", "cos"), series(each), strict=True)
+    }
+    if not waves:
+        return {}
+    kept = independent(base, own.filtered(np.stack(list(waves.values()))).T[known], MIN_INDEPENDENT_WAVE)
+    return {name: values for place, (name, values) in enumerate(waves.items()) if place in kept}
+
+
+def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: Rows) -> Iterator[MotionLog]:
+    """Yield the log with terms of the kinetic energy, chosen beside a loss under load, which they can imitate, and without."""
+    own, terms = log.motion, list(arm.terms())
+    columns = _columns(own, arm, terms)
+    lossy = np.column_stack([base, _loss(torque, base, known) * np.sign(own.speed[own.rows])])
+    block = (BLOCKS * (log.time - log.time[0]) / np.ptp(log.time[known])).astype(int)
+    plain = np.array([term.plain(arm.joint) for term in terms])
+    even, odd = known & (block % 2 == 0), known & (block % 2 == 1)
+    for places in dict.fromkeys(tuple(Selection(torque, each, plain, even, odd).best(columns)) for each in (lossy, base)):
         selected = {terms[place].name: terms[place].torque(arm) for place in places}
-        found = replace(log, regressors={**log.regressors, **selected})
-        return Coupled(found, joints, tuple(selected), False, before, with_selected)
-    combined, left = _on_grid(arm, terms, told)
-    size = np.sqrt(np.mean(own.filtered(combined) ** 2, axis=1))
-    regressors = {f"combination {place + 1}": each / size[place] for place, each in enumerate(combined)}
-    found = replace(log, regressors={**log.regressors, **regressors}, extra=log.extra + left)
-    parts = np.std(columns, axis=0) * np.abs(told.shares)
-    largest = tuple(terms[place].name for place in np.argsort(-parts)[:NAMED])
-    return Coupled(found, joints, largest, True, before, with_all)
+        if selected:
+            yield _with_regressors(log, selected)
 
 
-def _on_grid(arm: _Arm, terms: Sequence[_Term], told: Told) -> tuple[Array, Array]:
-    """The combinations that a record tells, shape (k, n), and the torque of the others as they are expected, shape (n,)."""
-    points = len(arm.moving[arm.joint].angle)
-    combined, left = np.zeros((told.combinations.shape[1], points)), np.zeros(points)
-    for term, shares, rest in zip(terms, told.combinations, told.rest, strict=True):
-        torque = term.torque(arm)
-        combined += np.outer(shares, torque)
-        left += rest * torque
-    return combined, left
+def _loss(torque: Array, base: Array, known: Rows) -> Array:
+    """Return the size of the torque by inertia and gravity, of which a gear loses a share, shape (n,)."""
+    rigid = np.array([*range(RIGID), *range(FRICTION, base.shape[1])])
+    return np.asarray(np.abs(base[:, rigid] @ shares_of(base[known], torque[known])[rigid]))
+
+
+def _with_regressors(log: MotionLog, series: Mapping[str, Array]) -> MotionLog:
+    return replace(log, regressors={**log.regressors, **series})
 
 
 def _alone(joint: Motion) -> Array:
@@ -134,6 +128,11 @@ class _Arm:
     joint: str
     moving: Mapping[str, Motion]
 
+    @property
+    def chain(self) -> list[str]:
+        """The joints from the base on, if their names are numbers; else by name."""
+        return sorted(self.moving, key=int) if all(each.isdigit() for each in self.moving) else sorted(self.moving)
+
     def behind(self, name: str, other: str) -> list[str]:
         """The joints behind the first of two, on whose angles alone their inertia depends; all where no order is known."""
         if not all(each.isdigit() for each in self.moving):
@@ -141,10 +140,7 @@ class _Arm:
         return sorted((each for each in self.moving if int(each) > min(int(name), int(other))), key=int)
 
     def terms(self) -> Iterator[_Term]:
-        """Of the energy, as far as the torque of the joint has anything of them."""
-        for each in _sums(sorted(self.moving), CROSSED, (1,)):
-            if self.joint in dict(each) and len(each) > 1:
-                yield from (_Term((), each, is_sine) for is_sine in (True, False))
+        """Yield those of the kinetic energy of which the torque of the joint has anything."""
         for pair in combinations_with_replacement(sorted(self.moving), 2):
             if self.joint in pair and len(set(pair)) == 2:
                 yield _Term(pair, (), False)
@@ -181,13 +177,7 @@ class _Term:
     def plain(self, joint: str) -> float:
         """Less for each other joint in it: arms move in like periods, so that terms of many joints explain what a few cause."""
         others = {*self.speeds, *dict(self.sum_of)} - {joint}
-        return float(PLAIN ** len(others))
-
-    @property
-    def expected(self) -> float:
-        """How large its share may be, over that of the plainest terms: less for each more angle and multiple in its sum."""
-        angles = sum(abs(times) for _, times in self.sum_of)
-        return float(SMALLER ** max(angles - 1, 0))
+        return float(SHARE_OF_JOINT ** len(others))
 
     def torque(self, arm: _Arm) -> Array:
         """What it adds to the torque of the joint, by Lagrange's equations, shape (n,)."""
@@ -212,7 +202,7 @@ class _Term:
 def _columns(motion: Motion, arm: _Arm, terms: Sequence[_Term]) -> Array:
     """The terms in the pass band, a column each."""
     found = np.empty((len(motion.rows), len(terms)))
-    for begin in range(0, len(terms), AT_ONCE):
-        some = terms[begin : begin + AT_ONCE]
+    for begin in range(0, len(terms), TERMS_AT_ONCE):
+        some = terms[begin : begin + TERMS_AT_ONCE]
         found[:, begin : begin + len(some)] = motion.filtered(np.stack([term.torque(arm) for term in some])).T
     return found

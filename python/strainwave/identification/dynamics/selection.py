@@ -7,14 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.dynamics.shrinkage import shares_of
-
 Array = NDArray[np.float64]
 
 MOST = 40  # terms
 PATIENCE = 4  # terms that may bring nothing before the search ends
 BETTER = 0.99  # of the error, that the terms of a step must leave at most
-INDEPENDENT = 1e-3  # of a term's size, that must not be told by terms before it
+MIN_INDEPENDENT = 1e-3  # of the size of a term, that terms before it must not explain
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +43,7 @@ class Selection:
         while len(taken) < min(MOST, columns.shape[1]):
             squares = np.einsum("ij,ij->j", left, left)
             explained = (rest @ left) ** 2 / np.maximum(squares, 1e-300)
-            scores = np.where(squares > INDEPENDENT**2, self.plain * explained, 0.0)
+            scores = np.where(squares > MIN_INDEPENDENT**2, self.plain * explained, 0.0)
             place = int(np.argmax(scores))
             if scores[place] == 0.0:
                 break
@@ -64,3 +62,23 @@ class Selection:
         every = np.hstack([self.base, columns])
         left = self.torque[self.check] - every[self.check] @ shares_of(every[self.train], self.torque[self.train])
         return float(np.sqrt(np.mean(left**2)) / np.std(self.torque))
+
+
+def independent(base: Array, columns: Array, least: float = MIN_INDEPENDENT) -> list[int]:
+    """Return the columns of which at least a share is made up neither by a base nor by columns before them."""
+    kept: list[int] = []
+    orthogonal, _ = np.linalg.qr(base)
+    for place, column in enumerate(columns.T):
+        rest = column - orthogonal @ (orthogonal.T @ column)
+        if np.linalg.norm(rest) > least * np.linalg.norm(column):
+            kept.append(place)
+            orthogonal = np.column_stack([orthogonal, rest / np.linalg.norm(rest)])
+    return kept
+
+
+def shares_of(columns: Array, torque: Array) -> Array:
+    """Return the shares of columns in a torque by least squares, shape (columns,)."""
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    found: Array = np.linalg.lstsq(columns / size, torque, rcond=1e-8)[0] / size
+    return found

@@ -194,7 +194,7 @@ def motion_of(
     quick = signal.sosfiltfilt(signal.butter(4, min(WIDER * cutoff, 0.4 / step), fs=1.0 / step, output="sos"), regular)
     speed, acceleration = _rate(quick, step), _second_rate(smooth, step)
     stands = standing(regular, every, noise)
-    known = ~stands & ~_in_gap(time, grid, step, every)
+    known = ~stands & ~in_gap(time, grid, step, every)
     known[: EDGE * every] = known[-EDGE * every :] = False
     turning = _turning(regular, speed, slid) | near_rest(regular, every, noise)
     return Motion(grid, smooth, speed, acceleration, known, turning, stands, every, cutoff)
@@ -234,8 +234,8 @@ def _turning(angle: Array, speed: Array, slid: float) -> NDArray[np.bool_]:
     return ndimage.binary_dilation(near)
 
 
-def _in_gap(time: Array, grid: Array, step: float, reach: int) -> NDArray[np.bool_]:
-    """Samples of a grid within a gap of the instants, and so near that the filters mix the two."""
+def in_gap(time: Array, grid: Array, step: float, reach: int = 0) -> NDArray[np.bool_]:
+    """Return True for samples of a grid within a gap of the instants, or within `reach` samples of one, shape (n,)."""
     from scipy import ndimage
 
     after = np.clip(np.searchsorted(time, grid), 1, len(time) - 1)

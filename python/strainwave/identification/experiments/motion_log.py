@@ -17,7 +17,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import Nuisance, changing, sensible
 from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
-from strainwave.identification.experiments.motion import GAP, Motion, motion_of
+from strainwave.identification.experiments.motion import GAP, Motion, in_gap, motion_of
 from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
@@ -28,6 +28,8 @@ MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
 OUTLIER_WINDOW = 101  # samples, over which ripple and noise may grow
 MEDIAN_OF_NORMAL = 1.4826  # standard deviations of a normal distribution in the median of its size
 MAX_SHARE_OF_GAPS = 0.2  # of the time of a log: with more of it, gaps are why nothing is left to compare
+MIN_SOUND = 0.999  # share of sound samples around an instant: rounding of times decides nothing
+HELD_QUANTILE = 0.98  # of the steps of a channel without noise, whose size stands for it
 MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 DIFFERENCE = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
@@ -49,7 +51,7 @@ class MotionLog(ComparedByFields):
         effort: what was compared: `current`, `input_torque`, `joint_torque` (the motor's, counted at the output) or `voltage`
         force: the effort on the grid of the motion, without outliers, shape (m,)
         recorded: the same as it was recorded, shape (m,)
-        sound: False at outliers and clipped samples of the effort, shape (m,)
+        sound: False at outliers and clipped samples of the effort, and in gaps, shape (m,)
         extra: torque of other bodies that hold the output back, on the grid of the motion [N.m]; zero if nothing is known
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
         delayed: True if a delay of the effort behind the motion is an unknown
@@ -102,7 +104,7 @@ class MotionLog(ComparedByFields):
         values = changing(recording, effort, EFFORTS[effort])
         sound = ~spoilt(values)
         force = np.asarray(Akima1DInterpolator(time[sound], values[sound], extrapolate=True)(motion.time))  # as the angle is
-        sound_there = on_grid(sound.astype(float)) == 1.0
+        sound_there = (on_grid(sound.astype(float)) > MIN_SOUND) & ~in_gap(time, motion.time, motion.step)
         motion = replace(motion, known=motion.known & sound_there)
         _check_moves(motion, time)
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
@@ -337,7 +339,9 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
 
     clipped = _clipped(values) | _clipped(-values)
     off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
-    scale = noise(values[~clipped]) if np.median(off) > 0.0 else np.inf  # without noise extremes look like outliers
+    scale = noise(values[~clipped])
+    if np.median(off) == 0.0:  # values that are held or smooth, of which extremes would look like outliers
+        scale = float(np.quantile(np.abs(np.diff(values)), HELD_QUANTILE)) or np.inf
     around = MEDIAN_OF_NORMAL * ndimage.median_filter(off, OUTLIER_WINDOW, mode="nearest")
     outliers = off > MAX_OUTLIER_SIGMA * np.maximum(scale, around)
     spoilt_ones: NDArray[np.bool_] = outliers | clipped

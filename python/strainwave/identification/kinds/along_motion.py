@@ -8,19 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.identification.candidates.motion import (
-    MotionCandidate,
-    bands,
-    fit_motion,
-    refit,
-    spread_by_blocks,
-    spread_by_models,
-)
+from strainwave.identification.candidates.confirmed import confirmed, other_laws, spread_by_blocks, spread_by_models
+from strainwave.identification.candidates.motion import bands, fit_motion
+from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
+from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import Between, between_encoders
@@ -64,11 +60,15 @@ def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
 def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
-    log = taken.log
-    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
-    variants = [log] if in_current else bands(log, drive)
-    best, *others = fit_motion(variants, drive, priors=priors)
-    held_out, predicted = refit(best, drive)
+    best, *others = _fitted(taken, taken.log)
+    for each in taken.with_others:
+        more, *rest = _fitted(taken, each)
+        takes_over = more.predicts_no_worse_than(best) and more.error_in_band < best.error_in_band
+        best, others = (more, [best, *others, *rest]) if takes_over else (best, [*others, more, *rest])
+    best, held_out, predicted = confirmed(best, others, drive)
+    log = best.log
+    if file.neighbours and not file.regressors:
+        remarks.append(_other_joints(list(file.neighbours), list(log.regressors)))
     told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
@@ -81,7 +81,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(between.known(known, file.path.name), errors, file.path.name)
-    remarks += _shares(best.fit, file.regressors)
+    remarks = [*_delay(best), *_other_laws(best, others, in_current), *remarks, *_shares(best.fit, file.regressors)]
     every = (*file.remarks, *remarks)
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
@@ -98,6 +98,38 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
         ),
         known,
     )  # fmt: skip
+
+
+def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
+    """Return the models of a log, best first."""
+    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
+    return fit_motion([log] if taken.in_current else bands(log, taken.drive), taken.drive, priors=priors)
+
+
+def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
+    """Return the sentence about the terms of other joints that move."""
+    which = f"joints {listed(names)} move too: "
+    if not terms:
+        return f"{which}none of their terms makes the model predict better; if they load it, record longer"
+    own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
+    return f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
+
+
+def _delay(best: MotionCandidate) -> Iterator[str]:
+    """Yield the sentence about a delay that was fitted."""
+    for nuisance in best.fit.estimates:
+        if nuisance.path == "delay":
+            yield f"{best.log.effort} comes {1e3 * nuisance.value:.3g} ± {1e3 * nuisance.sigma:.2g} ms behind the motion"
+
+
+def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:
+    """Yield a sentence for each law of friction that predicts as well: numbers of friction belong to their law."""
+    for other in other_laws(best, others):
+        law, unit = other.model.law, "A" if in_current else "N·m"
+        yield (
+            f"another law of friction, {type(law).__name__}, predicts as well, with a Coulomb torque of {law.coulomb:.3g} "
+            f"{unit}: the record determines friction at the speeds measured, and numbers belong to their law"
+        )
 
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:

@@ -13,7 +13,8 @@ from strainwave import Drive, stiffness, structure
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
-from strainwave.identification.candidates.motion import MAX_DELAY_SAMPLES, MotionCandidate
+from strainwave.identification.candidates.motion_candidate import MotionCandidate
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from strainwave.identification.candidates.plain import sliding_squares
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.kinds import constant_speed_runs
 from strainwave.identification.kinds.constant_speed_runs import Run, run_of
 from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kinds import ColumnRoles, effort_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.readings import MAX_UNEXPLAINED
+from strainwave.identification.results.determined import MIN_SPEEDS
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.ratio import with_ratio
@@ -27,13 +31,14 @@ class ConstantSpeed(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         return effort_roles(columns, mapping)
 
-    def takes(self, file: Recognised, known: GearSoFar) -> bool:
-        """True also for logs at constant speed."""
+    def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
+        """True also for logs at constant speed, but for one of few speeds whose torque changes as that of a log."""
         if file.kind == "log":
             try:
-                return run_of(file, with_ratio(known, file)) is not None
+                run = run_of(file, with_ratio(known, file))
             except ValueError:
                 return True
+            return run is not None and (len(run.stretches) + len(files) > MIN_SPEEDS or not _is_explained(file, known))
         return file.kind == self.name
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
@@ -73,6 +78,16 @@ def _runs(files: Sequence[Recognised], known: GearSoFar) -> list[Run]:
             continue
         found += [run] if run is not None else []
     return found
+
+
+def _is_explained(file: Recognised, known: GearSoFar) -> bool:
+    """True if inertia, gravity and friction explain the torque of a log on data held out."""
+    try:
+        found = log_of(file.at_ratio(known.gear_set.gear.kinematics.ratio), known)
+        squares, samples = sliding_squares(found.log, found.drive)
+    except (ValueError, FloatingPointError):
+        return False
+    return bool(squares.sum() < MAX_UNEXPLAINED**2 * samples.sum())
 
 
 def _without_motion(file: Recognised) -> str:

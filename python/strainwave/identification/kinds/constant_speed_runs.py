@@ -113,15 +113,11 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
     side, assumed = file.side, list[str]()
     for name, of in (("input", "input"), ("output", "output"), ("", None)):
         prefix = f"{name}_" if name else ""
-        if f"{prefix}speed" in recording:
+        if "time" in recording and {f"{prefix}angle", f"{prefix}speed"} & set(recording.names):
+            speed, parts = _in_time(recording, prefix)
+        elif f"{prefix}speed" in recording:
             speed = sensible(recording, f"{prefix}speed", "rad/s")
             parts = _of_speed(speed)
-        elif f"{prefix}angle" in recording and "time" in recording:
-            time, angle = recording.time, sensible(recording, f"{prefix}angle", "rad")
-            parts, speed = constant_speeds(time, angle), np.zeros(rows)
-            for part in parts:
-                last = part.stop - 1
-                speed[part] = (angle[last] - angle[part.start]) / (time[last] - time[part.start])
         elif not name and "speed" in file.constants:
             speed, parts = np.full(rows, file.constants["speed"]), [slice(0, rows)]
         else:
@@ -132,6 +128,21 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
         taken: Side = "output" if (of or side) == "output" and not fast else "input"
         return speed, parts, taken, tuple(assumed)
     return None
+
+
+def _in_time(recording: Recording, prefix: str) -> tuple[Array, list[slice]]:
+    """Return the speed at each row, as measured or the mean of its stretch, and the rows of each stretch at constant speed."""
+    time, speed = recording.time, np.zeros(len(recording))
+    if measured := f"{prefix}speed" in recording:
+        speed = sensible(recording, f"{prefix}speed", "rad/s")
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    if f"{prefix}angle" in recording:
+        angle = sensible(recording, f"{prefix}angle", "rad")
+    parts = constant_speeds(time, angle)
+    for part in [] if measured else parts:
+        last = part.stop - 1
+        speed[part] = (angle[last] - angle[part.start]) / (time[last] - time[part.start])
+    return speed, parts
 
 
 def _of_speed(speed: Array) -> list[slice]:

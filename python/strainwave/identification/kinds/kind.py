@@ -77,8 +77,8 @@ class Kind(ABC):
             UndecidedError: the columns are not those of this kind; says which are needed
         """
 
-    def takes(self, file: Recognised, known: GearSoFar) -> bool:
-        """True if a file is fitted as this kind, whatever its columns were recognised as."""
+    def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
+        """True if a file, one of several, is fitted as this kind, whatever its columns were recognised as."""
         return file.kind == self.name
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:

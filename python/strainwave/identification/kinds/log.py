@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.candidates.motion import MotionCandidate, fit_motion
+from strainwave.identification.candidates.motion import fit_motion
+from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.kinds.along_motion import fit_log
 from strainwave.identification.kinds.kind import Kind, Ranked

@@ -14,7 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import bands
-from strainwave.identification.candidates.plain import fit_plain, moving
+from strainwave.identification.candidates.plain import fit_plain, held_out_rms, moving
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
@@ -109,7 +109,8 @@ class _Compared(ComparedByFields):
     @classmethod
     def of(cls, taken: PreparedLog, gear_set: GearSet) -> _Compared:
         """Return a log beside a saved drive."""
-        log, drive = taken.log, taken.drive.replace(load=gear_set.load)
+        log = min((taken.log, *taken.with_others), key=lambda each: held_out_rms(each, taken.drive))
+        drive = taken.drive.replace(load=gear_set.load)
         saved = next((each for each in gear_set.validation if each.channel == log.effort), None)
         zero, delay = (0.0, 0.0) if saved is None else (saved.zero, saved.delay)
         log = replace(log, recorded=log.recorded - zero, force=log.force - zero)

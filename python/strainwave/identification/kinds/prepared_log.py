@@ -12,7 +12,7 @@ from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.plain import along_best_motion, fit_plain, held_out_rms
+from strainwave.identification.candidates.plain import along_best_motion, fit_plain
 from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.reading.recognise import Recognised
@@ -29,6 +29,7 @@ class PreparedLog(ComparedByFields):
 
     Attributes:
         log: the experiment
+        with_others: the log with terms of the other joints that move
         drive: as far as it is known
         recording: with the torque in the sense of the motion
         remarks: what was assumed, put right or left out
@@ -39,6 +40,7 @@ class PreparedLog(ComparedByFields):
     """
 
     log: MotionLog
+    with_others: tuple[MotionLog, ...]
     drive: Drive
     recording: Recording
     remarks: tuple[str, ...]
@@ -73,9 +75,9 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     remarks += [
         "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"
     ] * is_of_speed
-    if file.neighbours and not file.regressors:
-        log, told = _with_neighbours(file, log, drive)
-        remarks += told
+    others = {name: file.recording[at] for name, at in file.neighbours.items()}
+    joint = file.joint or next(column for name, column in file.columns.items() if name.endswith("_angle"))
+    with_others = tuple(coupled(log, drive, recording.time, others, joint)) if others and not file.regressors else ()
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         share = 100.0 * spoilt_rows / len(recording)
@@ -85,32 +87,11 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     constant = TorqueConstant.of(file, known.gear_set) if rests else None
     rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
     relative = 0.0 if constant is None else constant.relative
-    return PreparedLog(log, drive, recording, tuple(remarks), in_current, said, relative, rotor)
+    return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, said, relative, rotor)
 
 
 def _constant_known(file: Recognised, gear_set: GearSet) -> bool:
     return "torque_constant" in file.constants or hasattr(gear_set.motor, "torque_constant")
-
-
-def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[MotionLog, list[str]]:
-    """The log with the torque by other joints that move, and what to know of it."""
-    found = coupled(
-        log, drive, file.recording.time, {name: file.recording[at] for name, at in file.neighbours.items()}, file.joint
-    )
-    errors = f"error {100.0 * found.before:.2g} % of what varies without and {100.0 * found.after:.2g} % with them"
-    which = f"joints {listed(found.joints)} move too: "
-    if not found.terms:
-        return log, [f"{which}no torque of them was found that other parts of the record show; if they load it, record longer"]
-    if held_out_rms(found.log, drive) >= held_out_rms(log, drive):
-        return log, [
-            f"{which}their terms are left out, as least squares predicts better without them; {errors} of blocks between"
-        ]
-    own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
-    terms = f"{len(found.terms)} terms of them are fitted beside, {listed(found.terms)}"
-    if found.combined:
-        count = len(found.log.regressors) - len(log.regressors)
-        terms = f"{count} combinations of all terms that they may add are fitted beside, the largest {listed(found.terms)}"
-    return found.log, [f"{which}{terms}; {errors}; numbers are as sure as these terms: {own}"]
 
 
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:

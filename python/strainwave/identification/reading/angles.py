@@ -12,6 +12,9 @@ MIN_WRAP = 0.75  # of a revolution: a larger jump is a wrap
 MAX_STEP = 0.5  # of a revolution: larger steps that are no wrap leave the direction open
 MIN_SHARE_OF_WRAPS = 0.9  # of the steps by more than half a revolution, of an angle that wraps
 MAX_RANGE = 1.01  # revolutions: an angle that covers more does not wrap
+MIN_JUMP = 0.01  # of the range of an angle: smaller steps are none from one recording to another
+MIN_FACTOR_OF_JUMP = 5.0  # of the fastest motion, and of the steps beside it: no shaft moves so for one row
+MAX_JUMPS = 10  # of a record: the fastest motion is that of the rows after these
 MIN_HELD = 3  # rows with one value
 MIN_CHANGES = 20  # of the value
 MIN_STEPS = 3.0  # smallest steps: an encoder that moves further between renewals is not waiting for its next step
@@ -47,6 +50,31 @@ def unwrapped(angle: Array, period: float = 2.0 * np.pi) -> tuple[Array, int]:
         )
     turns = np.concatenate([[0.0], np.cumsum(np.where(whole, -np.sign(steps), 0.0))])
     return angle + period * turns, int(whole.sum())
+
+
+@np.errstate(all="ignore")
+def jumps(angle: Array, time: Array, speed: Array | None = None) -> Rows:
+    """Return the rows behind a jump of an angle to another place, further than a shaft moves from row to row.
+
+    An angle that comes back within a row is an outlier, and no jump.
+
+    Args:
+        angle: of a shaft that runs on, shape (n,)
+        time: of each row, shape (n,)
+        speed: as it was measured, shape (n,); that of the angle if not given
+
+    >>> angle = np.concatenate([np.sin(np.arange(100) / 10.0), 5.0 + np.sin(np.arange(50) / 10.0)])
+    >>> jumps(angle, np.arange(150.0)).tolist()
+    [100]
+    """
+    steps, elapsed = np.diff(angle), np.diff(time)
+    rates = np.abs(steps) / np.where(elapsed > 0.0, elapsed, np.inf)
+    if len(steps) < MIN_CHANGES + MAX_JUMPS or not rates.max() > 0.0:
+        return np.zeros(0, np.int64)
+    fastest = float(np.sort(rates)[-1 - MAX_JUMPS]) if speed is None else float(np.nanmax(np.abs(speed)))
+    beside = np.maximum(np.concatenate([[0.0], rates[:-1]]), np.concatenate([rates[1:], [0.0]]))
+    is_alone = rates > MIN_FACTOR_OF_JUMP * np.maximum(beside, fastest)
+    return np.flatnonzero(is_alone & (np.abs(steps) > MIN_JUMP * np.ptp(angle))) + 1
 
 
 @np.errstate(all="ignore")

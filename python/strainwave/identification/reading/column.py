@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from strainwave.files.labels import Label
 from strainwave.files.units import measures
 from strainwave.identification.reading.channels import Channel
+from strainwave.messages import one_line
 
 Array = NDArray[np.float64]
 
@@ -55,7 +56,8 @@ class Column:
 
     @property
     def name(self) -> str:
-        return self.label.name
+        """Name in the file, as messages and reports show it: on one line, without characters that a terminal obeys."""
+        return one_line(self.label.name)
 
     @property
     def at_joint(self) -> bool:

@@ -15,7 +15,7 @@ from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import QUANTITIES, meaning, which_of, words_of
+from strainwave.identification.reading.names import QUANTITIES, is_of_joint, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
 
@@ -186,7 +186,7 @@ def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> in
     """Return the position of a column that a person named; raises as `_by_user`."""
     places = places_of(table.labels, column) or _of_joint(table, column, joint)
     names = [table.labels[place].name for place in places]
-    joints = [match[0] for each in names if (match := re.search(r"\d+$", each))]
+    joints = [match[1] for each in names if (match := re.search(r"(\d+)\]?$", each))]
     if len(places) > 1 and joint is None and len(set(joints)) == len(places):
         raise _which_joint(joints, names[0], "")
     if len(places) != 1:
@@ -198,9 +198,7 @@ def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> in
 
 def _of_joint(table: OpenTable, wanted: str, joint: str | None) -> list[int]:
     """Return the places of columns of a joint by the begin of their name, as `Cur` for `Cur4`; of all joints if None."""
-    number = r"\d+" if joint is None else f"0*{re.escape(which_of(words_of(joint)) or joint)}"
-    name = re.compile(rf"{re.escape(wanted)}[_.]?{number}")
-    places = [place for place, label in enumerate(table.labels) if name.fullmatch(label.name)]
+    places = [place for place, label in enumerate(table.labels) if is_of_joint(label.name, wanted, joint)]
     return places if joint is not None or len(places) > 1 else []
 
 

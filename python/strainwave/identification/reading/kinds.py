@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
+from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -35,8 +36,10 @@ MIN_ROWS = 4  # of a torsion loop or branch, and speeds of a table
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
 MAX_TWIST = 0.3  # rad of a gear at the output
 MAX_REFLECTED = 0.1  # relative difference of a motion of the input from that of the output, if it is divided by the ratio
+MAX_REFLECTED_RANGE = 2.0 * np.pi  # rad, rad/s: a motor that moves less, beside no encoder of the joint, is counted there
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
+SPEEDS = ("rad/s", "rpm", "rev/s")  # in which tables of friction have their speeds
 MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 
 
@@ -144,6 +147,7 @@ def _over_speed(speed: Array) -> str:
 
 def friction_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     speed = _needed(columns, "speed", "friction")
+    _check_speed_unit(speed)
     columns, load, loaded = _with_load(columns, speed)
     effort, torque = _needed_effort(columns, "friction")
     side, why_side = side_of_table(speed, torque, mapping.side)
@@ -161,6 +165,21 @@ def friction_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRol
         found, order = averaged(found, parts), " at one speed after another"
     why = f"its columns are {pair(speed, torque)}{order}: {KINDS['friction'].title}"
     return ColumnRoles("friction", found, side, (why, why_side, *loaded), remarks)
+
+
+def _check_speed_unit(speed: Column) -> None:
+    """Ask for the unit of the speeds of a table, which friction alone does not determine; robots have radians.
+
+    Raises:
+        UndecidedError: no unit is stated
+    """
+    if speed.sure or speed.robot:
+        return
+    fastest = float(np.abs(speed.raw[np.isfinite(speed.raw)]).max(initial=0.0))
+    ways = [f"{as_option('unit', speed.name, each)} ({convert(fastest, each, 'rpm'):.0f} 1/min at most)" for each in SPEEDS]
+    question = f"the unit of {speed.name} is not stated, and a table of friction does not determine it; give it, with "
+    answer = FileMapping(units={speed.name: SPEEDS[0]})
+    raise UndecidedError(question + " or ".join(ways), (), as_option("unit", speed.name, SPEEDS[0]), answer)
 
 
 def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:
@@ -371,13 +390,21 @@ def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]
 
 @np.errstate(all="ignore")
 def _reflect(found: dict[str, Column], mapping: FileMapping) -> list[str]:
-    """Rename motions of the input that are as large as those of the output, as they are divided by the ratio."""
+    """Rename motions of the input that are as large as those of a joint, as they are divided by the ratio."""
     if abs(abs(mapping.constants.get("ratio", np.inf)) - 1.0) < MAX_REFLECTED:
         return []
     why = []
     for quantity in ("angle", "speed"):
         motor, joint = found.get(f"input_{quantity}"), found.get(f"output_{quantity}")
-        if motor is None or joint is None or not np.std(joint.si) > 0.0:
+        if motor is None or joint is None:
+            continue
+        if not np.ptp(joint.si) > 0.0:
+            del found[f"output_{quantity}"]
+            why.append(f"{joint.name} never changes, as of an encoder that is not there: it is left out")
+            if np.ptp(motor.si) < MAX_REFLECTED_RANGE and not motor.by_user:
+                found[f"reflected_{quantity}"] = found.pop(f"input_{quantity}")
+                moves = f"{motor.name} moves no further than a joint: it is taken as divided by the ratio"
+                why.append(f"{moves}; otherwise add {as_option('column', f'input_{quantity}', motor.name)}")
             continue
         slope = float(np.cov(motor.si, joint.si)[0, 1] / np.var(joint.si, ddof=1))
         if abs(abs(slope) - 1.0) < MAX_REFLECTED:

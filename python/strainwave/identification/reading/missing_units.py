@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from strainwave.files.units import convert
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import UNITS
-from strainwave.identification.reading.slopes import speed_per_slope
+from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
 from strainwave.messages import as_option, quoted
 
 Array = NDArray[np.float64]
@@ -21,11 +21,11 @@ SPEEDS = ("rad/s", "deg/s", "rpm")
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
 RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
 MIN_BITS, MAX_BITS = 6, 40  # of an encoder
-MAX_OFF_SPEED = 0.15  # relative difference of a speed from the slope of its angle, in units that fit
 MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
 MAX_OFF_STEP = 1e-3  # relative difference of a step from a part of a revolution
 MIN_SHARE_OF_MULTIPLES = 0.95  # of the steps of an encoder
 MAX_JOINT_ANGLE = 4.0 * np.pi  # rad: two turns to each side, the most that joints have
+MIN_JOINT_RANGE = 0.1  # rad: a joint that moves by less in a log shows neither gravity nor inertia
 MAX_STEP_OF_LOG = 0.2  # s
 MIN_KELVIN = 200.0  # K: gears are not colder
 
@@ -61,10 +61,11 @@ def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
         known = [found[each.position].unit if found[each.position].why else None for each in pair]
         if time is None or None not in known:
             continue
-        slope = speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, found[time.position].unit, "s"))
+        slope = abs(speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, found[time.position].unit, "s")))
         for column, other, own, unit in zip(pair, pair[::-1], known, next(_fitting(slope, *known), ()), strict=False):
+            is_usual = column is pair[0] and known[1] is None and unit == UNITS["angle"]
             if own is None:
-                found[column.position] = Assumed(unit, f"as it fits {other.name}")
+                found[column.position] = Assumed(unit, "as is usual" if is_usual else f"as it fits {other.name}")
     return found
 
 
@@ -86,7 +87,7 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
     for unit in ANGLES:
         factor = convert(1.0, unit, "rad") / convert(1.0, str(angles[0].unit), "rad")
         units_of_speeds = [_unit_of_size(factor * convert(1.0, str(speed.unit), "rad/s")) for speed in speeds]
-        if unit == angles[0].unit or None in units_of_speeds or any(_too_far(angle, factor) for angle in angles):
+        if unit == angles[0].unit or None in units_of_speeds or not all(_may_move(angle, factor) for angle in angles):
             continue
         paired = {speed.position: str(each) for speed, each in zip(speeds, units_of_speeds, strict=True)}
         found.append({**{angle.position: unit for angle in angles}, **paired})
@@ -104,9 +105,10 @@ def bits_of(counts: float, max_off: float) -> int | None:
     return bits if MIN_BITS <= bits <= MAX_BITS and abs(counts / 2.0**bits - 1.0) < max_off else None
 
 
-def _too_far(angle: Column, factor: float) -> bool:
-    """True if a joint would move further than joints do, were its angle so many times as large."""
-    return angle.at_joint and factor * float(np.abs(angle.si).max()) > MAX_JOINT_ANGLE
+def _may_move(angle: Column, factor: float) -> bool:
+    """True if a joint may move as far as it would, were its angle so many times as large."""
+    furthest, moved = factor * float(np.abs(angle.si).max()), factor * float(np.ptp(angle.si))
+    return not angle.at_joint or (furthest < MAX_JOINT_ANGLE and (moved > MIN_JOINT_RANGE or factor > 1.0))
 
 
 def _unit_of_size(size: float) -> str | None:
@@ -139,7 +141,7 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
         return Assumed("s")
     counts_rows = bool((np.diff(values) == 1.0).all())
     for angle, speed in pairs_of_shafts(columns):
-        slope, then = speed_per_slope(angle.raw, speed.raw, column.raw), f"{speed.name} is then the slope of {angle.name}"
+        slope, then = abs(speed_per_slope(angle.raw, speed.raw, column.raw)), f"{speed.name} is then the slope of {angle.name}"
         for unit in ("ms", "us", "ns"):
             if any(_fitting(slope * convert(1.0, unit, "s"), angle.unit, speed.unit)):
                 return Assumed(unit, f"as {then}")

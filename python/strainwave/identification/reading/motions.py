@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
+from strainwave.identification.reading.angles import jumps
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 
@@ -55,13 +56,17 @@ def _ramps(time: Array, angle: Array, effort: Array) -> bool:
     if len(time) < MIN_ROWS or not np.isfinite(time + angle + effort).all():
         return False
     apart = max(len(time) // MOTIONS, 1)
+    for row in jumps(angle, time):
+        angle = np.concatenate([angle[:row], angle[row:] - (angle[row] - angle[row - 1])])
     moved, size = np.abs(angle[apart:] - angle[:-apart]), np.abs(effort[apart:])
     loaded, resting = size > MIN_LOAD * size.max(), moved <= MAX_SPEED_AT_REST * moved.max()
-    if not moved.max() > 0.0 or np.mean(resting[loaded]) < MIN_TIME_AT_REST:
+    if not moved.max() > 0.0:
         return False
     ramps = [size[rows] for rows in _runs_of(loaded & resting, MIN_ROWS_OF_RAMP)]
-    rises = [float(np.corrcoef(np.arange(len(ramp)), ramp)[0, 1]) for ramp in ramps if np.ptp(ramp) > 0.0]
-    return bool(rises) and float(np.median(rises)) > MIN_CORRELATION
+    rising = [
+        len(ramp) for ramp in ramps if np.ptp(ramp) > 0.0 and np.corrcoef(np.arange(len(ramp)), ramp)[0, 1] > MIN_CORRELATION
+    ]
+    return sum(rising) > MIN_TIME_AT_REST * float(loaded.sum())
 
 
 def stretches(speed: Array) -> list[slice]:

@@ -249,6 +249,16 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
     return quantity, place
 
 
+def is_of_joint(name: str, stem: str, joint: str | None = None) -> bool:
+    """True for the name of a column with the number of a joint behind a stem; of any joint if it is None.
+
+    >>> is_of_joint("Cur4", "Cur", "4"), is_of_joint("effort[4]", "effort", "J4"), is_of_joint("q_4", "q", "3")
+    (True, True, False)
+    """
+    number = r"\d+" if joint is None else f"0*{re.escape(which_of(words_of(joint)) or joint)}"
+    return re.fullmatch(rf"{re.escape(stem)}(?:[_.]?{number}|\[{number}\])", name) is not None
+
+
 def which_of(words: list[str]) -> str:
     """Return the words of a channel but for quantity and side: the number of a joint, or its name."""
     numbers = [word.lstrip("0") or "0" for word in words if word.isdigit()]

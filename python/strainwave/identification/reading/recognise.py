@@ -13,7 +13,7 @@ from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
 from strainwave.files.tables import OpenTable
 from strainwave.identification.kinds import kind_named
-from strainwave.identification.reading.angles import renewed_rows, unwrapped
+from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
@@ -24,6 +24,7 @@ from strainwave.identification.reading.missing_units import other_units
 from strainwave.identification.reading.name_of_file import joint_in, speed_in
 from strainwave.identification.reading.names import Side, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
+from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
 from strainwave.identification.reading.source import MeasurementFile, beside, measurement_file
 from strainwave.identification.reading.values import read
 from strainwave.messages import listed, one_line, quoted
@@ -57,6 +58,7 @@ class Recognised:
         began: the stamp in the file from which the time is counted [s]
         alternatives: other ways to read it that its names and numbers leave open; the fit may decide between them
         question: what to ask if the fit does not decide; empty if this reading is the usual one
+        is_of_robot: True if its motions have the names of a robot's joints, which are in radians by convention
     """
 
     path: Path
@@ -75,6 +77,7 @@ class Recognised:
     began: float = 0.0
     alternatives: tuple[Alternative, ...] = ()
     question: str = ""
+    is_of_robot: bool = False
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -196,6 +199,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         unused=unused,
         began=began,
         alternatives=_other_units(columns, found.columns, given),
+        is_of_robot=any(column.robot and column.channel.quantity in ("angle", "speed") for column in found.columns.values()),
     )
 
 
@@ -232,7 +236,7 @@ def _other_units(columns: Sequence[Column], found: Mapping[str, Column], given: 
 def _unused(table: OpenTable, columns: Sequence[Column]) -> tuple[str, ...]:
     """Return the names in the file of the columns that are not among these."""
     used = {column.position for column in columns}
-    return tuple(label.text for place, label in enumerate(table.labels) if place not in used and label.name)
+    return tuple(one_line(label.text) for place, label in enumerate(table.labels) if place not in used and label.name)
 
 
 def _of_unused(names: Sequence[str]) -> list[str]:
@@ -385,6 +389,9 @@ def _in_time(
             remarks.append(f"{was}, and the {len(rows)} rows are kept")
             series = {each: values[rows] for each, values in series.items()}
             break
+    if kind in ("log", "encoders"):
+        series, of_jumps = _of_one_recording(series, columns, given)
+        remarks += [*of_jumps, *_turn_speeds(series, columns, given)]
     when = _clock(series, given)
     if when is None and kind_named(kind).time == "needed":
         raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
@@ -392,6 +399,47 @@ def _in_time(
         return series, remarks, 0.0
     others = {name: values[when.rows] for name, values in series.items() if name != "time"}
     return {"time": when.time, **others}, [*remarks, *when.remarks], when.began
+
+
+def _of_one_recording(
+    series: dict[str, Array], columns: Mapping[str, Column], given: FileMapping
+) -> tuple[dict[str, Array], list[str]]:
+    """Return the rows of the longest stretch between jumps of an angle, and a remark."""
+    time = _stamps(series, given)
+    for name, column in columns.items() if len(time) else ():
+        if not name.endswith("_angle"):
+            continue
+        behind = jumps(series[name], time, series.get(name.replace("angle", "speed")))
+        if not len(behind):
+            continue
+        ends = np.array([0, *behind, len(time)])
+        longest, first = int(np.argmax(np.diff(ends))), int(behind[0])
+        rows = slice(ends[longest], ends[longest + 1])
+        jump, elapsed = series[name][first] - series[name][first - 1], time[first] - time[first - 1]
+        remark = (
+            f"{column.name} jumps by {jump:.3g} rad within {1e3 * elapsed:.3g} ms at row {first}, further than it moves: "
+            f"{len(ends) - 1} recordings in one file, of which the longest is taken, rows {rows.start} to {rows.stop - 1}"
+        )
+        return {each: values[rows] for each, values in series.items()}, [remark]
+    return series, []
+
+
+def _turn_speeds(series: dict[str, Array], columns: Mapping[str, Column], given: FileMapping) -> Iterator[str]:
+    """Turn the sign of speeds that are counted against their angle, if a person gave none; yield a remark of each."""
+    for name, column in columns.items():
+        angle = name.replace("speed", "angle")
+        if not name.endswith("_speed") or angle not in series or name in given.sign:
+            continue
+        time = _stamps(series, given)
+        if len(time) and abs(speed_per_slope(series[angle], series[name], time) + 1.0) < MAX_OFF_SPEED:
+            series[name] = -series[name]
+            yield f"{column.name} is counted against {columns[angle].name}: its sign is turned round"
+
+
+def _stamps(series: Mapping[str, Array], given: FileMapping) -> Array:
+    """Return the stamps of the rows [s], or their time by the rate given; empty if neither is known."""
+    rows = np.arange(len(next(iter(series.values()))), dtype=float)
+    return series["time"] if "time" in series else rows / given.constants["rate"] if "rate" in given.constants else np.zeros(0)
 
 
 def _clock(series: Mapping[str, Array], given: FileMapping) -> Clock | None:

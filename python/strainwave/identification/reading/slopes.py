@@ -13,6 +13,7 @@ PARTS = (5000, 200)  # of a record over which slopes are taken, the finest first
 MAX_STEP = 0.5  # of the range of an angle: a larger one is a revolution begun anew, and has no slope
 MIN_SLOPES = 20  # a correlation of fewer may be chance
 MIN_CORRELATION = 0.95  # of a speed and of the slope of its angle
+MAX_OFF_SPEED = 0.15  # relative difference of a speed from the slope of its angle, in units that fit
 MIN_EXPLAINED = 0.5  # of the squares of slopes and speeds: with less in common, one is not the other in another unit
 
 

@@ -19,7 +19,7 @@ from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS, OpenTable, is_table_of_numbers, open_table
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import Layout, layout_of, nameless, rises_evenly
-from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS
+from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint
 from strainwave.identification.reading.slopes import is_slope
 from strainwave.identification.reading.times import merged, with_one_time
 from strainwave.messages import listed, one_line
@@ -101,8 +101,7 @@ class MeasurementFile:
         """True if the file has a column of this name or number, or several that begin so, one for each joint."""
         if not self.names:
             return False
-        stem = re.compile(rf"{re.escape(wanted)}[_.]?\d+")
-        return bool(places_of(self.table.labels, wanted)) or any(stem.fullmatch(name) for name in self.names)
+        return bool(places_of(self.table.labels, wanted)) or any(is_of_joint(name, wanted) for name in self.names)
 
     @property
     def is_of_one_quantity(self) -> bool:

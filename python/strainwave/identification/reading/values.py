@@ -80,8 +80,12 @@ def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMappin
     found, remarks = list(columns), []
     for name, unit in mapping.units.items():
         channel = CHANNELS.get(ALIASES.get(name, name))
-        places = [place for place, column in enumerate(columns) if column.name == name or _is_called(column, channel)]
-        if not places:
+        places = [
+            place
+            for place, column in enumerate(columns)
+            if name in (column.name, column.label.name) or _is_called(column, channel)
+        ]
+        if not places and not any(name in (label.name, label.text) for label in table.labels):
             there = listed(column.name for column in columns)
             raise ValueError(one_line(f"{table.file}: a unit is given for {quoted(name)}, which is not read; read are {there}"))
         for place in places:

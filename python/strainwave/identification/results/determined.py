@@ -12,7 +12,7 @@ from strainwave import _core
 from strainwave._core import Gear
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.estimate import ONE_SIGMA, student
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,8 @@ def friction_at(speed: float, value: float, sigma: float, *, side: str = "input"
     >>> print(friction_at(-0.41152, 2.3, 0.05, side="output").label)
     steady_friction (at 0.412 rad/s of the output)
     """
-    return FileEstimate(PATH, unit, value, sigma, f"at {abs(speed):.3g} rad/s of the {side}")
+    why = TOO_UNCERTAIN if is_uncertain(value, sigma) else ""
+    return FileEstimate(PATH, unit, value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
 
 
 def different_speeds(speed: Array) -> int:

@@ -15,7 +15,7 @@ from strainwave.files.described import own_paths
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
-from strainwave.identification.candidates.motion import nuisances_of
+from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import moving
 from strainwave.identification.experiments.motion_log import MotionLog

@@ -18,6 +18,13 @@ from strainwave.identification.results.held_out import HeldOut
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
 Look = Literal["table", "loop", "series", "means"]
+MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
+TOO_UNCERTAIN = "standard deviation exceeds half the value"
+
+
+def is_uncertain(value: float, sigma: float) -> bool:
+    """True if the standard deviation of an estimate is too large for it to be identified."""
+    return bool(sigma > MAX_RELATIVE_SIGMA * abs(value))
 
 
 @dataclass(frozen=True)

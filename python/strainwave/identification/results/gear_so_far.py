@@ -14,6 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate
+from strainwave.messages import one_line
 from strainwave.parameters import gear_numbers
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
@@ -93,7 +94,7 @@ class GearSoFar:
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
         for path in (path for path in gear_numbers(gear) if is_of(path, parts)):
             known = path in sigmas and np.isfinite(sigmas[path])
-            sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if known else None)
+            sources[path] = Entry(source=f"identified from {one_line(name)}", uncertainty=sigmas[path] if known else None)
             determined_by |= {path: name} if known else {}
         gear_set = replace(self.gear_set, gear=gear, sources=sources)
         return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
@@ -140,7 +141,9 @@ class GearSoFar:
             if path.startswith("gear.friction_input.") and path not in sigmas:
                 old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
-                sources[path] = before[old] if kept else Entry(source=f"assumed beside the parameters that {name} determines")
+                sources[path] = (
+                    before[old] if kept else Entry(source=f"assumed beside the parameters that {one_line(name)} determines")
+                )
                 determined_by |= {path: self.determined_by[old]} if kept and old in self.determined_by else {}
         return replace(after, gear_set=replace(after.gear_set, sources=sources), determined_by=determined_by)
 
@@ -166,7 +169,7 @@ def plain(path: str) -> str:
 def source_of(estimate: FileEstimate, name: str) -> Entry:
     """Return the source of an estimated number."""
     words = {"identified": "identified from {name}", "identified in combination": "identified in combination: {why}"}
-    source = words.get(estimate.state, "fitted but not identified: {why}").format(name=name, why=estimate.why)
+    source = words.get(estimate.state, "fitted but not identified: {why}").format(name=one_line(name), why=estimate.why)
     return Entry(source=source, uncertainty=estimate.sigma if np.isfinite(estimate.sigma) else None)
 
 

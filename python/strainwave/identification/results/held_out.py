@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
+
 
 @dataclass(frozen=True)
 class HeldOut:
@@ -35,3 +37,8 @@ class HeldOut:
     def relative(self) -> float:
         """The error over that of a model that predicts nothing [1]."""
         return self.error / self.zero if self.zero > 0.0 else np.inf
+
+    @property
+    def share_of_plain(self) -> float:
+        """The error over that of plain least squares [1]; not a number without."""
+        return self.error / max(self.plain, 1e-300)

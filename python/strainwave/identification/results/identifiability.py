@@ -12,16 +12,15 @@ from strainwave.files.entries import Entry
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import Influence
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
 
 COMMON = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law of friction that has them
-MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; a parameter with a larger one is not identified
 MAX_SIGMA_OF_PHASE = 0.5  # rad
 MAX_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
 MAX_SHIFT_BY_WRONG = 0.05  # relative shift by a kept parameter that the measurement contradicts
 MIN_SHIFT_LISTED = 0.02  # relative shift; smaller ones are not listed
 MAX_LISTED = 3  # kept parameters named with an estimate
-MAX_CORRELATION = 0.98  # two estimates with a larger one are identified in combination only
+MAX_CORRELATION = 0.98  # of two estimates; with a larger one, those that are uncertain are identified in combination
 
 
 @dataclass(frozen=True)
@@ -70,12 +69,13 @@ class Fitted:
         """Return why the data do not determine an estimate, and whether they do together with another; empty if they do."""
         if why := self._undetermined(place):
             return why, False
+        estimate = self.fit.estimates[place]
+        if not _is_phase(estimate) and is_uncertain(estimate.value, estimate.sigma):
+            why = _combination(self.fit, place)
+            return why or TOO_UNCERTAIN, bool(why)
         if why := self.shared.get(path, ""):
             return why, True
-        if why := self._by_wrong(place, sources) or _by_kept(self.fit.estimates[place], shifts):
-            return why, False
-        why = _combination(self.fit, place)
-        return why, bool(why)
+        return self._by_wrong(place, sources) or _by_kept(estimate, shifts), False
 
     def _undetermined(self, place: int) -> str:
         estimate = self.fit.estimates[place]
@@ -87,9 +87,6 @@ class Fitted:
             return f"ended at the limit of what it may be; {self.source} pulls it beyond"
         if _is_phase(estimate):
             return f"standard deviation is {estimate.sigma:.2g} rad" if estimate.sigma > MAX_SIGMA_OF_PHASE else ""
-        if estimate.sigma > MAX_RELATIVE_SIGMA * abs(estimate.value):
-            together = _combination(self.fit, place)
-            return "standard deviation exceeds half the value" + (f"; {together}" if together else "")
         return ""
 
     def _by_wrong(self, place: int, sources: Mapping[str, Entry]) -> str:
@@ -119,7 +116,7 @@ def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
 
 
 def _combination(fit: Fit, place: int) -> str:
-    """Return the other estimate with which the data determine one only together, and the combination that they determine."""
+    """Return the combination with another estimate that the data determine, although they hardly determine one; or nothing."""
     correlation, free = np.abs(fit.correlation[place]), len(fit.plan.unknowns)
     correlation[place] = 0.0
     correlation[free : free + len(fit.plan.tied)] = 0.0  # what follows another one is known as well
@@ -133,6 +130,8 @@ def _combination(fit: Fit, place: int) -> str:
     own, other = fit.estimates[place], fit.estimates[partner]
     weight = -fit.covariance[place, partner] / fit.covariance[partner, partner]
     sigma = own.sigma * np.sqrt(max(1.0 - correlation[partner] ** 2, 0.0))
+    if is_uncertain(own.value, sigma):
+        return ""
     name, other_name = (each.path.rpartition(".")[2] for each in (own, other))
     sign, total = "+" if weight > 0.0 else "-", own.value + weight * other.value
     return (

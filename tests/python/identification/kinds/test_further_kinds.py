@@ -183,6 +183,38 @@ def test_too_few_speeds_give_the_friction_at_each_and_what_to_record(tmp_path: P
     assert "record 4 speeds or more" in " ".join(found.files[-1].remarks)
 
 
+def one_way(path: Path, *, gravity: float, drift: float, with_speed: bool) -> Path:
+    """A joint that turns one way at 0.4 rad/s between two rests, under friction that drifts along the way."""
+    random, time = np.random.default_rng(8), np.arange(0.0, 8.0, 0.005)
+    speed = 0.4 * np.clip(np.minimum(time - 0.5, 7.5 - time) / 0.3, 0.0, 1.0)
+    angle = np.cumsum(speed) * 0.005 - 1.4
+    torque = np.sign(speed) * (4.0 + drift * np.sin(3.0 * time)) + gravity * np.sin(angle) + 0.1 * random.normal(size=len(time))
+    columns = {"time": time, "joint_angle": angle, "joint_torque": torque}
+    units = {"time": "s", "joint_angle": "rad", "joint_torque": "N.m"}
+    if with_speed:
+        columns["joint_speed"], units["joint_speed"] = speed + 3e-4 * random.normal(size=len(time)), "rad/s"
+    return write(path, columns, units)
+
+
+@pytest.mark.parametrize("with_speed", [True, False])
+def test_a_record_one_way_at_one_speed_determines_friction_there_with_a_speed_column_and_without(
+    tmp_path: Path, with_speed: bool
+) -> None:
+    found = identify(START, [one_way(tmp_path / "log.csv", gravity=0.0, drift=0.3, with_speed=with_speed)])
+    (friction,) = (each.estimate for each in found.parameters if each.estimate.path == "steady_friction")
+    assert friction.law == "at 0.4 rad/s of the output"
+    assert friction.value == pytest.approx(4.0, rel=0.05)
+    assert not found.failed
+
+
+@pytest.mark.parametrize("with_speed", [True, False])
+def test_a_record_one_way_at_one_speed_that_gravity_explains_is_a_log(tmp_path: Path, with_speed: bool) -> None:
+    found = identify(START, [one_way(tmp_path / "log.csv", gravity=9.0, drift=0.0, with_speed=with_speed)])
+    values = {each.estimate.path: each.estimate.value for each in found.parameters}
+    assert values["load.gravity_torque"] == pytest.approx(9.0, rel=0.02)
+    assert found.files[0].held_out is not None
+
+
 def test_friction_over_the_angle_gives_waves_around_the_table(tmp_path: Path) -> None:
     files = [*both_ways(tmp_path), run(tmp_path / "turns.csv", 10.0, angle=True, count=3200)]
     found = identify(START, files)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
-from strainwave.identification.reading.angles import unwrapped
+from strainwave.identification.reading.angles import jumps, unwrapped
 
 steps = arrays(np.float64, st.integers(5, 200), elements=st.floats(-0.24, 0.24))
 
@@ -32,3 +32,15 @@ def test_what_does_not_wrap_stays_as_it_is(angle: NDArray[np.float64]) -> None:
 def test_a_shaft_too_fast_for_its_samples_is_refused() -> None:
     with pytest.raises(ValueError, match=r"do not show in which direction the shaft went; record it more often"):
         unwrapped(0.4 * np.arange(100) % 1.0, 1.0)
+
+
+def test_an_outlier_and_a_fast_motion_are_no_jumps() -> None:
+    time = np.arange(0.0, 4.0, 0.01)
+    angle = np.sin(time)
+    angle[100] += 0.5
+    assert not len(jumps(angle, time))
+    fast = np.where(time < 2.0, 0.0, 1.0 - np.exp(-(time - 2.0) / 0.02))  # a step of a fast drive
+    assert not len(jumps(fast, time))
+    angle[250:] += 0.5
+    assert jumps(angle, time).tolist() == [250]
+    assert jumps(angle, time, np.full(len(time), 20.0)).tolist() == []  # which the shaft may move in a row

@@ -45,6 +45,13 @@ def test_a_table_of_friction(tmp_path: Path, header: str, side: str) -> None:
     assert "a table of steady friction" in words_of(found)
 
 
+def test_the_unit_of_the_speeds_of_a_table_is_asked(tmp_path: Path) -> None:
+    path = write(tmp_path / "table.csv", "speed,torque [N.m]", RPM / 60.0, np.sign(RPM))
+    with pytest.raises(ValueError, match=r"unit of speed is not stated, .* --unit speed=rev/s .* \(3000 1/min at most\)"):
+        recognise(path)
+    assert recognise(path, FileMapping(units={"speed": "rev/s"})).recording["speed"] == pytest.approx(RPM * np.pi / 30.0)
+
+
 def test_a_slow_table_has_a_remark_on_its_side(tmp_path: Path) -> None:
     path = write(tmp_path / "table.csv", "speed [rpm],torque [N.m]", RPM / 100.0, np.sign(RPM))
     assert recognise(path).side == "input"
@@ -224,3 +231,64 @@ def test_the_torque_that_a_model_of_the_arm_gives_is_taken_where_it_is_named(tmp
     found = recognise(path, FileMapping(columns={"rigid_torque": "model"}))
     assert found.columns == {"time": "t", "output_angle": "q", "joint_torque": "tau", "rigid_torque": "model"}
     assert found.recording["rigid_torque"] == pytest.approx(2.0 * SWING)
+
+
+def test_a_joint_that_sticks_and_slips_under_a_wave_of_torque_is_a_log(tmp_path: Path) -> None:
+    """Half of the time it rests under torques that rise and fall, which no ramp until it breaks away does."""
+    time = np.arange(0.0, 60.0, 0.01)
+    torque = 4.0 * np.sin(0.6 * time)
+    slides = np.abs(torque) > 3.2
+    angle = np.cumsum(np.where(slides, 0.05 * np.sign(torque), 0.0)) * 0.01
+    rows = np.column_stack([time, angle, torque])
+    path = tmp_path / "knee.csv"
+    np.savetxt(path, rows, delimiter=",", header="time [s],joint_angle [rad],joint_torque [N.m]", comments="")
+    assert recognise(path).kind == "log"
+
+
+def arm(path: Path, angles: str, efforts: str) -> Path:
+    """A log of two joints that move, with names of the columns by the number of the joint."""
+    names = [name.format(joint) for joint in (1, 2) for name in (angles, efforts)]
+    header = ",".join(["time [s]", *names])
+    return write(path, header, TIME, SWING, 2.0 * SWING, np.cos(3.0 * TIME), 5.0 * SWING)
+
+
+def test_units_of_columns_of_other_joints_are_taken_along(tmp_path: Path) -> None:
+    path = arm(tmp_path / "log.csv", "q{} [rad]", "i{}")
+    for joint, size in (("1", 2.0), ("2", 5.0)):
+        found = recognise(path, FileMapping(units={"i1": "percent of 10 A", "i2": "percent of 10 A"}, joint=joint))
+        assert found.recording["current"] == pytest.approx(0.1 * size * SWING)
+    with pytest.raises(ValueError, match='a unit is given for "i3", which is not read'):
+        recognise(path, FileMapping(units={"i3": "percent of 10 A"}, joint="1"))
+
+
+@pytest.mark.parametrize("efforts", ["effort[{}]", "effort_{}", "effort{}"])
+def test_a_column_of_a_joint_is_named_by_the_stem_of_its_name(tmp_path: Path, efforts: str) -> None:
+    path = arm(tmp_path / "log.csv", "position[{}] [rad]", efforts)
+    found = recognise(path, FileMapping(columns={"current": "effort"}, joint="2"))
+    assert found.recording["current"] == pytest.approx(5.0 * SWING)
+    with pytest.raises(ValueError, match=r"it has 2 joints \(1, 2\), .*; choose with --joint 1"):
+        recognise(path, FileMapping(columns={"current": "effort"}))
+    with pytest.raises(ValueError, match='has no column "torque" to be the current'):
+        recognise(path, FileMapping(columns={"current": "torque"}, joint="2"))
+
+
+@pytest.mark.parametrize("sign", [{}, {"output_speed": 1}])
+def test_a_speed_that_is_counted_against_its_angle_is_turned_round(tmp_path: Path, sign: dict[str, int]) -> None:
+    speed = 2.0 * np.pi * np.cos(2.0 * np.pi * TIME)
+    path = write(tmp_path / "log.csv", "t [s],q [rad],dq [rad/s],tau [N.m]", TIME, SWING, -speed, SWING)
+    found = recognise(path, FileMapping(sign=sign))
+    assert found.recording["output_speed"] == pytest.approx(-speed if sign else speed)  # unless a person gave its sign
+    assert ("dq is counted against q: its sign is turned round" in found.remarks) == (not sign)
+
+
+@pytest.mark.parametrize("with_speed", [True, False])
+def test_a_file_whose_angle_jumps_is_of_two_recordings(tmp_path: Path, with_speed: bool) -> None:
+    angle, speed = SWING.copy(), 2.0 * np.pi * np.cos(2.0 * np.pi * TIME)
+    angle[250:] += 0.6
+    header, columns = "t [s],q [rad],tau [N.m]", [TIME, angle, SWING]
+    if with_speed:
+        header, columns = f"{header},dq [rad/s]", [*columns, speed]
+    found = recognise(write(tmp_path / "log.csv", header, *columns))
+    assert len(found.recording) == 250
+    assert "q jumps by 0.5" in words_of(found)
+    assert "2 recordings in one file, of which the longest is taken, rows 0 to 249" in words_of(found)

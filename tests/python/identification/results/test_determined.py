@@ -81,6 +81,13 @@ def test_a_table_of_speeds_close_together_determines_friction_there_and_leaves_t
     assert found.gear_set.gear == sw.load(START)
 
 
+def test_friction_at_a_speed_with_a_large_standard_deviation_is_not_identified() -> None:
+    (found,), _ = friction_at_speeds(np.array([0.4]), np.array([5.43]), np.array([[2.9**2]]))
+    assert found.state == "not identified"
+    (found,), _ = friction_at_speeds(np.array([0.4]), np.array([5.43]), np.array([[2.5**2]]))
+    assert found.state == "identified"
+
+
 def test_a_record_at_one_speed_identifies_no_viscous_friction(tmp_path: Path) -> None:
     found = identify(START, [turning(tmp_path / "pq.csv", 20.0)])
     numbers = {each.estimate.label: each.estimate for each in found.parameters}

@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
+from strainwave.identification.fitting.influence import Influence
 from strainwave.identification.identify import Identified
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.identifiability import Fitted
+from strainwave.report.identify_files import identify_summary
 
-from tests.python.identification.candidates.test_torsion import SPRINGS, at_the_input, loop
+from tests.python.identification.candidates.test_torsion import SPRINGS, at_the_input
 
 SPEED = np.geomspace(0.5, 300.0, 30)
 
@@ -82,14 +86,32 @@ def test_a_gear_loads_without_a_warning_and_breaks_away_no_lower_than_it_slides(
     assert law.breakaway >= law.coulomb
 
 
-def test_a_correlated_pair_is_identified_in_combination_with_what_the_data_determine() -> None:
-    measured = loop(SPRINGS["linear"], 1.5e-3 * np.sin(np.linspace(0.0, 2.0 * np.pi, 200)))
-    recording = sw.Recording({"twist": measured.twist, "torque": measured.torque}, {"twist": "rad", "torque": "N.m"})
-    found = sw.identify("hfuc-20-80", {"torsion": recording})
-    for each in found.files[0].estimates:
-        if each.state == "identified in combination":
-            assert "determined together with" in each.why
-            assert "correlation" in each.why
+def collinear(noise: float) -> list[FileEstimate]:
+    """Estimates of a friction table at speeds around 20 rad/s, which hardly separates Coulomb and viscous friction."""
+    speed = 20.0 + 0.2 * np.linspace(-1.0, 1.0, 20)
+    torque = 0.05 + 3e-4 * speed + noise * np.random.default_rng(3).normal(size=20)
+    gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
+    free = ["friction_input.coulomb", "friction_input.viscous"]
+    recording = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    found = sw.fit(gear, {"friction": recording}, free=free)
+    return list(Fitted(found, "table.csv", Influence.none(len(found.estimates))).estimates({}, ()))
+
+
+def test_uncertain_estimates_of_a_correlated_pair_are_identified_in_combination() -> None:
+    states = {each.path: (each.state, each.why) for each in collinear(noise=1e-3)}
+    state, why = states["gear.friction_input.viscous"]
+    assert state == "identified in combination"
+    assert why.startswith("determined together with friction_input.coulomb")
+    assert "(correlation -1.000)" in why
+
+
+def test_a_correlated_pair_with_small_standard_deviations_is_identified() -> None:
+    assert {each.state for each in collinear(noise=1e-6)} == {"identified"}
+
+
+def test_estimates_in_combination_are_listed_on_the_terminal() -> None:
+    lines = list(identify_summary(sw.identify("hfuc-20-80", {"torsion": branch()})))
+    assert any(line.startswith("  gear.stiffness.k1 ") and line.endswith("identified in combination") for line in lines)
 
 
 def test_a_result_equals_its_copy() -> None:

@@ -1,0 +1,115 @@
+"""The model of a log that is taken: confirmed by data held out, with the spread of its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.leave_out import without_rows
+from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
+from strainwave.identification.candidates.plain import held_out_residuals, moving
+from strainwave.identification.fitting.fit import solved_problem
+from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
+
+Array = NDArray[np.float64]
+
+JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
+MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
+MAX_REFITS = 6  # models that are fitted to all but the last stretch if the best one is not confirmed
+
+
+def confirmed(
+    best: MotionCandidate, others: Sequence[MotionCandidate], drive: Drive
+) -> tuple[MotionCandidate, HeldOut, Recording]:
+    """Return the best model that predicts the last 30 % of the motion no worse than plain least squares and than their mean.
+
+    Models were compared by one step of Gauss and Newton, which may hide numbers that the rest of the motion does not determine.
+
+    Returns:
+        the model, of all tried the one with the smallest error if none is as good; its error and that of plain least squares,
+        with the terms of other joints or without, whichever is smaller; and its prediction, as `refit`
+    """
+    last, tried = best.folds[-1].stretch, []
+    logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
+    plain = min(float(np.sqrt(np.mean(held_out_residuals(log, drive, [last])[0] ** 2))) for log in logs)
+    for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
+        held_out, predicted = refit(each)
+        held_out = replace(held_out, plain=plain)
+        tried.append((each, held_out, predicted))
+        if held_out.share_of_plain < MAX_SHARE_OF_PLAIN and held_out.relative < 1.0:
+            return tried[-1]
+    return min(tried, key=lambda found: found[1].error)
+
+
+def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
+    """Return the error on the last 30 % of the motion of the model fitted to what comes before, and its prediction of all.
+
+    Returns:
+        the error; and time, effort, `modelled` and `held_out` (1 in the stretch), as
+        they are drawn, from the first motion to the last
+    """
+    log, last = best.log, best.folds[-1].stretch
+    found = best.fitted_to(~last[log.motion.rows])
+    residual = best.left(found.model, nuisances_of(found), ~last)
+    left, rows = residual[last], moving(log)
+    before = float(np.mean(log.recorded[rows & ~last]))
+    (part,) = found.parts
+    spread = float(np.std(log.measured[0, ~part.training])) if not part.training.all() else 0.0
+    in_band = float(part.rms(held_out=True)[0]) / spread if spread > 0.0 else np.nan
+    held_out = HeldOut(
+        "last 30 % of the motion", log.effort, log.units[0],
+        float(np.sqrt(np.mean(left**2))), float(np.sqrt(np.mean((log.recorded[last] - before) ** 2))),
+        samples=int(last.sum()), in_band=in_band,
+    )  # fmt: skip
+    columns = {
+        "time": log.motion.time,
+        log.effort: log.recorded,
+        "modelled": log.recorded - residual,
+        "held_out": last.astype(float),
+    }
+    units = {"time": "s", log.effort: log.units[0], "modelled": log.units[0], "held_out": "1"}
+    return held_out, Recording({name: values[rows] for name, values in columns.items()}, units)
+
+
+def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
+    """Return the standard deviations of the numbers of a fit by how they move without each block of the motion, by path.
+
+    The jackknife (Quenouille1956, Tukey1958) over contiguous blocks: it takes no model of the noise, and sees what differs from
+    one part of a record to another. Numbers at a limit have none.
+    """
+    problem, x = solved_problem(best.fit)
+    rows = np.arange(len(best.log.motion.rows))
+    blocks = [(rows >= each[0]) & (rows <= each[-1]) for each in np.array_split(rows, JACKKNIFE_BLOCKS)]
+    without = np.array(list(without_rows(problem, x, blocks, ())))
+    spread = np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(without, axis=0))
+    return {each.path: float(sigma) for each, sigma in zip(problem.plan.unknowns, spread, strict=False)}
+
+
+def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
+    """Return how far numbers lie apart in models of the same law that predict as well, by path: the choice of a model is part
+    of their uncertainty. A number of another law of friction has another meaning."""
+    values = dict(zip(best.model.free, best.values, strict=True))
+    found = dict.fromkeys(values, 0.0)
+    for other in others:
+        if other.predicts_as_well_as(best) and type(other.model.law) is type(best.model.law):
+            for path, value in zip(other.model.free, other.values, strict=True):
+                if path in found:
+                    off = abs(value - values[path])
+                    turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if path.endswith("_phase") else off
+                    found[path] = max(found[path], float(turned))
+    return found
+
+
+def other_laws(best: MotionCandidate, others: Sequence[MotionCandidate]) -> list[MotionCandidate]:
+    """Return the models with another law of friction that predict as well with another Coulomb torque, the best of each law."""
+    laws = {type(best.model.law): best}
+    for other in sorted(others, key=lambda each: each.error_in_band):
+        if other.predicts_as_well_as(best):
+            laws.setdefault(type(other.model.law), other)
+    coulomb = best.model.law.coulomb
+    return [each for each in laws.values() if abs(each.model.law.coulomb - coulomb) > MIN_COULOMB_DIFFERENCE * coulomb]

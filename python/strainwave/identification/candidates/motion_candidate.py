@@ -1,0 +1,207 @@
+"""A model of a joint as a log determines it, and what it predicts of stretches that took no part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core
+from strainwave.equality import ComparedByFields
+from strainwave.identification.candidates.leave_out import SHAPES, without_rows
+from strainwave.identification.candidates.motion_model import MotionModel, bristled
+from strainwave.identification.candidates.plain import moving
+from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.fitting.fit import Fit, fit, problem_of
+from strainwave.identification.fitting.loss import LOSSES as COSTS
+from strainwave.identification.fitting.problem import Problem
+from strainwave.identification.fitting.unknowns import plan
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+RIPPLE_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, found in every gear measured so far
+MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler model: what leaves more is chance
+MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves more is not worth a part more
+MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
+MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
+GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
+SQUARED = COSTS["linear"]
+NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
+MAX_STEPS = 8  # of a fit while models are compared
+MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
+
+
+@dataclass(frozen=True, eq=False)
+class Fold(ComparedByFields):
+    """A model by what the motion outside a stretch determines.
+
+    Attributes:
+        stretch: samples of the grid that took no part, shape (m,)
+        drive: with the numbers determined
+        nuisances: likewise
+        in_band: residuals of the samples of the stretch that are compared in the pass band
+        residual: at every sample of the grid, in the full band, shape (m,)
+    """
+
+    stretch: Rows
+    drive: Drive
+    nuisances: Array
+    in_band: Array
+    residual: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MotionCandidate(ComparedByFields):
+    """A model of a joint as a log determines it, and what it predicts.
+
+    Attributes:
+        model: near its least squares, from where a fit starts
+        priors: what is known of its numbers before
+        unexplained: root mean square of what is left in the band over that of the effort about its mean [1]
+        folds: the model without each stretch
+        bend: angle of the input in which bristles bend at reversals [rad]; 0 for none
+        rippled: True if a torque that repeats with the input's rotation is part of the prediction
+    """
+
+    model: MotionModel
+    priors: Mapping[str, tuple[float, float]]
+    unexplained: float
+    folds: tuple[Fold, ...]
+    bend: float = 0.0
+    rippled: bool = False
+
+    @property
+    def name(self) -> str:
+        more = [", bristles that bend at reversals"] * (self.bend > 0.0) + [", ripple"] * self.rippled
+        return "".join([self.model.name, *more])
+
+    @property
+    def log(self) -> MotionLog:
+        """The log as it was compared."""
+        return self.model.log
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The numbers that are free, near their least squares."""
+        numbers = {path: value for path, value, *_ in _core.parameters(self.model.drive)}
+        return tuple(numbers[path] for path in self.model.free)
+
+    @cached_property
+    def fit(self) -> Fit:
+        """The fit to the whole log, with the covariance of its estimates."""
+        return self.fitted_to(None)
+
+    def fitted_to(self, training: Rows | None) -> Fit:
+        """Return the fit to some of the samples compared, shape (n,), or to all."""
+        model = self.model
+        return fit(model.drive, model.log, model.free, ties=model.ties, priors=self.priors, training=training)
+
+    def predicting(self, drive: Drive) -> Drive:
+        """Return the drive that predicts at reversals, too: a fitted one, with bristles that bend."""
+        return bristled(drive, self.bend) if self.bend else drive
+
+    def left(self, drive: Drive, nuisances: Array, training: Rows) -> Array:
+        """Return measured less predicted effort at every sample, ripple by that of the samples of training, shape (m,)."""
+        residual = self.log.residual(self.predicting(drive), nuisances)
+        if not self.rippled:
+            return residual
+        angle = self.log.motion.angle
+        waves = np.stack([wave(order * angle) for order in RIPPLE_ORDERS for wave in (np.sin, np.cos)], axis=1)
+        rows = training & moving(self.log) & ~self.log.motion.resting
+        shares = np.linalg.lstsq(waves[rows], residual[rows], rcond=MIN_SINGULAR)[0]
+        return np.asarray(residual - np.where(self.log.motion.resting, 0.0, waves @ shares))
+
+    def predicted_anew(self) -> MotionCandidate:
+        """Return the same, with the residuals of what it predicts."""
+        folds = [replace(each, residual=self.left(each.drive, each.nuisances, ~each.stretch)) for each in self.folds]
+        return replace(self, folds=tuple(folds))
+
+    @cached_property
+    def residuals(self) -> list[Array]:
+        """Of each stretch held out, in the full band, in the unit of the effort."""
+        return [each.residual[each.stretch] for each in self.folds]
+
+    @cached_property
+    def errors(self) -> Array:
+        """Root mean square of the residuals of each stretch, shape (stretches,)."""
+        return np.array([float(np.sqrt(np.mean(each**2))) for each in self.residuals])
+
+    @cached_property
+    def error(self) -> float:
+        """Root mean square of the residuals of all stretches."""
+        return float(np.sqrt(np.mean(np.concatenate(self.residuals) ** 2)))
+
+    @cached_property
+    def error_in_band(self) -> float:
+        """Root mean square of the residuals of all stretches in the pass band."""
+        return float(np.sqrt(np.mean(np.concatenate([each.in_band for each in self.folds]) ** 2)))
+
+    def predicts_no_worse_than(self, other: MotionCandidate) -> bool:
+        """True if its errors on all stretches and on the last one are no larger, but for chance."""
+        return MAX_ERROR * self.error < other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+
+    def explains_more_than(self, other: MotionCandidate) -> bool:
+        """True if it predicts sliding in the pass band clearly better, and the full band and the last stretch no worse."""
+        no_worse = self.predicts_no_worse_than(other)
+        return no_worse and self.error_in_band < MAX_RELATIVE_ERROR * other.error_in_band
+
+    def is_better_than(self, other: MotionCandidate) -> bool:
+        """True if it predicts better by more than chance makes, all over the motion, and the last stretch no worse."""
+        is_sure = self.gain_over(other) > MIN_GAIN_SIGMA
+        return is_sure and self.error < MAX_ERROR * other.error and MAX_ERROR * self.errors[-1] < other.errors[-1]
+
+    def gain_over(self, other: MotionCandidate) -> float:
+        """Return by how many standard deviations the squares of the residuals are smaller than those of another model."""
+        gains = np.array([block.sum() for pair in zip(other.residuals, self.residuals, strict=True) for block in _gain(*pair)])
+        limit = MAX_GAIN * float(np.quantile(np.abs(gains), 0.75))  # so that a single event, as a jolt, decides nothing
+        gains = np.clip(gains, -limit, limit)
+        spread = float(np.std(gains, ddof=1)) * np.sqrt(len(gains))
+        return float(gains.sum()) / spread if spread > 0.0 else 0.0
+
+    def predicts_as_well_as(self, other: MotionCandidate) -> bool:
+        """True if its error in the pass band is no larger, but for chance: what bends at reversals is compared nowhere else."""
+        return MAX_RELATIVE_ERROR * self.error_in_band < other.error_in_band
+
+    def is_clearer_than(self, other: MotionCandidate) -> bool:
+        """True if it explains more of its own, narrower band, and predicts no worse."""
+        is_narrower = self.log.motion.cutoff < other.log.motion.cutoff
+        return is_narrower and self.unexplained < other.unexplained and MAX_ERROR * self.error < other.error
+
+
+def _gain(before: Array, after: Array) -> list[Array]:
+    """By how much squares of residuals become smaller, in blocks of a stretch."""
+    return np.array_split(before**2 - after**2, GAIN_BLOCKS)
+
+
+def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> MotionCandidate:
+    """Fit a model as nearly as comparisons need, from where it starts."""
+    known = {path: prior for path, prior in priors.items() if path in model.free}
+    asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
+    problem = problem_of(asked, [""], [model.drive], [model.log], [None])
+    x = problem.solve(problem.start(), problem.first_weights(), SQUARED, NEAR, trials=MAX_STEPS)
+    (record,) = problem.records
+    ((predicted, _),) = problem.predict(x)
+    ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
+    unexplained = float(np.std(model.log.measured - predicted) / max(float(np.std(model.log.measured)), 1e-300))
+    return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended.log, held_out)))
+
+
+def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
+    """The model by what the rest of the log determines without each stretch; shapes of friction stay as the whole has them."""
+    (record,) = problem.records
+    ((predicted, slopes),) = problem.predict(x)
+    out = [stretch[log.motion.rows] for stretch in held_out]
+    for stretch, rows, there in zip(held_out, out, without_rows(problem, x, out, SHAPES), strict=True):
+        model, nuisances = record.model(there), there[record.nuisances]
+        in_band = (log.measured - predicted)[0, rows] - slopes[:, 0, rows].T @ (there - x)
+        yield Fold(stretch, model, nuisances, in_band, log.residual(model, nuisances))
+
+
+def nuisances_of(found: Fit) -> Array:
+    """Return the unknowns of the measurement that a fit ended with, shape (nuisances,)."""
+    count = len(found.experiment.nuisances)
+    return np.array([each.value for each in found.estimates[len(found.estimates) - count :]])
