@@ -153,8 +153,8 @@ def valid() -> Mapping[str, Any]:
         "orders.recording": turning(), "order_spectrum.recording": turning(), "column": "torque", "order": [2.0],
         "orders.angle": "input_angle", "order_spectrum.angle": "input_angle", "balls": 9, "ball_diameter": 1.0,
         "pitch_diameter": 10.0, "contact_angle": 0.1, "outer_speed": 0.0, "found": fitted(), "confidence": 0.95, "draws": 20,
-        "seed": 0, "untold": 0.1, "profile.path": "friction_input.viscous", "interval.path": "friction_input.viscous",
-        "files": ["nothing.csv"], "ripple.recording": turning(), "ratio": 50.0,
+        "seed": 0, "max_relative_sigma": 0.1, "profile.path": "friction_input.viscous",
+        "interval.path": "friction_input.viscous", "files": ["nothing.csv"], "ripple.recording": turning(), "ratio": 50.0,
     }  # fmt: skip
 
 

@@ -39,3 +39,11 @@ def test_halves_of_a_record_determine_the_same_numbers() -> None:
     pairs = list(real_joints.halves(trial))
     assert len(pairs) >= 5
     assert sum(pair.apart < real_joints.MAX_DISTANCE for pair in pairs) >= real_joints.MIN_WITHIN * len(pairs)
+
+
+def test_one_speed_beside_other_joints_that_move_is_no_friction() -> None:
+    """The torque of a joint that holds an arm up is not its friction: 13 N.m, and a gear written."""
+    (trial,) = (each for each in real_joints.trials() if each.name == "kinova-gen3/RunTrajectory1.csv 2")
+    found = real_joints.identified(trial)
+    assert not any(each.estimate.path == "steady_friction" for each in found.parameters)
+    assert found.failed

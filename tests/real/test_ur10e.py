@@ -20,7 +20,8 @@ pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"measured data not 
 
 def mapping(joint: int, torque_constant: float) -> sw.FileMapping:
     columns = {"time": "1", "output_angle": str(1 + joint), "output_speed": str(7 + joint), "current": str(13 + joint)}
-    return sw.FileMapping(columns=columns, constants={"ratio": 101.0, "torque_constant": torque_constant})
+    units = {"output_angle": "rad", "output_speed": "rad/s"}
+    return sw.FileMapping(columns=columns, units=units, constants={"ratio": 101.0, "torque_constant": torque_constant})
 
 
 def halves(joint: int, folder: Path) -> tuple[Path, Path]:

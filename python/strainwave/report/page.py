@@ -8,8 +8,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from strainwave.files import writing
 from strainwave.files.recording import Recording
-from strainwave.files.writing import making, replacing, written
 from strainwave.messages import printable
 from strainwave.report import figures, typeset
 from strainwave.report.provenance import Provenance
@@ -68,15 +68,15 @@ def write_results(
     Raises:
         OSError: folder or file cannot be written; says which, and why
     """
-    with making(folder):
+    with writing.making(folder):
         for name, run in (runs or {}).items():
             run.to_parquet(folder / f"{name}.parquet")
-            written.append(folder / f"{name}.parquet")
+            writing.written.append(folder / f"{name}.parquet")
         for name, table in (tables or {}).items():
             table.to_csv(folder / f"{name}.csv")
-            written.append(folder / f"{name}.csv")
+            writing.written.append(folder / f"{name}.csv")
         write(html, folder / "report.html")
-        written.append(folder / "report.html")
+        writing.written.append(folder / "report.html")
 
 
 def write(html: str, path: str | Path) -> None:
@@ -88,5 +88,5 @@ def write(html: str, path: str | Path) -> None:
     ...     Path(f"{folder}/report.html").read_text()
     '<!doctype html>'
     """
-    with replacing(path) as file:
+    with writing.replacing(path) as file:
         file.write(html.encode())

@@ -1,4 +1,4 @@
-"""What the data tell only together: combinations of parameters that are known far better than the parameters themselves."""
+"""Combinations of parameters that the data determine far better than the parameters themselves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from strainwave.identification.fitting.fit import Fit, solved_problem
 from strainwave.identification.fitting.loss import LOSSES
 
 Array = NDArray[np.float64]
-UNTOLD = 0.1  # relative standard deviation of a direction that the data leave open (assumed)
+MAX_RELATIVE_SIGMA = 0.1  # of a change in a direction; the data leave directions with a larger one open (assumed)
 TAKES_PART = 0.02  # of the largest change in a direction: what changes less takes no part
 WHOLE = 0.03  # how near exponents must come to a ratio of small whole numbers
 RATIOS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
@@ -22,13 +22,13 @@ SMALLEST = 1e-9  # share of the largest singular value below which a direction c
 
 @dataclass(frozen=True, eq=False)
 class Combination(ComparedByFields):
-    """Parameters that the data do not tell one by one.
+    """Parameters that the data do not determine one by one.
 
     Attributes:
         paths: of the parameters, those first that change most
         open: relative change of each that the data leave open: they can change together by any multiple of it; the largest is 1
         relative: standard deviation of that change of all, infinite where nothing changes
-        told: what of two parameters the data do tell, as a formula; empty for one, or for more
+        formula: of two parameters, that the data determine; empty for one, or for more
         value: of the formula
         sigma: its standard deviation
         unit: its unit; empty where parameters of different units multiply
@@ -37,38 +37,39 @@ class Combination(ComparedByFields):
     paths: tuple[str, ...]
     open: tuple[float, ...]
     relative: float
-    told: str = ""
+    formula: str = ""
     value: float = np.nan
     sigma: float = np.nan
     unit: str = ""
 
     def __str__(self) -> str:
         if len(self.paths) == 1:
-            return f"{self.paths[0]} is not told" + (f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else "")
-        if self.told:
+            known = f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else ""
+            return f"{self.paths[0]} is not determined{known}"
+        if self.formula:
             names = " and ".join(self.paths)
-            return f"of {names} only {self.told} is told: {self.value:.4g} ± {self.sigma:.1g} {self.unit}".rstrip()
+            return f"of {names} only {self.formula} is determined: {self.value:.4g} ± {self.sigma:.1g} {self.unit}".rstrip()
         changes = ", ".join(f"{path} by {100.0 * part:+.0f} %" for path, part in zip(self.paths, self.open, strict=True))
-        return f"{len(self.paths)} parameters are told only together: what the data say hardly changes with {changes}"
+        return f"{len(self.paths)} parameters are determined only together: the prediction hardly changes with {changes}"
 
 
-def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ...]:
-    """Which parameters of the model a fit tells only in combination, the least known first.
+def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) -> tuple[Combination, ...]:
+    """Return the parameters of the model that a fit determines only in combination, the least known first.
 
     Directions in which the parameters can change, each relative to its size, without a change of what is predicted that the
     noise would not hide: eigenvectors of the second derivatives of the cost in logarithmic parameters, with the unknowns of the
-    measurement fitted along. Of a direction in which two parameters change, the data tell what it leaves as it is: a sum or a
-    difference where both have one unit, a product of powers where the exponents are near ratios of whole numbers up to 3.
+    measurement fitted along. Of a direction in which two parameters change, the data determine what it leaves as it is: a sum
+    or a difference where both have one unit, a product of powers where the exponents are near ratios of whole numbers up to 3.
 
     Args:
         found: what `fit` found; parameters that are 0 take no part
-        untold: relative standard deviation above which a direction counts as not told
+        max_relative_sigma: relative standard deviation above which a direction counts as open
 
     Raises:
         TypeError: `found` is no fit
-        ValueError: `untold` is negative
+        ValueError: `max_relative_sigma` is negative
 
-    Valid near the estimates: to first order, sum and product of two parameters cannot be told apart.
+    Valid near the estimates: to first order, sum and product of two parameters are not separated.
 
     Source: Gutenkunst et al., PLoS Computational Biology 3 (2007) 1871-1878.
 
@@ -80,9 +81,9 @@ def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ..
     >>> gear = sw.Gear(friction_input=law, damping=3.0)
     >>> for each in combinations(sw.fit(gear, table, ["friction_input.coulomb", "damping"])):
     ...     print(each)
-    damping is not told
+    damping is not determined
     """
-    untold = arguments.number("untold", untold, low=0.0)
+    limit = arguments.number("max_relative_sigma", max_relative_sigma, low=0.0)
     problem, best = solved_problem(found)
     loss = LOSSES[found.loss]
     weights = problem.weights(best, problem.first_weights(), loss)
@@ -93,17 +94,17 @@ def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ..
     chosen = [place for place in range(known) if best[place] != 0.0]
     if not chosen:
         return ()
-    size = size[chosen]  # a fit may have gone far in an open direction: where it began tells the size too
+    size = size[chosen]  # a fit may have gone far in an open direction: its beginning has a size too
     wider = _wider(found, problem.naive_sigma(best, weights, loss))
     directions, sigmas = _directions(rows, chosen, size, wider)
-    told = []
+    open_ones = []
     for direction, sigma in zip(directions, sigmas, strict=True):
-        if sigma > untold:
+        if sigma > limit:
             order = [i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > TAKES_PART * np.abs(direction).max()]
-            told.append((order, direction / direction[order[0]], sigma))
-    roots = (directions.T * np.where(sigmas <= untold, sigmas, 0.0)).T  # of the covariance of what is told
+            open_ones.append((order, direction / direction[order[0]], sigma))
+    roots = (directions.T * np.where(sigmas <= limit, sigmas, 0.0)).T  # of the covariance of what is determined
     made = []
-    for order, direction, sigma in told:
+    for order, direction, sigma in open_ones:
         paths = tuple(estimates[chosen[i]].path for i in order)
         units = [estimates[chosen[i]].unit for i in order]
         values = best[[chosen[i] for i in order]]
@@ -121,7 +122,7 @@ def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ..
 
 
 def _wider(found: Fit, naive: Array) -> float:
-    """How much larger standard deviations are than the second derivatives of the cost say, as residuals hang together."""
+    """Return the factor of standard deviations over those by the second derivatives of the cost, as residuals hang together."""
     known = len(found.plan.unknowns)
     stated = np.array([each.sigma for each in found.estimates[:known]])
     both = np.isfinite(stated) & np.isfinite(naive[:known]) & (naive[:known] > 0.0)
@@ -129,11 +130,11 @@ def _wider(found: Fit, naive: Array) -> float:
 
 
 def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tuple[Array, Array]:
-    """Directions of relative change, shape (k, k), and the standard deviation of the change in each, the largest first."""
+    """Return directions of relative change, shape (k, k), and the standard deviation of each change, the largest first."""
     others = np.delete(rows, chosen, axis=1)
     columns = rows[:, chosen] * size
     length = np.linalg.norm(others, axis=0)
-    if (length > 0.0).any():  # what the others can make up for is not told
+    if (length > 0.0).any():  # what the others can make up for is not determined
         basis = np.linalg.svd((others / np.where(length > 0.0, length, 1.0))[:, length > 0.0], full_matrices=False)[0]
         columns = columns - basis @ (basis.T @ columns)
     _, singular, directions = np.linalg.svd(columns, full_matrices=True)
@@ -146,7 +147,7 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
 
 
 def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Array) -> tuple[str, float, Array, str] | None:
-    """What of two parameters it leaves as it is when both move: words, value, derivatives by the parameters, unit."""
+    """Return a formula of two parameters that stays the same when both move: words, value, derivatives, unit."""
     alike = abs(abs(moves[0] / moves[1]) - 1.0) < WHOLE
     first = paths[0] <= paths[1] if alike else abs(moves[0]) <= abs(moves[1])  # the larger factor is 1, else by name
     if units[0] == units[1] and not first:

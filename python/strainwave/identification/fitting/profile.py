@@ -38,7 +38,7 @@ class Profile(ComparedByFields):
 
     >>> cost = np.array([4.0, 0.0, 1.0])
     >>> print(Profile("gear.damping", "N.m.s/rad", np.array([1.0, 2.0, 9.0]), cost, 4.0, (1.0, np.inf), False, True))
-    gear.damping is above 1 N.m.s/rad; how large it is, the data do not tell
+    gear.damping is above 1 N.m.s/rad; the data do not determine how large it is
     """
 
     path: str
@@ -53,11 +53,11 @@ class Profile(ComparedByFields):
     def __str__(self) -> str:
         low, high = self.interval
         if self.open_below and self.open_above:
-            return f"{self.path} is not told by the data: they bound it to neither side"
+            return f"{self.path} is not determined: the data bound it to neither side"
         if self.open_above:
-            return f"{self.path} is above {low:.4g} {self.unit}; how large it is, the data do not tell"
+            return f"{self.path} is above {low:.4g} {self.unit}; the data do not determine how large it is"
         if self.open_below:
-            return f"{self.path} is below {high:.4g} {self.unit}; how small it is, the data do not tell"
+            return f"{self.path} is below {high:.4g} {self.unit}; the data do not determine how small it is"
         return f"{self.path} lies between {low:.4g} and {high:.4g} {self.unit}"
 
 

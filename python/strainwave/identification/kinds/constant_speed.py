@@ -32,7 +32,12 @@ class ConstantSpeed(Kind):
         return effort_roles(columns, mapping)
 
     def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
-        """True also for logs at constant speed, but for one of few speeds whose torque changes as that of a log."""
+        """True also for logs at constant speed, but for one of few speeds whose torque changes as that of a log.
+
+        The torque of a joint beside others that move is not its friction.
+        """
+        if file.kind == "log" and file.neighbours:
+            return False
         if file.kind == "log":
             try:
                 run = run_of(file, with_ratio(known, file))

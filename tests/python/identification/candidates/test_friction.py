@@ -60,7 +60,7 @@ def test_no_fall_is_made_up_from_noise() -> None:
     assert names.count("Coulomb and viscous") >= 4
 
 
-def test_nothing_is_mapping_from_options_the_passivity_of_laws_tried_on_the_way() -> None:
+def test_laws_tried_on_the_way_give_no_warning_of_passivity() -> None:
     """The law of the gear and the one found are passive; a fast fall of the same bristle would not be."""
     law = LUGRE.replace(coulomb=0.09, breakaway=0.095, bristle_damping=8e-3, viscous=7e-4)
     with pytest.warns(sw.PassivityWarning):

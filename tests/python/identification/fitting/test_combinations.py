@@ -1,4 +1,4 @@
-"""Sums, products and ratios that the data tell, against models in which they are known to be all that is told."""
+"""Sums, products and ratios that the data determine, against models in which nothing else is determined."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ def gear() -> sw.Gear:
         (lambda a, b, c: a / c, ["damping", FileEstimate.places[2]], f"damping / {FileEstimate.places[2]}", 4.0),
     ],
 )
-def test_a_formula_of_two_parameters_is_told_in_words(formula: Any, free: list[str], words: str, value: float) -> None:
+def test_a_formula_of_two_parameters_is_written_out(formula: Any, free: list[str], words: str, value: float) -> None:
     found = combinations(fit(gear(), FileEstimate(formula), free))
     assert len(found) == 1
     turned = " / ".join(reversed(words.split(" / ")))
-    assert found[0].told in (words, turned, " * ".join(reversed(words.split(" * "))), "input_inertia / damping^0.5")
-    if found[0].told == words:
+    assert found[0].formula in (words, turned, " * ".join(reversed(words.split(" * "))), "input_inertia / damping^0.5")
+    if found[0].formula == words:
         assert found[0].value == pytest.approx(value, rel=1e-3)
         slope = SPEED / 60.0
         exact = 1e-4 / np.sqrt(np.sum(slope**2))  # of the factor of a line through zero
@@ -73,22 +73,22 @@ def test_a_formula_of_two_parameters_is_told_in_words(formula: Any, free: list[s
     assert str(found[0]).startswith("of ")
 
 
-def test_three_parameters_are_told_by_how_they_change_together() -> None:
+def test_three_parameters_are_described_by_their_common_change() -> None:
     found = combinations(fit(gear(), FileEstimate(lambda a, b, c: a * b * c), list(FileEstimate.places)))
-    assert len(found) == 2  # of three relative changes one is told
+    assert len(found) == 2  # of three relative changes one is determined
     for each in found:
         assert abs(sum(each.open)) < 5e-3  # the product stays
-    assert str(found[0]).startswith("3 parameters are told only together: what the data say hardly changes with ")
+    assert str(found[0]).startswith("3 parameters are determined only together: the prediction hardly changes with ")
 
 
-def test_what_is_well_told_is_no_combination() -> None:
+def test_a_determined_parameter_is_no_combination() -> None:
     torque = LAW.steady(SPEED) + 1e-5 * np.random.default_rng(0).normal(size=len(SPEED))
     table = sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     free = ["friction_input.coulomb", "friction_input.viscous"]
     assert combinations(fit(sw.Gear(friction_input=LAW), table, free)) == ()
 
 
-def test_of_one_load_only_the_sum_of_the_inertias_is_told() -> None:
+def test_one_load_determines_only_the_sum_of_the_inertias() -> None:
     """A stiff drive whose input alone is watched: the load counts there by the square of the ratio."""
     drive = sw.Drive(
         gear=sw.Gear(
@@ -105,7 +105,7 @@ def test_of_one_load_only_the_sum_of_the_inertias_is_told() -> None:
     found = combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
     assert len(found) == 1
     assert set(found[0].paths) == {"motor.inertia", "load.inertia"}
-    first, plus, factor, second = found[0].told.split()
+    first, plus, factor, second = found[0].formula.split()
     assert (first, plus, second) == ("motor.inertia", "+", "load.inertia")
     assert float(factor) == pytest.approx(1.0 / ratio**2, rel=0.2)
     assert abs(found[0].value - (1e-4 + float(factor))) < 4.0 * found[0].sigma + 0.02 * found[0].value

@@ -76,7 +76,7 @@ def test_a_spot_in_noise_is_found_or_left_undecided() -> None:
     assert any("undecided" in each for each in words(loud))
 
 
-def test_nothing_is_mapping_from_options_torques_that_were_not_measured() -> None:
+def test_torques_that_were_not_measured_have_no_soft_spot() -> None:
     found = analyse(with_spot(4.0))
     assert words_on_band(found.stiffnesses[0], 0.5, 0.6).endswith("no point was measured there")
 
