@@ -56,3 +56,23 @@ def test_currents_do_not_depend_on_the_torque_constant(tmp_path: Path) -> None:
         (found,) = sw.predict(saved, [second], mapping=mapping(2, constant))
         errors.append(found.error)
     assert errors[0] == pytest.approx(errors[1], rel=0.05)
+
+
+def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: Path) -> None:
+    """Joint 1 shows another friction at low speed, joint 2 a loss under load: together they are the friction of none."""
+    files = [tmp_path / name for name in ("a.csv", "b.csv")]
+    for joint, file in zip((1, 2), files, strict=True):
+        file.write_bytes((FOLDER / f"ur-20_01_22-joint_{joint}.csv").read_bytes())
+    found = sw.identify("csg-20-100", files, mapping=lambda path: mapping(1 + files.index(path), 0.1))
+    coulomb, mesh = found.gear_set.gear.friction_input.coulomb, found.gear_set.gear.friction_mesh
+    fitted = [each.fit.gear for each in found.files if each.fit is not None]
+    assert (coulomb, mesh) in [(each.friction_input.coulomb, each.friction_mesh) for each in fitted]
+    (check,) = (check for check in found.checks if check.name == "agreement of files")
+    assert "steady_friction" in check.message
+
+
+def test_halves_of_a_joint_do_not_contradict_each_other(tmp_path: Path) -> None:
+    for joint in (1, 2):
+        (tmp_path / str(joint)).mkdir()
+        found = sw.identify("csg-20-100", list(halves(joint, tmp_path / str(joint))), mapping=mapping(joint, 0.1))
+        assert not any(check.failed for check in found.checks if check.name == "agreement of files")

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from strainwave.commands.file_options import FileOptions, Gear
+from strainwave.commands.identify import FAILED
 from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
 
@@ -24,17 +25,19 @@ def rank(
     """Fit every model of a measurement, and rank them by their error on data held out.
 
     The model to take stands first: the simplest whose error exceeds the smallest by no more than chance explains. The
-    correlation of residuals shows what a model leaves unexplained; 1 is white noise.
+    correlation of residuals shows what a model leaves unexplained; 1 is white noise. The checks are those of `identify`: if one
+    fails, it is printed first, and the exit code is 3.
     """
     from strainwave.files.gear_set import GearSet
-    from strainwave.identification.identify import read_measurements
+    from strainwave.identification.identify import checks_of, read_measurements
     from strainwave.identification.kinds import KINDS
     from strainwave.identification.rank import rank as ranked
     from strainwave.identification.rank import table_of
     from strainwave.identification.reading.source import measurement_files
     from strainwave.identification.results.file_result import FileResult
+    from strainwave.report.identify_files import failed_lines
 
-    opened, lines = measurement_files(paths), list[str]()
+    opened, lines, failed = measurement_files(paths), list[str](), list[str]()
     with progress(len(opened.files)) as turn:
         read, start = read_measurements(opened, given.mapping_of(opened.files), GearSet.read(gear))
         for path, file in read.items():
@@ -42,4 +45,7 @@ def rank(
             if isinstance(file, FileResult):
                 raise ValueError(f"{path.name}: {file.refused}")
             lines += [f"{path.name}: {KINDS[file.kind].title}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
-    print("\n".join(lines).rstrip())
+            failed += failed_lines(check for check in checks_of(start, file) if check.failed)
+    print("\n".join([*failed, *lines]).rstrip())
+    if failed:
+        raise typer.Exit(FAILED)

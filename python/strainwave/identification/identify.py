@@ -120,21 +120,33 @@ def identify(
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
-    before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
-    fits = _Fits(GearSoFar(before, start), same_as(recognised), mapping, accept, progress)
-    fits.fit_all(recognised)
+    fits = _Fits.of(start, recognised, mapping, accept, progress)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
-    parameters = combine(results, accept=accept)
-    checks = [check for each in results for check in each.checks]
+    determined_by = {plain(path): file for path, file in fits.known.determined_by.items()}
+    parameters = combine(results, accept=accept, determined_by=determined_by)
     if not any(each.estimates or each.failed for each in results):
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
-    checks += _nothing_determined(results)
-    failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
-    checks += [*with_start_set(start, parameters, failed), *between_files(parameters, results)]
+    checks = _checks(start, results, parameters)
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
     gear_set = drive_set(start, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
-    return Identified(start, results, parameters, gear_set, tuple(checks))
+    return Identified(start, results, parameters, gear_set, checks)
+
+
+def checks_of(start: GearSet, file: Recognised) -> tuple[Check, ...]:
+    """Return the checks of one file that `identify` makes of it."""
+    fits = _Fits.of(start, [file])
+    results = (*fits.results.values(), *fits.together)
+    return _checks(start, results, combine(results))
+
+
+def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[CombinedParameter]) -> tuple[Check, ...]:
+    """Return the checks of all files, and of what they determine against the start set and each other."""
+    failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
+    return (
+        *(check for each in results for check in each.checks), *_nothing_determined(results),
+        *with_start_set(start, parameters, failed), *between_files(parameters, results),
+    )  # fmt: skip
 
 
 def check_arguments(files: object, mapping: object) -> None:
@@ -173,7 +185,8 @@ def _why_nothing(result: FileResult) -> str:
     if result.refused or result.part_of:
         return f"{result.name}: {result.refused or f'a part of the {result.part_of}'}"
     whys = dict.fromkeys(estimate.why for estimate in result.estimates if estimate.why)
-    fitted = f"{result.model} was fitted, but {'; '.join(whys)}" if whys else "nothing was fitted"
+    none = "; ".join(("no parameter stands out", *result.remarks))
+    fitted = f"{result.model} {'was' if whys else 'were'} fitted, but {'; '.join(whys) or none}"
     return f"{result.name}: {fitted}"
 
 
@@ -186,6 +199,21 @@ class _Fits:
         self.known, self.copies, self.mapping, self.accept, self.progress = known, copies, mapping, accept, progress
         self.results = dict[Path, FileResult]()
         self.together = list[FileResult]()
+
+    @classmethod
+    def of(
+        cls,
+        start: GearSet,
+        files: Sequence[Recognised],
+        mapping: Mapped = None,
+        accept: bool = False,
+        progress: Callable[[str], None] = lambda stage: None,
+    ) -> _Fits:
+        """Return the fits of files from a start set."""
+        before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
+        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, progress)
+        fits.fit_all(files)
+        return fits
 
     def fit_all(self, files: Sequence[Recognised]) -> None:
         """Fit each file in the turn of its kind, and what files of a kind determine together."""

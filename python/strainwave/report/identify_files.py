@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from importlib import metadata
 from io import StringIO
@@ -11,6 +11,7 @@ from typing import Any
 
 from strainwave.files import gear_file
 from strainwave.identification.identify import Identified
+from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.report.errors import share_held_out
@@ -143,9 +144,7 @@ def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
 
 def identify_summary(found: Identified) -> Iterator[str]:
     """Yield the result in lines, failed checks first."""
-    for check in found.failed:
-        yield f"FAILED: {check.source}: {check.message}"
-        yield f"  what to do: {check.remedy}"
+    yield from failed_lines(found.failed)
     points = [result for result in found.files if result.part_of]
     for result in found.files:
         if not result.part_of:
@@ -157,7 +156,14 @@ def identify_summary(found: Identified) -> Iterator[str]:
         yield from (f"  {remark}" for remark in dict.fromkeys(remark for result in points for remark in result.remarks))
     yield ""
     yield from lines_of([*found.parameters, *_in_combination(found)])
-    yield from (f"contradiction: {check.message}" for check in found.checks if check.name == "agreement of files")
+    yield from (check.message for check in found.checks if check.name == "agreement of files" and not check.failed)
+
+
+def failed_lines(failed: Iterable[Check]) -> Iterator[str]:
+    """Yield failed checks in lines, each with what to do."""
+    for check in failed:
+        yield f"FAILED: {check.source}: {check.message}"
+        yield f"  what to do: {check.remedy}"
 
 
 def _in_combination(found: Identified) -> Iterator[CombinedParameter]:

@@ -345,6 +345,15 @@ def test_a_failed_check_is_printed_first_and_no_gear_is_written_until_it_is_acce
     assert sw.load(tmp_path / "mine" / "gear.toml").friction_input.coulomb == pytest.approx(0.05, rel=0.02)
 
 
+def test_rank_prints_failed_checks_first_and_ends_in_3_as_identify_does(tmp_path: Path) -> None:
+    rows = "".join(f"{speed},{817.0 * (0.05 + 3e-4 * speed)}\n" for speed in np.geomspace(1.0, 300.0, 12))
+    (tmp_path / "table.csv").write_text(f"Speed [rad/s],Torque [N.m]\n{rows}")
+    failed = strainwave("rank", "hfuc-20-80", "table.csv", folder=tmp_path)
+    assert failed.returncode == 3
+    assert failed.stdout.startswith("FAILED: table.csv: its friction is ")
+    assert "Coulomb and viscous" in failed.stdout, "the models are printed all the same"
+
+
 def test_a_single_branch_gives_the_spring(tmp_path: Path) -> None:
     twist = np.linspace(0.0, 1e-3, 50)
     (tmp_path / "branch.csv").write_text(

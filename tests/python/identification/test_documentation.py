@@ -29,7 +29,9 @@ def percent(share: float) -> str:
         f"else {percent(influence.STATED_NOWHERE)}, and {percent(influence.ASSUMED)} where its source begins with",
         f"differ by more than {NUMBERS[int(combined_parameter.MAX_DISTANCE)]} standard deviations",
         f"more is left than {percent(unexplained.MAX_SHARE_OF_MOTION)} of an angle, a speed or a loop, "
-        f"or {percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current",
+        f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
+        f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
+        f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
         f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small",
         f"a factor of {np.exp(3.0 * sizes.MIN_SPREAD_OF_STIFFNESS):.1f} for {percent(sizes.MIN_SPREAD_OF_STIFFNESS)}",
         f"{sizes.MIN_ROWS_OF_LOG} rows or more, and the change of speed explains half of what is left",

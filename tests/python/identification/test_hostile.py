@@ -161,11 +161,70 @@ def test_milliamperes_called_amperes_fail_a_check(tmp_path: Path) -> None:
     ("make", "told"),
     [
         (friction(SPEED[:6], TORQUE[:6]), "it holds one direction only: a zero error of the torque"),
-        (friction(SPEED, np.full(len(SPEED), 0.05)), "all its torques are of one size"),
     ],
 )
 def test_what_a_table_cannot_tell_is_said(tmp_path: Path, make: Make, told: str) -> None:
     assert any(told in remark for remark in identify(START, [make(tmp_path)]).files[0].remarks)
+
+
+def test_torques_of_one_size_are_no_measurement(tmp_path: Path) -> None:
+    found = identify(START, [friction(SPEED, np.full(len(SPEED), 0.05))(tmp_path)])
+    assert [check.name for check in found.failed] == ["torques of one size"]
+    assert "100 % of its torques have the size 0.05 N·m" in found.failed[0].message
+
+
+@pytest.mark.parametrize(("kind", "angle", "torque"), [("torsion", "twist", "torque"), ("presliding", "angle", "torque")])
+def test_a_torque_that_never_changes_is_refused_with_its_causes(kind: str, angle: str, torque: str) -> None:
+    time = np.linspace(0.0, 4.0, 401)
+    columns = {"time": time, angle: 2e-3 * np.sin(2.0 * np.pi * time), torque: np.full(401, 0.02)}
+    with pytest.raises(ValueError, match="torque never changes: a set value, a limit, or a channel that was not recorded"):
+        identify(START, {kind: sw.Recording(columns, {"time": "s", angle: "rad", torque: "N.m"})})
+
+
+@pytest.mark.parametrize(
+    ("columns", "told"),
+    [
+        ({"speed": np.full(300, 0.5), "torque": np.full(300, 1e147)}, 'column "torque" goes up to 1e'),
+        ({"speed": SPEED, "torque": TORQUE, "load_torque": 1e147 * np.abs(SPEED)}, '_torque" goes up to'),
+        ({"speed": SPEED, "torque": TORQUE, "output_torque": 1e147 * SPEED}, '_torque" goes up to'),
+    ],
+)
+def test_sizes_that_no_instrument_reads_are_refused(columns: dict[str, np.ndarray], told: str) -> None:
+    units = UNITS | dict.fromkeys(("load_torque", "output_torque"), "N.m")
+    kind = "effort" if len(columns["speed"]) > 100 else "friction"
+    with pytest.raises(ValueError, match=re.escape(told)):
+        identify(START, {kind: sw.Recording(columns, {name: units[name] for name in columns})})
+
+
+def test_a_long_table_without_a_stretch_at_one_speed_is_refused_in_words() -> None:
+    speed, torque = np.where(np.arange(2000) == 1000, 1e-3, 0.0), np.linspace(0.0, 1.0, 2000)
+    with pytest.raises(ValueError, match="none of its 2000 rows belongs to a stretch at one speed"):
+        identify(START, {"friction": sw.Recording({"speed": speed, "torque": torque}, UNITS)})
+
+
+def test_a_torque_that_drives_a_constant_speed_is_no_friction() -> None:
+    """-0.2 N.m at 0.5 rad/s were once written as a friction of 0.2 N.m."""
+    torque = -0.2 + 0.01 * np.random.default_rng(0).standard_normal(300)
+    columns = {"time": 0.01 * np.arange(300), "output_speed": np.full(300, 0.5), "joint_torque": torque}
+    found = identify(START, {"log": sw.Recording(columns, {"time": "s", "output_speed": "rad/s", "joint_torque": "N.m"})})
+    (check,) = found.failed
+    assert check.name == "friction against the motion"
+    assert "would be -0.2" in check.message
+
+
+def test_gaps_are_named_where_they_leave_no_motion() -> None:
+    kept = np.arange(len(LOG)) % 400 < 25
+    names = LOG.names
+    gappy = sw.Recording({name: LOG[name][kept] for name in names}, {name: LOG.unit(name) for name in names})
+    with pytest.raises(ValueError, match=r"gaps fill .* s of its .* s, and what lies between them is too short"):
+        identify(START, {"log": gappy})
+
+
+def test_a_joint_at_rest_is_refused_in_words_of_its_file() -> None:
+    random, time = np.random.default_rng(0), 0.01 * np.arange(1000)
+    columns = {"time": time, "input_angle": 1e-6 * random.standard_normal(1000), "current": random.standard_normal(1000)}
+    with pytest.raises(ValueError, match="the shaft does not move beyond the noise of its angle"):
+        identify(START, {"log": sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})})
 
 
 def both(folder: Path) -> Identified:

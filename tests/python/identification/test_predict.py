@@ -26,9 +26,9 @@ WORN = replace(JOINT, coulomb=1.3 * JOINT.coulomb, breakaway=1.3 * JOINT.breakaw
 SPEED = np.geomspace(2.0, 200.0, 12)
 
 
-def record(path: Path, joint: Joint, seed: int, turned: float = 1.0) -> None:
+def record(path: Path, joint: Joint, seed: int, turned: float = 1.0, way: float = 1.0) -> None:
     seen = Recorder(rate=250.0, seed=seed)(run((joint,) * 3, fourier(30.0, (1,), seed)))
-    rtde(path, seen | {"current": turned * seen["current"]})
+    rtde(path, seen | {"current": turned * seen["current"], "q": way * seen["q"], "dq": way * seen["dq"]})
 
 
 @pytest.fixture(scope="module")
@@ -183,3 +183,10 @@ def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
     assert change(heavy, "gravity of the load").value == pytest.approx(25.0 / 11.0, rel=0.01)
     assert change(light, "gravity of the load").value == pytest.approx(0.0, abs=0.01)
     assert change(heavy, "inertia of the load").value == pytest.approx(1.6 / 0.85, rel=0.03)
+
+
+def test_an_angle_counted_the_other_way_is_named_and_nothing_changed(folder: Path) -> None:
+    record(folder / "turned.csv", JOINT, 12, way=-1.0)
+    found = predicted(folder, "turned.csv")
+    assert not found.contradicts
+    assert "the angle is counted in the other sense" in found.remarks[0]

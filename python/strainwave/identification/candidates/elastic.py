@@ -20,6 +20,7 @@ from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion_candidate import MAX_RELATIVE_ERROR
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
@@ -47,6 +48,7 @@ SQUARED = LOSSES["linear"]
 SPEED = 2  # place of the speed among what moves the angle between the shafts
 OUTER = 0.75  # of the largest torque: where a third segment is taken to begin, from which fits start (assumed)
 FAR = 10.0  # times the largest torque: a knee there does nothing
+DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 
@@ -95,12 +97,23 @@ def fit_elastic(
         ValueError: noise hides the twist that the load makes, or the output does not move as any model does
         FloatingPointError: no model could be simulated
     """
+    found = _fitted(recording, log, drive, scale, law, delayed=True)
+    delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
+    if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
+        return found
+    return _fitted(recording, log, drive, scale, law, delayed=False)
+
+
+def _fitted(
+    recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier, *, delayed: bool
+) -> ElasticCandidate:
+    """Return the simplest model that predicts as well as any; `delayed`: a delay of the output angle is an unknown."""
     stiff, reach = _seen(recording, log, drive, law)
     start = _start(drive, stiff, reach, law)
     best, rivals = _chosen(
-        _compared(_stretch(recording, log, drive, STRETCH), start), start, drive.gear.stiffness, scale, reach
+        _compared(_stretch(recording, log, drive, STRETCH), start, delayed=delayed), start, drive.gear.stiffness, scale, reach
     )
-    whole = _compared(_stretch(recording, log, drive, LONGEST), best.drive)
+    whole = _compared(_stretch(recording, log, drive, LONGEST), best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, NEARER)
     found = _fit_of(problem, x)
     sigmas = sigma_by_blocks(problem, x, found.estimates)
@@ -119,7 +132,7 @@ def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_err
         ValueError: the twist that the torque makes is not seen
     """
     motion, ratio = log.motion, drive.gear.kinematics.ratio
-    torque = _torque(log, drive)
+    torque = transmitted_torque(log, drive)
     angles = recording.values("input_angle", "rad"), recording.values("output_angle", "rad")
     error = np.interp(motion.time, recording.time, angles[0] / ratio - angles[1])
     waves = [wave(order * motion.angle) for order in law.order for wave in (np.sin, np.cos)]
@@ -142,20 +155,21 @@ def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_err
     return float(1.0 / softness), reach
 
 
-def _torque(log: MotionLog, drive: Drive) -> Array:
-    """What the gear transmits were it rigid, on the grid of the motion [N.m]."""
+def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
+    """Return the torque that a rigid gear transmits to the output, on the grid of the motion [N.m]."""
     ratio = drive.gear.kinematics.ratio
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
     still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=1e-12))
     return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
-def _compared(recording: Recording, drive: Drive) -> DrivenLog:
-    """The output of a recording, late or not, in steps as short as the output of a drive vibrates."""
+def _compared(recording: Recording, drive: Drive, *, delayed: bool) -> DrivenLog:
+    """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates."""
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
     step = min(STEP, OF_RADIAN * float(np.sqrt(inertia_of(drive) / stiff)))
-    return DrivenLog.of(recording, drive, ["output_angle"], step).with_delays("output_angle")
+    compared = DrivenLog.of(recording, drive, ["output_angle"], step)
+    return compared.with_delays("output_angle") if delayed else compared
 
 
 def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) -> Recording:
@@ -163,7 +177,7 @@ def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) 
     time = recording.time - recording.time[0]
     if time[-1] <= 1.5 * length:
         return recording
-    grid, torque = log.motion.time - log.motion.time[0], _torque(log, drive)
+    grid, torque = log.motion.time - log.motion.time[0], transmitted_torque(log, drive)
     begins = np.arange(0.0, time[-1] - length, 0.25 * length)
     spreads = [float(np.std(torque[(grid >= begin) & (grid < begin + length)])) for begin in begins]
     begin = begins[int(np.argmax(spreads))]

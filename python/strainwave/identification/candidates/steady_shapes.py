@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import friction
-from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.friction_table import FrictionTable, varies
 
 Array = NDArray[np.float64]
 
@@ -153,7 +153,7 @@ def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterato
 
 def is_loaded(table: FrictionTable) -> bool:
     """True if the table has loads of different size."""
-    return table.load is not None and bool(np.ptp(np.abs(table.load)) > 0.0)
+    return table.load is not None and varies(table.load)
 
 
 def quadrants(table: FrictionTable, ratio: float) -> tuple[str, ...]:

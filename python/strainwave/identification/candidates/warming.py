@@ -57,7 +57,7 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
         slowest: speed from which on the axis surely moves [rad/s]; a twentieth of the largest if not given
 
     Raises:
-        ValueError: a temperature that hardly changes, a motion of one direction only, or too few samples
+        ValueError: a temperature that hardly changes, a motion of one direction only, too few samples, or no friction
     """
     check_recording("recording", recording)
     speed, temperature = sensible(recording, "speed", "rad/s"), recording.values("temperature", "K")
@@ -92,6 +92,8 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     freedom = len(force) / length - len(found)
     wider = student(ONE_SIGMA, freedom)
     level, slope = float(found[2]), float(found[3])
+    if level == 0.0:
+        raise ValueError(f"no part of {effort} turns round with the motion: it shows no friction")
     of_fall = np.array([slope / level**2, -1.0 / level])
     sigmas = [np.sqrt(covariance[2, 2]), np.sqrt(covariance[3, 3]), np.sqrt(of_fall @ covariance[2:, 2:] @ of_fall)]
     numbers: Sequence[tuple[str, str, float]] = (

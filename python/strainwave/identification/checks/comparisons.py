@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -12,14 +13,23 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.fitting.influence import uncertainty
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.combined_parameter import MAX_DISTANCE, CombinedParameter, difference, distance
+from strainwave.identification.results.combined_parameter import (
+    MAX_DISTANCE,
+    CombinedParameter,
+    difference,
+    distance,
+    is_friction,
+)
 from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.friction_of_file import friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
 
 CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit by chance: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
+EDGES, SPEEDS = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
 MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
-REPEATABILITY = {"friction_input": 0.2, "friction_mesh": 0.2, "hysteresis": 0.2}  # of a part from run to run, in logarithms
+# Of a part from run to run, in logarithms.
+REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
 REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
 
 
@@ -84,20 +94,22 @@ def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterat
         seen.add(path)
         spread = uncertainty(before, entry) / before
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
-        sigma = float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept]))
+        sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
         yield _Compared(estimate, each.source, before, spread, float(np.log(estimate.value / before)), sigma)
 
 
 def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
     """Return the number of the start set that an estimate is compared with; None if it has none of the same meaning.
 
-    Of springs the stiffness at zero twist is compared. Where their knees lie depends on how far they were twisted.
+    Of springs the stiffness at zero twist is compared, and that of further segments with a spring of the same law. Where their
+    knees lie depends on how far they were twisted.
     """
     path, spring = estimate.path, start.gear.stiffness
     if path in FIRST_STIFFNESS and estimate.label == path:
         first, stiffness = spring.fields[0]["name"], float(spring.tangent(0.0))
         return (f"gear.stiffness.{first}", stiffness) if stiffness == float(getattr(spring, first)) else None
-    if not path.startswith("gear.friction_input.") or "[" in path or estimate.label != path:
+    further = estimate.law == spring.name and estimate.unit == "N.m/rad" and path.startswith("gear.stiffness.")
+    if not (further or path.startswith("gear.friction_input.")) or "[" in path or estimate.label != path:
         return None
     try:
         return path, float(attrgetter(path)(start))
@@ -106,28 +118,51 @@ def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
 
 
 def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileResult]) -> Iterator[Check]:
-    """Yield a check for each two files that contradict each other, of those without a failed check.
+    """Yield a check for each two files that differ by more than their standard deviations, of those without a failed check.
 
-    Friction and hysteresis differ from run to run by more than their standard deviations, by temperature and wear. A check
-    fails if two files are further apart than that explains, too. Friction of two laws fails none: their numbers differ even if
-    they describe the same friction.
+    A check fails if two files are further apart than runs of one gear are, too, by temperature and wear. Friction is compared
+    as a torque, at speeds that both files measured: numbers of two laws differ even if they describe the same friction.
     """
-    failed, laws = {file.name for file in files if file.failed}, {file.name: _friction_of(file) for file in files}
-    pairs = dict[tuple[str, str], list[_Contradiction]]()
+    sound = {file.name: file for file in files if not file.failed and not file.same_as and not file.refused}
+    pairs = {(one, other): _of_friction(sound[one], sound[other]) for one, other in combinations(sound, 2)}
+    compared_by_torque = {frozenset(pair) for pair, friction in pairs.items() if friction is not None}
+    apart = {pair: [_contradiction(*found)] for pair, found in pairs.items() if found and distance(*found) > MAX_DISTANCE}
     for each in parameters:
-        for name in each.contradicts:
-            if not failed & {name, each.source}:
-                one_law = laws.get(name) == laws.get(each.source)
-                pairs.setdefault((each.source, name), []).append(_contradiction(each, name, comparable=one_law))
-    for (one, other), own in pairs.items():
-        found = sorted(own, key=lambda each: -each.apart)
+        for name in sound.keys() & set(each.contradicts) if each.source in sound else ():
+            of_two_laws = sound[name].friction != sound[each.source].friction
+            if is_friction(each.estimate.path) and (of_two_laws or {name, each.source} in compared_by_torque):
+                continue
+            pair = (each.source, name) if (each.source, name) in pairs else (name, each.source)
+            apart.setdefault(pair, []).append(_contradiction(*(each.of_file(file) for file in pair)))
+    for (one, other), found in apart.items():
+        found.sort(key=lambda each: -each.apart)
         more = f", and {len(found) - MAX_LISTED} more" if len(found) > MAX_LISTED else ""
         yield Check(
             "agreement of files", f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
-            f"{one} and {other} contradict each other: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}",
-            "see whether sides, columns, units and the ratio are right for both, and compare temperature, load, speed and "
-            "lubricant; leave out the file that is not of this gear as you want it",
+            f"{one} and {other} differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}; this is "
+            f"{found[0].apart:.2g} times what runs of one gear and chance differ by, up to {MAX_DISTANCE:g} are allowed",
+            "see whether both files are of one joint, and whether sides, columns, units and the ratio are right for both; "
+            "compare temperature, load, speed and lubricant; leave out the file that is not of this gear as you want it",
         )  # fmt: skip
+
+
+def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, FileEstimate] | None:
+    """Return the friction of two files at the speed where they differ most, of those that both measured; None without one.
+
+    A loss under load is counted at the load of the file whose law has none, and whose Coulomb torque contains it.
+    """
+    speeds = [measured_speeds(each) for each in (one, other)]
+    units = {each.is_in_current for each in (one, other)}
+    if min(map(len, speeds)) == 0 or len(units) > 1:
+        return None
+    low, high = (chosen(np.quantile(each, share) for each in speeds) for chosen, share in ((max, EDGES[0]), (min, EDGES[1])))
+    if low > high:
+        return None
+    without_loss = [each for each in (one, other) if not has_loss(each)]
+    load = max(map(mean_load, without_loss)) if len(without_loss) == 1 else 0.0
+    speeds_of_both = np.geomspace(low, high, SPEEDS).tolist()
+    pairs = [(friction_of(one, speed, load), friction_of(other, speed, load)) for speed in speeds_of_both]
+    return max(pairs, key=lambda pair: _contradiction(*pair).apart)
 
 
 def repeatability(path: str) -> float:
@@ -142,18 +177,12 @@ class _Contradiction(NamedTuple):
     apart: float
 
 
-def _contradiction(each: CombinedParameter, name: str, *, comparable: bool) -> _Contradiction:
-    best, other, path = each.of_file(each.source), each.others[name], each.estimate.path
-    spread = repeatability(path) * abs(best.value)
-    sigma = float(np.hypot(np.hypot(best.own, other.own), best.common - other.common))
-    apart = abs(difference(best, other)) / float(np.hypot(spread, sigma))
+def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
+    best = min(one, other, key=lambda each: each.sigma)
+    spread = repeatability(best.path) * abs(best.value)
+    sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     words = (
-        f"{each.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} "
-        f"{best.unit}, {distance(best, other):.3g} standard deviations apart"
+        f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}, "
+        f"{distance(one, other):.3g} standard deviations apart"
     )
-    return _Contradiction(words, apart if comparable or not path.startswith("gear.friction_input.") else 0.0)
-
-
-def _friction_of(file: FileResult) -> str:
-    """Return the law of friction that was fitted to a file."""
-    return file.model if file.fit is None else str(file.fit.gear.friction_input.name)
+    return _Contradiction(words, abs(difference(one, other)) / max(float(np.hypot(spread, sigma)), 1e-300))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
+from strainwave.messages import listed
 from strainwave.orders.shaft_pair import Ratio
 
 Array = NDArray[np.float64]
@@ -25,15 +26,24 @@ MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
 BLOCKS = 10  # of a record, over which what is left of the voltage scatters
 
 
-def held_out_error(held_out: HeldOut, source: str) -> Iterator[Check]:
-    """Yield the checks that a model predicts data held out, and no worse than plain least squares."""
+def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ()) -> Iterator[Check]:
+    """Yield the checks that a model predicts data held out, and no worse than plain least squares.
+
+    Args:
+        held_out: the error
+        source: name of the file
+        joints: names of other joints whose motion or torque is given
+    """
+    others = "other joints may move (give their angles as other_angles, or their torque as rigid_torque)"
+    if joints:
+        others = f"the motion of joints {listed(joints)} is known, but the record may be too short for the torque that they add"
     unit = held_out.unit
     yield Check(
         "unexplained on data held out", source, held_out.relative, MAX_UNEXPLAINED, "1", held_out.relative > MAX_UNEXPLAINED,
         f"the model leaves {held_out.error:.3g} {unit} of {held_out.channel} on the {held_out.stretch}, where it varies by "
         f"{held_out.zero:.3g} {unit} about its mean before: {100.0 * held_out.relative:.0f} % is unexplained",
-        "other joints may move (give their angles as other_angles, or their torque as rigid_torque), the motion may be too "
-        "small or at one speed only, or columns, units or sides are not what they are taken for",
+        f"{others}; the motion may be too small or at one speed only, or columns, units or sides are not what they are "
+        "taken for",
     )  # fmt: skip
     if np.isfinite(held_out.plain):
         share = held_out.share_of_plain

@@ -27,6 +27,7 @@ MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another
 MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
 RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
 MIN_GAIN_SIGMA = 3.0  # standard deviations of a gain over the blocks of the motion
+MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
 BLOCKS = 10  # of the motion
 MIN_ROWS_PER_BLOCK = 5
 # A body that is wider than a centimetre has a pendulum length above 2 cm, twice its radius of gyration. Arms have some metres;
@@ -52,7 +53,7 @@ def checks_of_motion(
     alone = not best.log.regressors
     if alone and not np.any(best.log.extra):
         yield from (by_ratio := list(ratio_by_gravity(best, drive, recording, source)))
-        if not any(check.failed for check in by_ratio):
+        if not any(check.failed for check in by_ratio) and _has_gravity(best):
             yield from angle_in_gravity(best, drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
@@ -82,11 +83,18 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
         gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))
         if gain > share and _is_less(other, usual):
             share, found = gain, what
+    wrong = f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}"
     yield Check(
         "angle in the sine of gravity", source, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
-        f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}",
+        wrong if found else "gravity goes with the sine of its angle: no other unit or side of it leaves less",
         "see whether unit and side of the angle are right, and state them: --unit or --column input_angle= or output_angle=",
     )  # fmt: skip
+
+
+def _has_gravity(best: MotionCandidate) -> bool:
+    """True if the fit determines gravity: without, nothing goes with the sine of the angle."""
+    gravity = next((each for each in best.fit.estimates if each.path == "load.gravity_torque"), None)
+    return gravity is not None and abs(gravity.value) > MIN_GRAVITY_SIGMA * gravity.sigma
 
 
 def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, source: str) -> Iterator[Check]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -16,13 +16,16 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.file_result import FileEstimate
 from strainwave.messages import as_option
 
 Array = NDArray[np.float64]
 
 MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compared with that of a gear
+MAX_RATIO = 1e4  # of a gear
 MAX_FACTOR = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
 MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a torque with less is not that of the motor
+MIN_SHARE_OF_A_UNIT = 1e-6  # of the friction of the start set: a wrong unit makes it no smaller
 STIFFNESS_SPREAD = 1.3  # factor by which gears of one kind differ in stiffness, as makers state
 MIN_SPREAD_OF_STIFFNESS = 0.3  # standard deviation of its logarithm, as makers state it
 MAX_SHARE_BY_ACCELERATION = 0.5  # of what steady friction leaves unexplained: if acceleration explains more, it is a log
@@ -30,6 +33,8 @@ MIN_ROWS_OF_LOG = 30  # tables of steady friction are shorter, or in no order th
 MAX_FRICTION_SHARE = 0.8  # of the torque at the ends of a loop: a twisted gear carries more than the rest by its spring
 MAX_CLIPPED_SHARE = 0.05  # of the range of the angle, over which a torque stays at the end of its range
 MIN_CLIPPED_SAMPLES = 5
+MAX_SHARE_OF_ONE_SIZE = 0.9  # of the torques of a table
+EQUAL_LEVELS = 1e-6  # relative: torques of one size
 EQUAL = 1e-9  # relative: torques that are one
 REST_SPEED = 0.01  # rad/s of the input, at which friction is that of a shaft about to slide
 MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
@@ -69,6 +74,17 @@ def friction_level(law: Any, start: Any, speed: float, source: str, remedy: str)
         f"({before:.3g} N·m)",
         remedy,
     )  # fmt: skip
+
+
+def opposes_motion(at_speeds: Iterable[FileEstimate], source: str) -> Iterator[Check]:
+    """Yield the check that friction at each speed opposes the motion: a torque that drives it is none."""
+    for each in at_speeds:
+        yield Check(
+            "friction against the motion", source, -each.value, 0.0, each.unit, each.value < 0.0,
+            f"{each.label} would be {each.value:.4g} {each.unit}: a torque that drives the motion",
+            "see whether torque and speed are counted in one sense, and whether gravity or a load is in the torque; record "
+            "both directions",
+        )  # fmt: skip
 
 
 def friction_at_rest(torque: float, start: Gear, source: str) -> Iterator[Check]:
@@ -130,7 +146,7 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
 def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> float:
     """Return the logarithm between a table and the start set at both ends of its speeds, were it measured at the output."""
     ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])
-    return float(np.abs(np.log(law.steady(ends) / ratio / known.steady(ends * ratio))).max())
+    return float(np.abs(np.log(np.maximum(law.steady(ends) / ratio / known.steady(ends * ratio), 1e-300))).max())
 
 
 def friction_of_log(
@@ -151,14 +167,17 @@ def friction_of_log(
     if speed <= 0.0:
         return
     found, before = float(law.steady(speed)), float(start.steady(speed))
-    if before > 0.0 and effort == "joint_torque":
-        share = max(found / before, 0.0)
+    if before > 0.0:
+        share, behind = max(found / before, 0.0), effort == "joint_torque"
+        least = MIN_FRICTION_SHARE if behind else MIN_SHARE_OF_A_UNIT
         yield Check(
-            "friction in the torque", source, MIN_FRICTION_SHARE / max(share, 1e-300), 1.0, "1", share < MIN_FRICTION_SHARE,
-            "its torque shows no friction, as that of a sensor behind the gear",
-            "give what the motor does: its current with --column current=NAME, or its torque",
+            "friction in the torque", source, least / max(share, 1e-300), 1.0, "1", share < least,
+            "its torque shows no friction, as that of a sensor behind the gear" if behind else
+            "no friction is left: its Coulomb torque is at its bound of 0",
+            "see whether the signs of angle, speed and torque fit each other; if the torque was measured behind the gear, give "
+            "what the motor does: its current with --column current=NAME, or its torque",
         )  # fmt: skip
-        if share < MIN_FRICTION_SHARE:
+        if share < least:
             return
     unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
     factor = found / before if before > 0.0 and found > 0.0 else 1.0
@@ -232,17 +251,18 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
     half, largest = 0.5 * float(np.ptp(loop.twist)), 0.5 * float(np.ptp(loop.torque))
     spring = float(found.gear.stiffness.torque(half))
     if not loop.single_branch:
-        share = 1.0 - spring / largest
+        carried = spring / max(largest, 1e-300)
+        share = 1.0 - carried
         yield Check(
             "friction in a torsion loop", source, share, MAX_FRICTION_SHARE, "1", share > MAX_FRICTION_SHARE,
-            f"its spring carries {100.0 * spring / largest:.0f} % of the torque at its ends, the rest is friction: this is how "
+            f"its spring carries {100.0 * carried:.0f} % of the torque at its ends, the rest is friction: this is how "
             "a shaft behaves that turns against friction, not a gear that is twisted",
             "lock one side while the other is loaded; if this is friction over speed, give a friction table",
         )  # fmt: skip
         if share > MAX_FRICTION_SHARE:
             return
-    measured, known = spring / half, float(start.gear.stiffness.torque(half)) / half
-    factor, squared, limit = measured / known, start.gear.kinematics.ratio**2, _largest_factor(start)
+    measured, known = max(spring, 0.0) / half, float(start.gear.stiffness.torque(half)) / half
+    factor, squared, limit = max(measured / known, 1e-300), start.gear.kinematics.ratio**2, _largest_factor(start)
     mistakes = {
         "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,
         "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
@@ -273,18 +293,29 @@ def hint_of_ratio(found: Fit, start: Gear) -> Iterator[str]:
     assert isinstance(loop, TorsionLoop)
     half = 0.5 * float(np.ptp(loop.twist))
     factor = float(found.gear.stiffness.torque(half) / start.stiffness.torque(half))
-    if loop.input_ratio is not None and not 1.0 / STIFFNESS_SPREAD < factor < STIFFNESS_SPREAD:
-        ratio = abs(loop.input_ratio) / np.sqrt(factor)
+    if loop.input_ratio is None or factor <= 0.0 or 1.0 / STIFFNESS_SPREAD < factor < STIFFNESS_SPREAD:
+        return
+    ratio = abs(loop.input_ratio) / np.sqrt(factor)
+    if MIN_RATIO <= ratio <= MAX_RATIO:
         yield (
             f"its stiffness is {times(factor)} that of the start set. Seen from the input, stiffness goes with the square of "
-            f"the ratio: with a ratio of {ratio:.0f} it would be that of the set. See whether the ratio is right"
+            f"the ratio: with a ratio of {ratio:.3g} it would be that of the set. See whether the ratio is right"
         )
 
 
+def levels_of_table(table: Recording, source: str) -> Check:
+    """Return the check that the torques of a friction table differ, as measured ones do, if only by their noise."""
+    torque = np.abs(table["torque"])
+    share = float(np.mean(torque >= (1.0 - EQUAL_LEVELS) * torque.max()))
+    return Check(
+        "torques of one size", source, share, MAX_SHARE_OF_ONE_SIZE, "1", share > MAX_SHARE_OF_ONE_SIZE,
+        f"{100.0 * share:.0f} % of its torques have the size {torque.max():.4g} N·m: a limit or a set value is no measurement",
+        "give the torque that was measured, with its digits",
+    )  # fmt: skip
+
+
 def hints_of_levels(table: Recording) -> Iterator[str]:
-    """Yield what the torques and speeds of a friction table leave open."""
-    speed, torque = table["speed"], np.abs(table["torque"])
-    if len(torque) > 1 and np.ptp(torque) <= 1e-6 * torque.max():
-        yield "all its torques are of one size: a limit or a set value is no measurement"
+    """Yield what the speeds of a friction table leave open."""
+    speed = table["speed"]
     if (speed > 0.0).all() or (speed < 0.0).all():
         yield "it holds one direction only: a zero error of the torque is counted as Coulomb friction; measure both"

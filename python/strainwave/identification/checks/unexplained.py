@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.file_result import FileEstimate
 from strainwave.kinematics import StrainWave
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ Array = NDArray[np.float64]
 MAX_SHARE_OF_MOTION = 0.1
 MAX_SHARE_OF_LOOP = 0.1
 MAX_SHARE_OF_TORQUE = 0.3
+MAX_SHARE_OF_PRESLIDING = 0.5  # on data held out
 MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by more from the gear's to be another one
 
 
@@ -47,19 +49,31 @@ class Cause:
 
 
 def explained(found: Fit, source: str) -> Check:
-    """Return the check that a fit explains its measurement; its value is the share left over the share allowed, at worst."""
-    shares, limits = unexplained(found), allowed(found)
-    left = [
-        f"{100.0 * share:.0f} % of the variation of {name}"
-        for name, share, limit in zip(found.experiment.channels, shares.tolist(), limits.tolist(), strict=True)
-        if share > limit
-    ]
-    worst = int(np.argmax(shares / limits))
+    """Return the check that a fit explains its measurement."""
+    shares = zip(found.experiment.channels, unexplained(found).tolist(), allowed(found).tolist(), strict=True)
+    return share_left({name: (share, limit) for name, share, limit in shares}, source)
+
+
+def share_left(shares: Mapping[str, tuple[float, float]], source: str) -> Check:
+    """Return the check that a model explains a measurement, which every kind has: by `explained`, or by data held out.
+
+    Args:
+        shares: of each channel the share of its variation that is left, and the share allowed
+        source: name of the file
+    """
+    left = [f"{100.0 * share:.0f} % of the variation of {name}" for name, (share, limit) in shares.items() if share > limit]
+    share, limit = max(shares.values(), key=lambda each: each[0] / each[1])
     return Check(
-        "share left unexplained", source, float(shares[worst]), float(limits[worst]), "1", bool(left),
+        "share left unexplained", source, share, limit, "1", bool(left),
         f"the model does not explain it: {', '.join(left)} is left. Nothing is identified from it" if left else "",
         "look at the plot; see whether signs, units, sides, ratio and zeros are right",
     )  # fmt: skip
+
+
+def only_if_explained(estimates: Iterable[FileEstimate], check: Check) -> tuple[FileEstimate, ...]:
+    """Return estimates of a file; not identified if the check that its model explains it failed."""
+    why = f"the model does not explain {check.source}" if check.failed else ""
+    return tuple(replace(each, why=each.why or why) for each in estimates)
 
 
 def unexplained(found: Fit) -> Array:

@@ -64,3 +64,15 @@ def sensible(recording: Recording, name: str, unit: str) -> Array:
             f"{unit}. Is its unit right? It is taken to be {recording.unit(name)}"
         )
     return values
+
+
+def changing(recording: Recording, name: str, unit: str) -> Array:
+    """A column in another unit, of a size that an instrument could have read, that changes.
+
+    Raises:
+        ValueError: it never changes, or its size is none of a gear
+    """
+    values = sensible(recording, name, unit)
+    if np.ptp(values) == 0.0:
+        raise ValueError(f"{name} never changes: a set value, a limit, or a channel that was not recorded")
+    return values

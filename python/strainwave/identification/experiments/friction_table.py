@@ -23,6 +23,7 @@ ROOM_TEMPERATURE = 293.15  # K, if no temperature was measured
 BESIDE = {"angle": "rad", "load": "N.m", "temperature": "K"}  # other quantities that friction may depend on, and their units
 FRICTIONLESS = Viscous()
 MAX_LOSS = 1.0  # of the torque transmitted: a gear that loses more cannot be turned from its output
+EQUAL_LOADS = 1e-3  # relative: loads of one size
 MIN_LOSS = 0.005  # of the torque transmitted: no gear is better; a smaller loss belongs to a load of the other shaft
 
 
@@ -129,11 +130,11 @@ def with_load(recording: Recording, ratio: float, side: str | None = "input") ->
         side: at which speed and torque were measured
     """
     if side == "output":
-        loads = [recording[name] for name in ("load_torque", "output_torque") if name in recording]
+        loads = [sensible(recording, name, "N.m") for name in ("load_torque", "output_torque") if name in recording]
         return (_loaded(recording, recording["torque"], loads[0]) if loads else recording), ()
     speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
     if "output_torque" in recording:
-        at_output = recording.values("output_torque", "N.m")
+        at_output = sensible(recording, "output_torque", "N.m")
         sign = _sign_of_output(speed, torque, at_output / ratio)
         load = sign * at_output / ratio
         remark = f"friction is the torque of the motor less that of the output over the ratio of {ratio:g}"
@@ -141,13 +142,23 @@ def with_load(recording: Recording, ratio: float, side: str | None = "input") ->
         return _loaded(recording, torque - load, load), (f"{remark}{turned}", *_of_driving(speed, load))
     if "load_torque" not in recording:
         return recording, ()
-    load = recording.values("load_torque", "N.m")
+    load = sensible(recording, "load_torque", "N.m")
+    if not varies(load):
+        held = f"{np.abs(load).max():.4g} N·m"
+        remark = f"all its rows are at one load of {held}: its loss is part of the Coulomb torque; record two loads or more"
+        return _loaded(recording, torque, load / ratio), (remark,)
     found, _ = _plain(speed, np.sign(speed) * np.abs(torque), load)
     at_input = MIN_LOSS <= found < MAX_LOSS or not MIN_LOSS <= ratio * found < MAX_LOSS
     side, other = ("input", "output") if at_input else ("output", "input")
     losses = (found, found * ratio) if at_input else (found * ratio, found)
     remark = f"the load is counted at the {side}: the loss is {losses[0]:.3g} of it; it would be {losses[1]:.3g} at the {other}"
     return _loaded(recording, torque, load if at_input else load / ratio), (remark,)
+
+
+def varies(load: Array) -> bool:
+    """True if a table has loads of different size, which alone determine a loss."""
+    size = np.abs(load)
+    return bool(np.ptp(size) > EQUAL_LOADS * size.max())
 
 
 def _loaded(recording: Recording, torque: Array, load: Array) -> Recording:

@@ -272,7 +272,10 @@ def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: flo
         return highest
     edge = float(frequency[within][clean][-1]) if clean.any() else 0.0
     if edge == 0.0:
-        raise ValueError(f"position: its noise exceeds {NOISE_SHARE:g} of the acceleration's power at every frequency")
+        raise ValueError(
+            "the shaft does not move beyond the noise of its angle: record a larger motion, or see whether the angle is that "
+            "of this joint"
+        )
     return edge / PASS_BAND
 
 

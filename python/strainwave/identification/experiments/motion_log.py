@@ -15,9 +15,9 @@ from strainwave._core import Gear
 from strainwave.analysis.branches import noise
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import Nuisance, sensible
+from strainwave.identification.experiments.experiment import Nuisance, changing, sensible
 from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
-from strainwave.identification.experiments.motion import Motion, in_gap, motion_of
+from strainwave.identification.experiments.motion import GAP, Motion, in_gap, motion_of
 from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
@@ -27,6 +27,7 @@ REVERSAL = 0.1  # rad of the input: bristles have bent by then (assumed), and fr
 MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
 OUTLIER_WINDOW = 101  # samples, over which ripple and noise may grow
 MEDIAN_OF_NORMAL = 1.4826  # standard deviations of a normal distribution in the median of its size
+MAX_SHARE_OF_GAPS = 0.2  # of the time of a log: with more of it, gaps are why nothing is left to compare
 MIN_SOUND = 0.999  # share of sound samples around an instant: rounding of times decides nothing
 HELD_QUANTILE = 0.98  # of the steps of a channel without noise, whose size stands for it
 MIN_CLIPPED = 20  # samples of one level at the end of the range
@@ -100,12 +101,12 @@ class MotionLog(ComparedByFields):
         def on_grid(values: Array) -> Array:
             return np.interp(motion.time, time, values)
 
-        values = sensible(recording, effort, EFFORTS[effort])
+        values = changing(recording, effort, EFFORTS[effort])
         sound = ~spoilt(values)
         force = np.asarray(Akima1DInterpolator(time[sound], values[sound], extrapolate=True)(motion.time))  # as the angle is
         sound_there = (on_grid(sound.astype(float)) > MIN_SOUND) & ~in_gap(time, motion.time, motion.step)
         motion = replace(motion, known=motion.known & sound_there)
-        _check_moves(motion)
+        _check_moves(motion, time)
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
             motion, effort, force, on_grid(values), sound_there, known,
@@ -306,12 +307,24 @@ def per_torque(drive: Drive, effort: str) -> float:
     return per[effort] if effort in per else float(getattr(drive.motor, "resistance", 0.0)) / constant
 
 
-def _check_moves(motion: Motion) -> None:
-    if not np.any(motion.speed[motion.rows] != 0.0):
+def _check_moves(motion: Motion, time: Sequence[float] | Array = ()) -> None:
+    """
+    Raises:
+        ValueError: nothing is left to compare; `time` of the rows shows if gaps between them are the cause
+    """
+    if np.any(motion.speed[motion.rows] != 0.0):
+        return
+    steps = np.diff(time)
+    gaps = steps[steps > GAP * np.median(steps)] if len(steps) else steps
+    if gaps.sum() > MAX_SHARE_OF_GAPS * steps.sum():
         raise ValueError(
-            "the shaft hardly moves: all of the log is rest, reversals or gaps; record a larger motion, or, if it went to and "
-            "fro before it slid, add --kind presliding"
+            f"{len(gaps)} gaps fill {gaps.sum():.3g} s of its {steps.sum():.3g} s, and what lies between them is too short to "
+            "determine a motion: record without gaps"
         )
+    raise ValueError(
+        "the shaft hardly moves: all of the log is rest or reversals; record a larger motion, or, if it went to and fro before "
+        "it slid, add --kind presliding"
+    )
 
 
 def spoilt(values: Array) -> NDArray[np.bool_]:

@@ -13,7 +13,7 @@ from strainwave import arguments
 from strainwave.analysis.branches import noise, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import sensible
+from strainwave.identification.experiments.experiment import changing, sensible
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class PreslidingLoop(ComparedByFields):
             ValueError: no such columns, or a path that does not turn back twice
         """
         check_recording("recording", recording)
-        angle, torque = sensible(recording, "angle", "rad"), sensible(recording, "torque", "N.m")
+        angle, torque = changing(recording, "angle", "rad"), changing(recording, "torque", "N.m")
         taken, held = thinned(angle, torque)
         return cls.along(taken, held, len(angle))
 

@@ -15,7 +15,7 @@ from strainwave._core import Gear
 from strainwave.analysis.branches import PRESLIDING, monotone, slid, still_slides, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import Nuisance, sensible
+from strainwave.identification.experiments.experiment import Nuisance, changing
 from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
@@ -80,10 +80,10 @@ class TorsionLoop(ComparedByFields):
         check_recording("recording", recording)
         ratio = arguments.gear(gear).kinematics.ratio if at_input(recording) else None
         if ratio is not None:
-            angle, input_torque = sensible(recording, "input_angle", "rad"), sensible(recording, "input_torque", "N.m")
+            angle, input_torque = changing(recording, "input_angle", "rad"), changing(recording, "input_torque", "N.m")
             twist, torque = angle / ratio, ratio * input_torque
         else:
-            twist, torque = sensible(recording, "twist", "rad"), sensible(recording, "torque", "N.m")
+            twist, torque = changing(recording, "twist", "rad"), changing(recording, "torque", "N.m")
         give = series_compliance(gear)
         if give > 0.0 and ratio is not None:
             raise ValueError(

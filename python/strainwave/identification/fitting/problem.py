@@ -147,8 +147,10 @@ class Problem:
             raise ValueError("free must name at least one parameter: nothing else of this measurement is unknown")
         samples = sum(record.samples for record in records)
         if samples + len(plan.priors) <= self.size:
+            count = sum(int(record.training.sum()) for record in records)
             raise ValueError(
-                f"{sum(int(record.training.sum()) for record in records)} samples cannot determine {self.size} unknowns"
+                f"{f'{count} samples are' if count else 'no sample is'} left to fit, too few for {self.size} unknowns: record "
+                "longer, or more rows"
             )
         for name, record in zip(names, records, strict=True):
             if record.samples == 0:

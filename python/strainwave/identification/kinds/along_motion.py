@@ -31,6 +31,7 @@ from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
 
 UNLIKE = 0.1  # relative: two inertias that differ by more are not one
+FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as that
 
 
@@ -49,7 +50,10 @@ def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         return finding, after
     after, said = warm.known(after, name)
     return replace(
-        finding, estimates=(*finding.estimates, *warm.estimates), remarks=(*warm.remarks, *said, *finding.remarks)
+        finding,
+        estimates=(*finding.estimates, *warm.estimates),
+        remarks=(*warm.remarks, *said, *finding.remarks),
+        checks=(*finding.checks, warm.check),
     ), after
 
 
@@ -62,7 +66,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     of_model = [*_delay(best), *_other_laws(best, others, in_current)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
-    told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name))
+    told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
     between = Between()
@@ -142,14 +146,15 @@ def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
 
 
 def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileEstimate], name: str) -> GearSoFar:
-    """Return the set with the friction of a log, at places for which no earlier file has an estimate."""
-    gear = best.fit.parts[0].model.gear
-    sigmas = {each.path: each.sigma for each in told}
-    for part in ("friction_input", "friction_mesh"):
-        law = getattr(gear, part)
-        if part not in known.determined and law != getattr(known.gear_set.gear, part):
-            known = known.with_parts({part: law}, sigmas, name)
-    return known
+    """Return the set with the friction of a log, whole, if no earlier file determines friction.
+
+    The loss under load was fitted beside this Coulomb torque: with that of another file it would be a friction of neither.
+    """
+    gear, before = best.fit.parts[0].model.gear, known.gear_set.gear
+    laws = {part: getattr(gear, part) for part in FRICTION if getattr(gear, part) != getattr(before, part)}
+    if known.determined & set(FRICTION) or not laws:
+        return known
+    return known.with_parts(laws, {each.path: each.sigma for each in told}, name)
 
 
 def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:

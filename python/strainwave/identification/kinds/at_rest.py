@@ -9,9 +9,20 @@ import numpy as np
 
 from strainwave import friction
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.presliding import PreslidingCandidate, breakaway_torque, fit_presliding
+from strainwave.identification.candidates.presliding import (
+    BreakawayTorque,
+    PreslidingCandidate,
+    breakaway_torque,
+    fit_presliding,
+)
 from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.experiments.presliding import PreslidingLoop, breakaways
+from strainwave.identification.checks.unexplained import (
+    MAX_SHARE_OF_PRESLIDING,
+    MAX_SHARE_OF_TORQUE,
+    only_if_explained,
+    share_left,
+)
+from strainwave.identification.experiments.presliding import Breakaway, PreslidingLoop, breakaways
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
@@ -36,8 +47,13 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     slides = _sliding_beyond(0.5 * float(np.ptp(loop.torque)), known)
     best, *_ = fit_presliding(loop)
     slid = best.reach >= 1.0 and slides is None
-    estimates = tuple(_elements(best, uncertain, slid=slid))
     begun = np.arange(len(loop.angle)) >= loop.turns[0]
+    held_out = HeldOut(
+        "each part of the loop, predicted from the others", "torque at rest", "N.m", best.error,
+        float(np.std(loop.torque[begun])), samples=int(begun.sum()),
+    )  # fmt: skip
+    whole = share_left({held_out.channel: (held_out.relative, MAX_SHARE_OF_PRESLIDING)}, file.path.name)
+    estimates = only_if_explained(_elements(best, uncertain, slid=slid), whole)
     remarks = [*file.remarks]
     if slides is not None:
         remarks.append(
@@ -68,11 +84,7 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     units = {"small_angle": "rad", "torque": "N.m", "modelled": "N.m"}
     curves = Recording({name: values[begun] for name, values in compared.items()}, units)
     picture = Picture(curves, "loop", "torque at the input")
-    checks = tuple(friction_at_rest(0.5 * float(np.ptp(loop.torque)), known.initial.gear, file.path.name))
-    held_out = HeldOut(
-        "each part of the loop, predicted from the others", "torque at rest", "N.m", best.error,
-        float(np.std(loop.torque[begun])), samples=int(begun.sum()),
-    )  # fmt: skip
+    checks = (*friction_at_rest(0.5 * float(np.ptp(loop.torque)), known.initial.gear, file.path.name), whole)
     return FileResult(
         file.path.name, file, _in_words(best), estimates, tuple(remarks), checks, pictures=(picture,), held_out=held_out
     ), after
@@ -120,15 +132,18 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
     found = breakaway_torque(ramps)
     remarks = [*file.remarks, f"{len(ramps)} {'ramp of torque breaks' if len(ramps) == 1 else 'ramps of torque break'} it away"]
     sides = [each for each in (found.forward, found.reverse) if each is not None]
-    few = "one ramp tells no scatter" if len(ramps) <= len(sides) else ""
+    few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
     both = _mean(sides)
     for each, way in zip((found.forward, found.reverse), ("forward", "in reverse"), strict=True):
-        remarks.append(f"{way}: " + (NO_RAMP if each is None else f"{each.value:.4g} ± {each.sigma:.2g} N·m"))
+        remarks.append(f"{way}: " + (NO_RAMP if each is None else _with_sigma(each)))
     if found.slope is not None:
         remarks.append(
             f"for each decade of the ramps' rate it changes by {found.slope.value:.2g} ± {found.slope.sigma:.1g} N·m"
         )
-    estimates = (_estimate(both, "gear.friction_input.breakaway", "", uncertain, few),)
+    scatter = np.array([abs(ramp.torque) - each.value for ramp in ramps for each in [_of_way(ramp, found)]])
+    left = float(np.sqrt(np.mean(scatter**2))) / both.value
+    whole = share_left({"the torque of breakaway": (left, MAX_SHARE_OF_TORQUE)}, file.path.name)
+    estimates = only_if_explained((_estimate(both, "gear.friction_input.breakaway", "", uncertain, few),), whole)
     law, after = known.sliding(), known
     if isinstance(law, (*SLIDING, friction.LuGre)) and not _has_breakaway(known) and not estimates[0].why:
         if both.value >= law.coulomb:
@@ -137,8 +152,20 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
             remarks.append(
                 f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
             )
-    checks = tuple(friction_at_rest(both.value, known.initial.gear, file.path.name))
+    checks = (*friction_at_rest(both.value, known.initial.gear, file.path.name), whole)
     return FileResult(file.path.name, file, "breakaway of each ramp", estimates, tuple(remarks), checks), after
+
+
+def _with_sigma(each: Estimate) -> str:
+    scatter = f"± {each.sigma:.2g} N·m" if np.isfinite(each.sigma) else "N·m, of one ramp"
+    return f"{each.value:.4g} {scatter}"
+
+
+def _of_way(ramp: Breakaway, found: BreakawayTorque) -> Estimate:
+    """Return the breakaway torque in the direction of a ramp."""
+    each = found.forward if ramp.torque > 0.0 else found.reverse
+    assert each is not None
+    return each
 
 
 def _has_breakaway(known: GearSoFar) -> bool:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from strainwave import Drive, stiffness, structure
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
+from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate
@@ -248,7 +249,13 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
             f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
             "that the model lacks, and its numbers may be off by more than they say"
         )
-    delay, sigma = estimates["output_angle_delay"]
+    if DELAY not in estimates:
+        yield (
+            f"a delay of output_angle of more than {MAX_DELAY_SAMPLES:g} samples would fit best: no clock is as late as "
+            "that, and none is fitted"
+        )
+        return
+    delay, sigma = estimates[DELAY]
     if abs(delay.value) > LATE * sigma:
         yield (
             f"output_angle comes {1e3 * delay.value:.3g} ± {1e3 * sigma:.1g} ms behind input_angle; viscous friction at the "

@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.position import TURN, PositionFit, fit_position
+from strainwave.identification.checks.sizes import opposes_motion
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.motions import stretches
@@ -113,7 +116,7 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
         if "time" in recording and {f"{prefix}angle", f"{prefix}speed"} & set(recording.names):
             speed, parts = _in_time(recording, prefix)
         elif f"{prefix}speed" in recording:
-            speed = recording.values(f"{prefix}speed", "rad/s")
+            speed = sensible(recording, f"{prefix}speed", "rad/s")
             parts = _of_speed(speed)
         elif not name and "speed" in file.constants:
             speed, parts = np.full(rows, file.constants["speed"]), [slice(0, rows)]
@@ -131,10 +134,10 @@ def _in_time(recording: Recording, prefix: str) -> tuple[Array, list[slice]]:
     """Return the speed at each row, as measured or the mean of its stretch, and the rows of each stretch at constant speed."""
     time, speed = recording.time, np.zeros(len(recording))
     if measured := f"{prefix}speed" in recording:
-        speed = recording.values(f"{prefix}speed", "rad/s")
+        speed = sensible(recording, f"{prefix}speed", "rad/s")
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
     if f"{prefix}angle" in recording:
-        angle = recording.values(f"{prefix}angle", "rad")
+        angle = sensible(recording, f"{prefix}angle", "rad")
     parts = constant_speeds(time, angle)
     for part in [] if measured else parts:
         last = part.stop - 1
@@ -154,12 +157,12 @@ def _torque(file: Recognised, known: GearSoFar, side: Side) -> tuple[Array, floa
     """Return the torque at each row, the relative uncertainty that all rows share [1], and the side on which it counts."""
     recording = file.recording
     if "joint_torque" in recording:
-        return recording.values("joint_torque", "N.m"), 0.0, "output"
+        return sensible(recording, "joint_torque", "N.m"), 0.0, "output"
     if "input_torque" in recording:
-        return recording.values("input_torque", "N.m"), 0.0, "input"
+        return sensible(recording, "input_torque", "N.m"), 0.0, "input"
     counted: Side = side if "torque" in recording else file.side or "input"
     with_it, uncertain = with_torque(file, known.gear_set)
-    return with_it.values("torque", "N.m"), uncertain, counted
+    return sensible(with_it, "torque", "N.m"), uncertain, counted
 
 
 def _stretches(
@@ -250,7 +253,9 @@ def joined(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar
     if different_speeds(speed[kept]) < MIN_SPEEDS:
         estimates, few = friction_at_speeds(speed, levels.torque, levels.covariance, side)
         estimates = tuple(each.resting_on(uncertain) for each in estimates)
-        return FileResult(JOINED, file, AT_SPEEDS, (*estimates, *gravity), remarks=(*remarks, *few), what=TABLE), known
+        checks = tuple(opposes_motion(estimates, names))
+        every = (*estimates, *gravity)
+        return FileResult(JOINED, file, AT_SPEEDS, every, remarks=(*remarks, *few), checks=checks, what=TABLE), known
     result, after = fit_table(file, file.recording, uncertain, known)
     return replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)), after
 
@@ -284,7 +289,9 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, G
     found = fit_position(recordings)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
-    estimates = tuple(_estimates(found, max(run.uncertain for run in turning), measured=measured))
+    left = float(np.sqrt(np.mean(found.residual**2) / np.mean(found.friction**2)))
+    whole = share_left({"friction over the angle": (left, MAX_SHARE_OF_TORQUE)}, listed(names))
+    estimates = only_if_explained(_estimates(found, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
     remarks = list(_of_position(found, len(turning)))
     sliding = law.law if law.name == "thermal" else law
@@ -312,6 +319,7 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, G
         "a parabola and ten orders of the turn",
         estimates,
         remarks=tuple(remarks),
+        checks=(whole,),
         what=WHAT,
         pictures=(Picture(curves),),
     ), after

@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.friction import FrictionCandidate, fit_friction, ranking
-from strainwave.identification.checks.sizes import friction_of_table, hints_of_levels, input_speed
+from strainwave.identification.candidates.steady_shapes import is_loaded
+from strainwave.identification.checks.sizes import (
+    friction_of_table,
+    hints_of_levels,
+    input_speed,
+    levels_of_table,
+    opposes_motion,
+)
 from strainwave.identification.checks.unexplained import explained
 from strainwave.identification.experiments.friction_table import BESIDE, FrictionTable, with_load
 from strainwave.identification.fitting.covariance import correlation_length
@@ -100,12 +107,13 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     if "load" not in table and different_speeds(speed) < MIN_SPEEDS:
         at_speeds, few = friction_at_speeds(speed, table.values("torque", "N.m"), side=file.side or "input")
         at_speeds = tuple(each.resting_on(uncertain) for each in at_speeds)
-        return FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few)), known
+        opposing = tuple(opposes_motion(at_speeds, name))
+        return FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few), checks=opposing), known
     best, *others = fit_friction(experiment, gear)
     speed_check = input_speed(experiment.speed, name)
-    checks = [speed_check, *friction_of_table(table, best.fit, known.initial.gear, side, name)]
+    checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole = explained(best.fit, name)
-    fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed)
+    fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, _shared(best))
     estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
@@ -122,7 +130,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     )  # fmt: skip
     if whole.failed or known.knows_better("friction_input", estimates):
         return result, known
-    parts = {"friction_input", "friction_mesh"} if "load" in table else {"friction_input"}
+    parts = {"friction_input", "friction_mesh"} if is_loaded(experiment) else {"friction_input"}
     return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("friction_input", estimates)
 
 
@@ -154,6 +162,17 @@ def _unloaded(table: Recording, file: Recognised, gear_set: GearSet) -> Recordin
     if "temperature" in file.constants and "temperature" not in table:
         table = table.with_column("temperature", np.full(len(table), file.constants["temperature"]), "K")
     return table
+
+
+def _shared(best: FrictionCandidate) -> dict[str, str]:
+    """Return the parameters that a table determines only together with a loss under load, by path, and how."""
+    table = best.fit.experiment
+    assert isinstance(table, FrictionTable)
+    if table.load is None or is_loaded(table) or not table.load.any():
+        return {}
+    held = float(np.abs(table.load).max())
+    why = f"one load of {held:.3g} N·m at the input determines the sum of it and the loss there only"
+    return {f"gear.{each.path}": why for each in best.fit.estimates if not each.path.endswith("viscous")}
 
 
 def _held_out(best: FrictionCandidate) -> HeldOut:

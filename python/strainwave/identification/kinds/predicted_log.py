@@ -47,6 +47,8 @@ MIN_TEMPERATURE_RANGE = 2.0  # K: over a smaller one friction does not change me
 MAX_LINES = 8  # of the residual that are listed
 SPEED_BINS = 20  # of equally many samples, over which the error of a law of friction is averaged
 OF_RIGID_DRIVE = ("gear.friction_", "load.", "motor.")  # beginnings of paths of numbers that a rigid drive has
+OF_MOTION = {"input_angle", "output_angle", "input_speed", "output_speed"}
+MAX_ERROR_OF_TURNED = 0.5  # of the error: what the angle with its sign turned must leave less, to be taken
 OTHER = "share of "  # a term of other joints, whose size no saved drive contains
 
 
@@ -61,10 +63,29 @@ def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
             f"{gear_set.name} has no [load], without which no torque along a motion is predicted; identify it from a log, with "
             "--constant torque_constant=… if the log contains a current: a rough one will do to predict currents"
         )
+    found = _predicted(file, gear_set)
+    if not found.contradicts:
+        return found
+    turned = _predicted(_turned(file), gear_set)
+    if turned.error > MAX_ERROR_OF_TURNED * found.error:
+        return found
+    said = f"the angle is counted in the other sense than {gear_set.name} has it: its sign is turned round"
+    return replace(turned, remarks=(said, *turned.remarks))
+
+
+def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
     taken = log_of(file, GearSoFar(gear_set))
     if taken.in_current:
         raise ValueError(f"{gear_set.name} has no torque constant: give --constant torque_constant=…")
     return judged(*_Compared.of(taken, gear_set).prediction(file, gear_set))
+
+
+def _turned(file: Recognised) -> Recognised:
+    """Return a log with the motion of its joint counted in the other sense; `log_of` turns its effort accordingly."""
+    recording = file.recording
+    for name in OF_MOTION & set(recording.names):
+        recording = recording.with_column(name, -recording[name], recording.unit(name))
+    return replace(file, recording=recording)
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,8 +68,6 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
         recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive, regressors=file.regressors)
-    if np.ptp(recording[log.effort]) == 0.0:
-        raise ValueError(f"{log.effort} never changes: a set value, a limit, or a channel that was not recorded")
     if fit_plain(log, drive).sense < 0.0:
         remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))

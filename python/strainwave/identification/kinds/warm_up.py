@@ -16,7 +16,9 @@ from strainwave.identification.candidates.warming import (
     Warming,
     friction_over_temperature,
 )
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import FileEstimate, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 
@@ -38,6 +40,7 @@ class Warmed:
         estimates: its numbers
         remarks: the same in words
         picture: means of the friction over the temperature, and the line
+        check: that the line explains the means
     """
 
     found: Warming
@@ -45,6 +48,7 @@ class Warmed:
     estimates: tuple[FileEstimate, ...]
     remarks: tuple[str, ...]
     picture: Picture
+    check: Check
 
     def known(self, known: GearSoFar, name: str) -> tuple[GearSoFar, tuple[str, ...]]:
         """What is known after it, and what was assumed for it."""
@@ -88,7 +92,11 @@ def warmed(file: Recognised) -> Warmed | None:
         "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
     told = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
-    return Warmed(found, effort, told, remarks, Picture(_curves(series, effort, found), "means"))
+    curves = _curves(series, effort, found)
+    means = curves[f"friction_of_{effort}"]
+    left = float(np.linalg.norm(means - curves["modelled"]) / max(float(np.linalg.norm(means)), 1e-300))
+    whole = share_left({"friction over the temperature": (left, MAX_SHARE_OF_TORQUE)}, file.path.name)
+    return Warmed(found, effort, only_if_explained(told, whole), remarks, Picture(curves, "means"), whole)
 
 
 def _celsius(temperature: float) -> str:

@@ -156,6 +156,10 @@ def friction_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRol
     order = f", {rows} rows in {'no order of time' if (np.diff(speed.si) < 0.0).any() else 'the order of speed'}"
     if rows > MAX_ROWS_OF_TABLE:
         parts = stretches(speed.si)
+        if not parts:
+            raise UndecidedError(
+                f"none of its {rows} rows belongs to a stretch at one speed: give a row for each speed, or its time, as a log"
+            )
         steady = sum(part.stop - part.start for part in parts)
         remarks = (f"{steady} of its {rows} rows are steady; the means of {len(parts)} stretches at one speed are taken",)
         found, order = averaged(found, parts), " at one speed after another"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ class CombinedParameter:
 
     Attributes:
         estimate: the value taken: the mean of the files that agree, or the estimate of the best file
-        source: the name of the best file, the one with the smallest standard deviation
+        source: the name of the best file: the one whose law the gear has, else that with the smallest standard deviation
         others: estimates of other files, by their names
         contradicts: names of files whose estimate lies beyond three standard deviations of both
         best: the estimate of the best file
@@ -58,11 +59,15 @@ def lines_of(numbers: Sequence[CombinedParameter]) -> Iterator[str]:
         yield f"  {taken.label:{width}}  {taken.value:11.5g} ± {taken.sigma:<8.2g} {taken.unit:12} {each.taken_from}"
 
 
-def combine(files: Sequence[FileResult], *, accept: bool = False) -> tuple[CombinedParameter, ...]:
+def combine(
+    files: Sequence[FileResult], *, accept: bool = False, determined_by: Mapping[str, str] | None = None
+) -> tuple[CombinedParameter, ...]:
     """Return every parameter determined: the mean of the files that agree; files with the same measurement count once.
 
-    Files that lie further from the best one than two standard deviations take no part in the mean: one of them, or the model,
-    is wrong. A file with a failed check takes part only if no other file determines the parameter, or if `accept` is true.
+    The best file is the one whose law the gear has by `determined_by`, a file for each path; else the one with the smallest
+    standard deviation. Files that lie further from it than two standard deviations take no part in the mean: one of them, or
+    the model, is wrong. Of friction no mean is taken over files with different laws, whose numbers have different meanings. A
+    file with a failed check takes part only if no other file determines the parameter, or if `accept` is true.
     Parameters of the gear come first, then those of what the drive carried, run by run.
     """
     by_path: dict[tuple[str, str, str], dict[str, FileEstimate]] = {}
@@ -76,19 +81,32 @@ def combine(files: Sequence[FileResult], *, accept: bool = False) -> tuple[Combi
     failed = {file.name for file in files if file.failed and not accept}
     runs = list(dict.fromkeys(run for _, _, run in by_path))
     in_order = sorted(by_path, key=lambda key: runs.index(key[2]) if key[2] else -1)
-    return tuple(_combined(by_path[key], copies, failed) for key in in_order)
+    laws = {file.name: file.friction for file in files}
+    own = determined_by or {}
+    return tuple(
+        _combined(by_path[key], copies, failed, laws if is_friction(key[0]) else {}, own.get(key[0], "")) for key in in_order
+    )
 
 
-def _combined(estimates: Mapping[str, FileEstimate], copies: set[str], failed: set[str]) -> CombinedParameter:
+def is_friction(path: str) -> bool:
+    """True for a number of a law of friction."""
+    return path.startswith("gear.friction_")
+
+
+def _combined(
+    estimates: Mapping[str, FileEstimate], copies: set[str], failed: set[str], laws: Mapping[str, str], first: str
+) -> CombinedParameter:
     own = {name: each for name, each in estimates.items() if name not in copies} or estimates
     own = {name: each for name, each in own.items() if name not in failed} or own
     apart_from = copies if own.keys() <= failed else copies | failed  # these take no part in the mean
-    best = min(own, key=lambda name: own[name].sigma)
+    best = min(own, key=lambda name: (Path(name).name != first, own[name].sigma))
     others = {name: each for name, each in estimates.items() if name != best}
     apart = [name for name, each in others.items() if name not in copies and distance(each, estimates[best]) > MAX_DISTANCE]
     agree = [
-        name for name in others if name not in apart_from and distance(others[name], estimates[best]) <= MAX_DISTANCE_IN_MEAN
-    ]
+        name for name in others
+        if name not in apart_from and laws.get(name) == laws.get(best)
+        and distance(others[name], estimates[best]) <= MAX_DISTANCE_IN_MEAN
+    ]  # fmt: skip
     agree = [] if best in copies else agree  # all of them are one measurement
     taken, widened = mean_of([estimates[best], *(others[name] for name in agree)])
     return CombinedParameter(taken, best, others, tuple(apart), estimates[best], (best, *agree), widened)

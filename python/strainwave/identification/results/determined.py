@@ -16,6 +16,7 @@ from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEst
 
 Array = NDArray[np.float64]
 
+MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; friction with a larger one is not identified
 MIN_SPEEDS = 4  # different ones, that determine a law of friction and validate it
 PATH = "steady_friction"
 AT_SPEEDS = "friction at each speed"  # the model of a measurement of fewer speeds
@@ -71,9 +72,9 @@ def friction_at_speeds(
         scatter = student(ONE_SIGMA, freedom) ** 2 * float(left @ left) / freedom if freedom > 0 else 0.0
         variance = scatter * float(weights @ weights) if covariance is None else float(weights @ covariance @ weights)
         found = friction_at(
-            float(np.abs(speed[sizes == size]).mean()), abs(float(weights @ torque)), float(np.sqrt(variance)), side=side
+            float(np.abs(speed[sizes == size]).mean()), float(weights @ torque), float(np.sqrt(variance)), side=side
         )
-        estimates.append(found if variance > 0.0 else replace(found, sigma=np.inf, why="one number shows no scatter"))
+        estimates.append(_judged(found))
     count = different_speeds(speed)
     few = (
         f"{count} different {'speed' if count == 1 else 'speeds'}, slow or fast, one way or the other, determine friction "
@@ -84,7 +85,15 @@ def friction_at_speeds(
     return tuple(estimates), (few, *zero)
 
 
-def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, speed: float) -> FileEstimate:
+def _judged(found: FileEstimate) -> FileEstimate:
+    """Return friction at a speed, with the reason why the measurement does not determine it, if there is one."""
+    if found.sigma == 0.0:
+        return replace(found, sigma=np.inf, why="one number shows no scatter")
+    doubtful = found.sigma > MAX_RELATIVE_SIGMA * abs(found.value)
+    return replace(found, why="standard deviation exceeds half the value" if doubtful else "")
+
+
+def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, speed: float, load: float = 0.0) -> FileEstimate:
     r"""Return the steady friction of a gear at a speed of its input, with the standard deviation that the covariance gives it.
 
     The standard deviation is that of a linear function of the estimates, $\sqrt{g^T C g}$, with g the derivatives of the
@@ -96,6 +105,7 @@ def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, spee
         paths: of the estimates in the gear or in its drive; other numbers than those of friction are left out
         covariance: of these estimates, shape (p, p); not finite where they are not determined, and so is the result
         speed: of the input [rad/s], not 0
+        load: torque that the input transmits [N.m]
 
     >>> import strainwave as sw
     >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=2.0, breakaway=2.0, viscous=0.5))
@@ -107,7 +117,7 @@ def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, spee
     plain = [path.removeprefix("gear.") for path in paths]
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(gear))}
     used = [place for place, path in enumerate(plain) if path.startswith(PLACES) and path in numbers]
-    table = FrictionTable(np.array([abs(speed)]), np.zeros(1))
+    table = FrictionTable(np.array([abs(speed)]), np.zeros(1), load=np.array([load]))
     torque, slopes = table.predict(gear, [numbers[plain[place]] for place in used], np.zeros(0))
     gradient = slopes[:, 0, 0]
     acting = gradient != 0.0

@@ -87,7 +87,7 @@ def _note(start: GearSet, files: Sequence[FileResult], logs: Sequence[FileResult
 
 def why_no_load(files: Sequence[FileResult]) -> str:
     """Return why the load of logs is not written; empty if it is, or if there are none."""
-    return NO_LOAD if any(map(_in_current, files)) and not any(map(_has_load, files)) else ""
+    return NO_LOAD if any(each.is_in_current for each in files) and not any(map(_has_load, files)) else ""
 
 
 # ---- Load and motor --------------------------------------------------------------------------------------------------
@@ -103,15 +103,11 @@ def _loads_of(result: FileResult) -> dict[str, FileEstimate]:
     return {each.path: each for each in result.estimates if each.path.startswith("load.")}
 
 
-def _in_current(result: FileResult) -> bool:
-    return any(each.law == "in A" for each in _loads_of(result).values())
-
-
 def _has_load(result: FileResult) -> bool:
     """True if a file determines a number of the load, in its unit, or was fitted with one that a person gave."""
     given = result.recognised is not None and "load_inertia" in result.recognised.constants
     determined = any(not each.why for each in _loads_of(result).values())
-    return _drive_of(result) is not None and (determined or given) and not _in_current(result)
+    return _drive_of(result) is not None and (determined or given) and not result.is_in_current
 
 
 def _load_sigma(result: FileResult) -> float:
@@ -271,7 +267,7 @@ def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validat
     """Yield the errors of the saved model on the files that it was identified from."""
     for each in files:
         held_out, drive = each.held_out, _drive_of(each)
-        if held_out is None or _in_current(each) or not np.isfinite([held_out.error, held_out.zero]).all():
+        if held_out is None or each.is_in_current or not np.isfinite([held_out.error, held_out.zero]).all():
             continue
         error, varies, zero, delay = held_out.error, held_out.zero, 0.0, 0.0
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):

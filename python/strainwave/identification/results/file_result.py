@@ -162,6 +162,18 @@ class FileResult(ComparedByFields):
         return self.what or ("not read" if self.recognised is None else KINDS[self.recognised.kind].title)
 
     @property
+    def is_in_current(self) -> bool:
+        """True if its torques are in A, as the torque constant is not known."""
+        return any(each.law == "in A" for each in self.estimates)
+
+    @property
+    def friction(self) -> str:
+        """The laws of friction that were fitted, which give its numbers their meaning."""
+        if self.fit is None:
+            return self.model
+        return f"{self.fit.gear.friction_input.name}, {self.fit.gear.friction_mesh.name}"
+
+    @property
     def failed(self) -> tuple[Check, ...]:
         """The checks that failed."""
         return tuple(check for check in self.checks if check.failed)

@@ -35,10 +35,10 @@ def run() -> sw.Run:
     return sw.simulate(TRUTH, command, 2e-4, sample=2e-3, record=["input_angle", "output_angle", "current"])
 
 
-def found(noise: float) -> ElasticCandidate:
+def found(noise: float, delay: float = LATE) -> ElasticCandidate:
     """From a spring a third off, with an output encoder that is late."""
     random, time = np.random.default_rng(1), run().time
-    late = np.interp(time - LATE, time, run()["output_angle"])
+    late = np.interp(time - delay, time, run()["output_angle"])
     columns = {
         "time": time,
         "input_angle": run()["input_angle"] + 1e-5 * random.standard_normal(len(time)),
@@ -64,3 +64,8 @@ def test_spring_hysteresis_inertia_and_delay_are_found_as_surely_as_is_said() ->
 def test_a_twist_that_noise_hides_is_not_told() -> None:
     with pytest.raises(ValueError, match="load it more, or measure the angles better"):
         found(0.1)
+
+
+def test_no_delay_between_encoders_is_longer_than_five_samples() -> None:
+    told = found(1e-5, delay=0.03)  # 15 samples
+    assert not any(each.path == "output_angle_delay" for each in told.fit.estimates)

@@ -219,3 +219,12 @@ def test_bristles_that_yield_before_they_slide_break_away_where_they_slide() -> 
     recording = sw.Recording({"time": time, "torque": torque, "angle": angle}, {"time": "s", "torque": "N.m", "angle": "rad"})
     (found,) = breakaways(recording)
     assert 0.8 * level < found.torque < 1.02 * level
+
+
+def test_a_torque_that_no_bristle_follows_fails_the_check_and_determines_nothing() -> None:
+    angle = path(1e-3)
+    torque = np.cumsum(np.random.default_rng(0).standard_normal(len(angle))) * 1e-3
+    columns = {"time": 0.01 * np.arange(len(angle)), "angle": angle, "torque": torque}
+    found = sw.identify("csg-20-100", {"presliding": sw.Recording(columns, {"time": "s", "angle": "rad", "torque": "N.m"})})
+    assert "share left unexplained" in [check.name for check in found.failed]
+    assert found.parameters == ()

@@ -55,3 +55,9 @@ def test_what_tells_nothing_is_refused(changed: dict[str, np.ndarray], message: 
         recording = recording.with_column(name, values, recording.unit(name))
     with pytest.raises(ValueError, match=message):
         friction_over_temperature(recording)
+
+
+def test_an_effort_without_friction_is_refused() -> None:
+    still = log(0).with_column("current", np.zeros(4000), "A")
+    with pytest.raises(ValueError, match="no part of current turns round with the motion"):
+        friction_over_temperature(still)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from tests.samples import sample
 
 SMALL, LARGE = sw.GearSet.read("hfuc-20-80"), sw.GearSet.read("hfuc-32-50")
 FIRST = "gear.stiffness.k1"
+PATHS = [f"gear.friction_input.{name}" for name in ("coulomb", "viscous")]
+Law = sw.friction.Coulomb | sw.friction.Stribeck
 
 
 def of(name: str, values: dict[str, float], relative: float = 0.005) -> FileResult:
@@ -82,6 +85,37 @@ def test_friction_from_run_to_run_may_differ_by_more_than_its_standard_deviation
         assert "standard deviations apart" in check.message
 
 
+def fitted(name: str, law: Law, noise: float = 1e-4) -> FileResult:
+    """A friction table of a law, fitted by the law that it shows."""
+    speed = np.geomspace(0.5, 300.0, 25)
+    torque = law.steady(speed) + noise * np.random.default_rng(3).standard_normal(len(speed))
+    table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    (result,) = sw.identify(SMALL, {"friction": table}).files
+    return replace(result, name=name)
+
+
+FALLING = sw.friction.Stribeck(coulomb=0.04, breakaway=0.07, stribeck_speed=30.0, viscous=3e-4)
+LEVEL = sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4)
+
+
+@pytest.mark.parametrize(("factor", "fails"), [(1.0, False), (2.5, True)])
+def test_friction_by_two_laws_is_compared_as_a_torque(factor: float, fails: bool) -> None:
+    """A joint with 2.5 times the friction passed by having another law, whose numbers have other meanings."""
+    other = LEVEL.replace(coulomb=factor * LEVEL.coulomb, breakaway=factor * LEVEL.coulomb, viscous=factor * LEVEL.viscous)
+    files = fitted("a.csv", FALLING), fitted("b.csv", other)
+    assert files[0].friction != files[1].friction
+    (check,) = between_files(combine(files), files)
+    assert check.failed == fails
+    assert "steady_friction (at " in check.message
+
+
+def test_of_files_with_two_laws_no_mean_is_taken_and_the_gear_has_the_numbers_of_one() -> None:
+    files = fitted("a.csv", FALLING), fitted("b.csv", LEVEL)
+    numbers = {each.estimate.path: each for each in combine(files, determined_by=dict.fromkeys(PATHS, "a.csv"))}
+    for path in PATHS:
+        assert (numbers[path].source, numbers[path].mean_of) == ("a.csv", ("a.csv",))
+
+
 def test_files_that_agree_and_files_with_a_failed_check_are_not_compared() -> None:
     agree = of("a.csv", {FIRST: 14200.0}), of("b.csv", {FIRST: 14250.0})
     assert list(between_files(combine(agree), agree)) == []
@@ -91,3 +125,15 @@ def test_files_that_agree_and_files_with_a_failed_check_are_not_compared() -> No
     assert list(between_files(combine(files), files)) == []
     (taken,) = combine(files)
     assert (taken.source, taken.mean_of) == ("a.csv", ("a.csv",))
+
+
+def test_further_segments_of_a_spring_of_the_same_law_are_compared_too() -> None:
+    spring = SMALL.gear.stiffness
+    segments = {"k1": spring.k1, "k2": 0.2 * spring.k2}
+    estimates = tuple(
+        FileEstimate(f"gear.stiffness.{name}", "N.m/rad", value, 0.01 * value, "three_segment")
+        for name, value in segments.items()
+    )
+    (check,) = against(SMALL, FileResult("loop.csv", estimates=estimates))
+    assert check.failed
+    assert "gear.stiffness.k2" in check.message

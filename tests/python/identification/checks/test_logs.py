@@ -68,3 +68,13 @@ def test_inertias_that_nothing_determines_contradict_nothing() -> None:
 def test_a_model_explains_half_and_no_less_than_plain_least_squares(error: float, plain: float, failed: list[int]) -> None:
     checks = list(held_out_error(HeldOut("last 30 % of the motion", "current", "A", error, 1.0, plain, 100), "log.csv"))
     assert [place for place, check in enumerate(checks) if check.failed] == failed
+
+
+@pytest.mark.parametrize(
+    ("joints", "told"), [((), "give their angles as other_angles"), (("2", "3"), "the motion of joints 2")]
+)
+def test_the_remedy_names_no_angle_that_was_given(joints: tuple[str, ...], told: str) -> None:
+    held_out = HeldOut("last 30 % of the motion", "current", "A", 0.7, 1.0, np.nan, 100)
+    (check,) = held_out_error(held_out, "log.csv", joints)
+    assert told in check.remedy
+    assert ("other_angles" in check.remedy) == (joints == ())

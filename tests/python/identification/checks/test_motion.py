@@ -59,6 +59,16 @@ def test_a_log_without_gravity_shows_no_ratio() -> None:
     )
 
 
+@pytest.mark.parametrize(("gravity", "checked"), [(0.0, False), (10.0, True)])
+def test_the_angle_is_compared_with_gravity_only_where_there_is_gravity(gravity: float, checked: bool) -> None:
+    """An upright axis in degrees was said to have a gravity that does not go with the sine of its angle."""
+    said = FileMapping(constants={"torque_constant": 0.08})
+    found = identify("hfuc-20-80", {"log": record(TRUTH | {"gravity": gravity}, NOISE)}, mapping=said)
+    of_angle = [check for check in found.checks if check.name == "angle in the sine of gravity"]
+    assert bool(of_angle) == checked
+    assert all("no other unit or side" in check.message for check in of_angle)
+
+
 def test_milliseconds_read_as_seconds_make_a_pendulum_that_no_joint_is() -> None:
     right = record(TRUTH, NOISE)
     assert "gravity against inertia" in failed(with_channel(right, "time", 1e3 * right["time"]))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
+from strainwave.identification.checks.sizes import friction_of_log
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
@@ -143,3 +144,25 @@ def test_a_loop_of_a_locked_gear_named_as_one_of_the_input_at_rest(largest: floa
     recording = sw.Recording(columns, {"input_angle": "rad", "input_torque": "N.m"})
     found = sw.identify(start(), {"presliding": recording})
     assert ("friction at rest" in [check.name for check in found.failed]) == fails
+
+
+@pytest.mark.parametrize(("effort", "told"), [("current", "no friction is left"), ("joint_torque", "a sensor behind the gear")])
+def test_friction_that_vanished_is_no_number(effort: str, told: str) -> None:
+    """It was printed as 1.79e-22 N.m, 3.32e-21 times that of the start set."""
+    law = sw.friction.Coulomb(coulomb=1e-22, breakaway=1e-22, viscous=0.0)
+    speeds = np.linspace(-100.0, 100.0, 50)
+    (check,) = friction_of_log(law, start().gear.friction_input, speeds, effort, "log.csv")
+    assert check.failed
+    assert told in check.message
+    assert "signs of angle, speed and torque" in check.remedy
+
+
+def test_a_table_at_one_load_determines_coulomb_friction_and_loss_together_only() -> None:
+    torque = 0.05 + 0.002 * 10.0 + 3e-4 * SPEED
+    columns = {**table(SPEED, torque).columns, "load_torque": np.full(len(SPEED), 800.0)}
+    measured = sw.Recording(columns, {"speed": "rad/s", "torque": "N.m", "load_torque": "N.m"})
+    found = of_friction(measured)
+    (coulomb,) = (each for each in found.files[0].estimates if each.path == "gear.friction_input.coulomb")
+    assert coulomb.state == "identified in combination"
+    assert any("all its rows are at one load" in remark for remark in found.files[0].remarks)
+    assert not any("the loss is" in remark for remark in found.files[0].remarks)
