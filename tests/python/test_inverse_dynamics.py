@@ -307,7 +307,7 @@ REFUSED: dict[str, tuple[Case, str]] = {
     "standstill": (lambda q, u, t: (0.0 * q, u, t), r"forward in 0 and backward in 0"),
     "noise alone": (
         lambda q, u, t: (np.random.default_rng(0).normal(size=len(q)), u, t),
-        r"position: its noise exceeds 0.001 of the acceleration's power",
+        r"the shaft does not move beyond the noise of its angle",
     ),
 }
 

@@ -14,7 +14,7 @@ from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.plain import held_out_residuals, moving
 from strainwave.identification.fitting.fit import solved_problem
-from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
+from strainwave.identification.results.held_out import HeldOut
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def confirmed(
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
         tried.append((each, held_out, predicted))
-        if held_out.share_of_plain < MAX_SHARE_OF_PLAIN and held_out.relative < 1.0:
+        if held_out.share_of_plain < held_out.max_share_of_plain and held_out.relative < 1.0:
             return tried[-1]
     return min(tried, key=lambda found: found[1].error)
 

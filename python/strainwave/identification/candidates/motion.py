@@ -184,7 +184,9 @@ class _Search:
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
         if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
             return best
-        limit = MAX_RELATIVE_ERROR * best.errors[-1]
+        bristled, limit = _with_bristles(best), MAX_RELATIVE_ERROR * best.errors[-1]
+        if bristled is not None and bristled.error < best.error and bristled.errors[-1] < limit:  # no estimate moves
+            return bristled
         self.tried(model)
         return min((each for each in self.every if each.errors[-1] < limit), key=lambda each: each.error, default=best)
 

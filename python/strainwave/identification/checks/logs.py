@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
+from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import listed
 from strainwave.orders.shaft_pair import Ratio
 
@@ -46,9 +46,9 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         "taken for",
     )  # fmt: skip
     if np.isfinite(held_out.plain):
-        share = held_out.share_of_plain
+        share, limit = held_out.share_of_plain, held_out.max_share_of_plain
         yield Check(
-            "plain least squares", source, share, MAX_SHARE_OF_PLAIN, "1", share > MAX_SHARE_OF_PLAIN,
+            "plain least squares", source, share, limit, "1", share > limit,
             f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
             "record longer, at several speeds and both ways: the record does not determine more than its mean friction",
         )  # fmt: skip

@@ -7,6 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
+MAX_SHARE_VIBRATING = (
+    1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave the vibration of the load
+)
+MAX_IN_BAND = 0.01  # of what varies in the pass band
 
 
 @dataclass(frozen=True)
@@ -42,3 +46,8 @@ class HeldOut:
     def share_of_plain(self) -> float:
         """The error over that of plain least squares [1]; not a number without."""
         return self.error / max(self.plain, 1e-300)
+
+    @property
+    def max_share_of_plain(self) -> float:
+        """Limit of `share_of_plain` [1]."""
+        return MAX_SHARE_VIBRATING if self.in_band < MAX_IN_BAND else MAX_SHARE_OF_PLAIN
