@@ -124,3 +124,14 @@ def test_a_motor_beside_a_joint_without_an_encoder_is_counted_at_the_joint() -> 
     found = recognise(DATA / "kuka-kr300" / "FF_A.mat", said)
     assert {"reflected_angle", "reflected_speed"} <= set(found.columns)
     assert not any(name.startswith("output_") for name in found.columns)
+
+
+def test_a_log_of_a_speed_alone_determines_what_its_angle_would() -> None:
+    """The angle is summed up from the speed; only the phase of gravity counts from another zero."""
+    table = np.loadtxt(DATA / "ur10e" / "ur-20_01_22-joint_2.csv", delimiter=",")
+    columns = {"time": table[:, 0], "output_speed": table[:, 8], "current": table[:, 14]}
+    record = Recording(columns, {"time": "s", "output_speed": "rad/s", "current": "A"})
+    (result,) = identify("csg-20-100", {"log": record}, mapping=FileMapping(constants={"ratio": 101.0})).files
+    found, expected = values(result), values(universal_robot(2, lambda table: table))
+    for name in ("coulomb", "driving_forward", "gravity_torque"):
+        assert found[name] == pytest.approx(expected[name], rel=0.02)

@@ -64,6 +64,9 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     """
     drive, remarks, in_current = _drive(file, known.gear_set)
     recording = _loaded(file)
+    if not {"input_angle", "output_angle"} & set(recording.names):
+        recording, remark = _with_angle(recording)
+        remarks.append(remark)
     if not in_current and "current" in recording and not _constant_known(file, known.gear_set):
         remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
         recording = recording.select([name for name in recording.names if name != "current"])
@@ -77,8 +80,7 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"
     ] * is_of_speed
     others = {name: file.recording[at] for name, at in file.neighbours.items()}
-    joint = file.joint or which_of(words_of(next(of for name, of in file.columns.items() if name.endswith("_angle"))))
-    with_others = tuple(coupled(log, drive, recording.time, others, joint)) if others and not file.regressors else ()
+    with_others = tuple(coupled(log, drive, recording.time, others, _joint(file))) if others and not file.regressors else ()
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         share = 100.0 * spoilt_rows / len(recording)
@@ -89,6 +91,21 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
     relative = 0.0 if constant is None else constant.relative
     return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, said, relative, rotor)
+
+
+def _with_angle(recording: Recording) -> tuple[Recording, str]:
+    """Return a recording of a speed with the angle that it makes, and a remark."""
+    side = next(name.removesuffix("_speed") for name in recording.names if name.endswith("_speed"))
+    speed = recording.values(f"{side}_speed", "rad/s")
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(recording.time)
+    angle = np.concatenate([[0.0], np.cumsum(steps)])
+    remark = f"no angle was recorded: {side}_speed is summed up, from 0 at the first row, and with it an error of its zero"
+    return recording.with_column(f"{side}_angle", angle, "rad"), remark
+
+
+def _joint(file: Recognised) -> str:
+    """Return the name of the joint, as the columns of other joints have theirs."""
+    return file.joint or which_of(words_of(next(column for name, column in file.columns.items() if name.endswith("_angle"))))
 
 
 def _constant_known(file: Recognised, gear_set: GearSet) -> bool:
