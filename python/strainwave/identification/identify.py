@@ -167,7 +167,7 @@ def check_arguments(files: object, mapping: object) -> None:
 
 
 def _nothing_determined(results: Sequence[FileResult]) -> list[Check]:
-    """Return the check that files determine a parameter, if none does and no check of a file says why."""
+    """Return the check that files determine a parameter, if none does and no check of a file gives the reason."""
     estimates = [estimate for each in results for estimate in each.estimates]
     if any(estimate.state != "not identified" for estimate in estimates) or any(each.failed for each in results):
         return []

@@ -73,7 +73,7 @@ def identify_joints(
             by_joint.setdefault(joint, []).append(file)
     if not by_joint:
         why = "; ".join(f"{name}: {each}" for name, each in left_out.items())
-        raise ValueError(f"no file tells several joints apart, leave --joint away or name one: {why}")
+        raise ValueError(f"no file contains several joints, leave --joint away or name one: {why}")
     if len(by_joint) > MAX_JOINTS:
         raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
     found, refused = dict[str, Identified](), dict[str, str]()

@@ -299,7 +299,7 @@ def _fit_of(problem: Problem, x: Array) -> Fit:
 
 
 def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
-    """Paths of what is not known of the output stage; what lies beyond the largest torque is not told."""
+    """Return the paths of what is not known of the output stage; nothing is known beyond the largest torque."""
     spring = drive.gear.stiffness
     beyond = ("k3", "t2") if isinstance(spring, stiffness.ThreeSegment) and spring.t2 > reach else ()
     kept = {f"{SPRING}{name}" for name in beyond} | {scale}
@@ -334,7 +334,7 @@ def _with_element(drive: Drive, law: Any, reach: float) -> Drive | None:
 
 
 def _bent_twice(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """With a third segment, where the second is told, and torque goes on far beyond where it begins."""
+    """With a third segment, if the second is determined and the torque goes on far beyond its beginning."""
     spring: Any = drive.gear.stiffness
     knee = OUTER * reach
     if not isinstance(spring, stiffness.ThreeSegment) or spring.t1 > knee:

@@ -99,8 +99,8 @@ def fit_position(recordings: Recording | Sequence[Recording], orders: int = ORDE
         raise ValueError(f"the runs cover {(end - start) / TURN:.2f} turns; friction over the turn needs at least a whole one")
     if len(angle) < max(FEWEST * orders * (end - start) / TURN, 2 * orders + 5):
         raise ValueError(
-            f"{len(angle)} samples over {(end - start) / TURN:.1f} turns cannot tell {orders} orders; record more, or ask for "
-            "fewer"
+            f"{len(angle)} samples over {(end - start) / TURN:.1f} turns do not separate {orders} orders; record more, or ask "
+            "for fewer"
         )
     several = len(np.unique(np.round(speed / max(float(speed.max()), 1e-300), 2))) > 1
     middle, half = 0.5 * (start + end), 0.5 * (end - start)

@@ -1,4 +1,4 @@
-"""Drive logs: what a run of the whole drive says of its gear."""
+"""Drive logs: numbers of the gear from a run of the whole drive."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def free_parameters(log: DriveLog, drive: Drive, *, friction_known: bool, torsio
 
 
 def prepared(log: DriveLog, drive: Drive, *, friction_known: bool) -> Drive:
-    """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
+    """Return the drive with a gear whose laws have the parameters that the log can determine, started near the measurement."""
     gear = drive.gear.replace(friction_input=_changed(drive.gear.friction_input, _with_coulomb))
     if {"input_angle", "output_angle"} <= set(log.channels):
         gear = gear.replace(kinematic_error=_harmonics(log, gear.kinematics.ratio))

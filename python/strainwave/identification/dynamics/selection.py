@@ -58,7 +58,7 @@ class Selection:
         return taken[: next(count for count, error in enumerate(errors) if error <= least / BETTER)]
 
     def error(self, columns: Array) -> float:
-        """Error of the rows that check, by the shares that the others tell, over how much the torque varies."""
+        """Return the error of the rows that check, by the shares of the others, over how much the torque varies."""
         every = np.hstack([self.base, columns])
         left = self.torque[self.check] - every[self.check] @ shares_of(every[self.train], self.torque[self.train])
         return float(np.sqrt(np.mean(left**2)) / np.std(self.torque))

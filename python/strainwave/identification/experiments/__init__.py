@@ -1,1 +1,1 @@
-"""Measurements as experiments: each says what a model predicts for it."""
+"""Measurements as experiments: each predicts what a model would show in it."""

@@ -116,7 +116,7 @@ class DriveLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """The zeros of encoders, unless the beginning says where they count from."""
+        """The zeros of encoders, unless the beginning determines where they count from."""
         if self.initial is not None:
             return ()
         return tuple(

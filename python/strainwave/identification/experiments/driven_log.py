@@ -120,7 +120,7 @@ class DrivenLog(ComparedByFields):
             raise ValueError(f"the log cannot be compared by {quoted(unknown[0])}; it can by {listed(present) or 'nothing'}")
         if not chosen:
             raise ValueError(
-                f"the log tells how the input moved, and nothing to compare: record one of {listed(CHANNELS)} besides; "
+                f"the log contains how the input moved, and nothing to compare: record one of {listed(CHANNELS)} besides; "
                 f"it has {listed(recording.names)}"
             )
         smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), cutoff, highest=HIGHEST_CUTOFF)
@@ -158,7 +158,7 @@ class DrivenLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """Zeros of encoders at the output, as the rigid drive has them, and of what tells the motor's torque; then delays."""
+        """Zeros of encoders at the output, as the rigid drive has them, and of the motor's effort; then delays."""
         zeros = (Nuisance(f"{name}_zero", CHANNELS[name], zero) for name, zero in self.zeros.items())
         return (*zeros, *(Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed))
 
@@ -227,7 +227,7 @@ class DrivenLog(ComparedByFields):
         return np.concatenate([late, rate[np.newaxis]])
 
     def _scale(self, model: Drive, name: str) -> float:
-        """What a channel shows of the output that tells it."""
+        """What a channel shows of the output that it measures."""
         return per_torque(model, name) if name in EFFORTS else 1.0
 
     def _shown(self, model: Drive, name: str, values: Array) -> Array:
@@ -260,5 +260,5 @@ def _zeros(channels: Sequence[str], measured: Array, rigid: float) -> dict[str, 
 
 
 def _told_by(name: str) -> str:
-    """The output of a simulation that tells a channel."""
+    """The output of a simulation that a channel measures."""
     return "motor_torque" if name in EFFORTS else name

@@ -182,7 +182,7 @@ def motion_of(
     from scipy.interpolate import Akima1DInterpolator
 
     if len(time) < FEWEST:
-        raise ValueError(f"the log has {len(time)} samples; at least {FEWEST} are needed to tell how it moves")
+        raise ValueError(f"the log has {len(time)} samples; at least {FEWEST} are needed to determine how it moves")
     step = float(np.median(np.diff(time)))
     grid = np.arange(0.0, float(time[-1] - time[0]) + 0.5 * step, step) + float(time[0])
     regular = np.asarray(Akima1DInterpolator(time, angle, extrapolate=True)(grid))

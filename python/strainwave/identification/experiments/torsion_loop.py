@@ -87,8 +87,8 @@ class TorsionLoop(ComparedByFields):
         give = series_compliance(gear)
         if give > 0.0 and ratio is not None:
             raise ValueError(
-                "a torsion loop at the input does not tell which torque the stages of the gear transmit, as the friction of "
-                "the input is inside; measure it at the output, or fit a gear without stages: gear.replace(structure="
+                "a torsion loop at the input does not determine which torque the stages of the gear transmit, as the friction "
+                "of the input is inside; measure it at the output, or fit a gear without stages: gear.replace(structure="
                 "structure.Lumped())"
             )
         twist = twist - give * torque
@@ -136,7 +136,7 @@ class TorsionLoop(ComparedByFields):
 
     @cached_property
     def single_branch(self) -> bool:
-        """Whether the twist never turns back, so that stiffness and hysteresis cannot be told apart."""
+        """Whether the twist never turns back, so that stiffness and hysteresis are not separated."""
         return not turning_points(self.twist)
 
     @cached_property

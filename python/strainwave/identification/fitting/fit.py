@@ -101,7 +101,7 @@ class Fit(ComparedByFields):
 
     @cached_property
     def correlation(self) -> Array:
-        """Correlation of the estimates, shape (p, p); not-a-number where the data do not tell."""
+        """Correlation of the estimates, shape (p, p); not-a-number where the data do not determine it."""
         sigma = np.sqrt(np.diag(self.covariance))
         with np.errstate(invalid="ignore"):
             correlation: Array = self.covariance / np.outer(sigma, sigma)
@@ -394,7 +394,7 @@ def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
     wrong = [path for path in paths if not path.removeprefix("gear.").startswith("stiffness.")]
     if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
         raise ValueError(
-            f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} cannot be told from stiffness; "
+            f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} is not separated from stiffness; "
             "free parameters of the stiffness alone, or measure a loop that loads and unloads"
         )
 

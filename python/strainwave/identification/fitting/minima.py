@@ -68,8 +68,8 @@ class Minima(ComparedByFields):
         if self.lower:
             lines.append("this is lower than where the fit ended: it had ended at a minimum that explains less; use `best`")
         lines += [
-            f"{end.starts} ended at {self._words(end)}, which explains the measurement about as well: the data do not tell the "
-            "two apart, and no standard deviation counts it. Bound the parameters, or measure what tells them apart"
+            f"{end.starts} ended at {self._words(end)}, which explains the measurement about as well: the data do not separate "
+            "the two, and no standard deviation counts it. Bound the parameters, or measure what separates them"
             for end in self.rivals
         ]
         if first.starts == 1 and count > 1:

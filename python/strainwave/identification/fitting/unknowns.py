@@ -132,7 +132,7 @@ def plan(
 
 
 class _Planner:
-    """Puts a plan together, and says what is wrong with the parts of it."""
+    """Put a plan together, and report what is wrong with its parts."""
 
     def __init__(self, model: Gear | Drive, records: Sequence[str], free: Sequence[str], per_record: Sequence[str]) -> None:
         self.model, self.records, self.known = model, list(records), every(model)
@@ -299,7 +299,7 @@ def _prior(key: str, given: object, parameter: Parameter) -> tuple[float, float]
         sigma = hypot((given.spread or 0.0) * value, given.uncertainty or 0.0)
         if sigma == 0.0:
             raise ValueError(
-                f"{name}: its source says neither uncertainty, nor spread of a value that is not 0; give (value, sigma)"
+                f"{name}: its source has neither uncertainty, nor spread of a value that is not 0; give (value, sigma)"
             )
         return value, sigma
     if not (isinstance(given, tuple | list) and len(given) == 2):

@@ -208,4 +208,4 @@ def _untold(estimate: Estimate, sigma: float, best: MotionCandidate) -> str:
     if estimate.path != "load.gravity_phase":
         return "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) else ""
     gravity = next(each for each in best.fit.estimates if each.path == "load.gravity_torque")
-    return "there is no gravity that the log tells" if gravity.sigma > 0.5 * abs(gravity.value) or sigma > 0.5 else ""
+    return "the log determines no gravity" if gravity.sigma > 0.5 * abs(gravity.value) or sigma > 0.5 else ""

@@ -71,7 +71,7 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     elif best.reach >= 1.0 or slides is not None:
         law = best.law(sliding, slid=slid)
         if not isinstance(sliding, friction.Stribeck):
-            remarks.append("a Stribeck speed of 1 rad/s is assumed in the gear, as no table tells it")
+            remarks.append("a Stribeck speed of 1 rad/s is assumed in the gear, as no table determines it")
         level = next(each.sigma for each in estimates if each.path.endswith(("breakaway", "share[0]")))
         if slid and sliding.coulomb - best.breakaway > SIGNIFICANCE_SIGMA * level and sliding.coulomb > 1.01 * best.breakaway:
             remarks.append(

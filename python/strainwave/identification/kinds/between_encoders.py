@@ -1,4 +1,4 @@
-"""What a log of both encoders tells of the gear between them, once its motion has told what the gear carries."""
+"""Stiffness, hysteresis and damping of the gear between two encoders, from a log whose load is known by its motion."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Between:
     checks: tuple[Check, ...] = ()
 
     def known(self, known: GearSoFar, name: str) -> GearSoFar:
-        """What is known after it: parts of the gear that no earlier file has told."""
+        """Return what is known after it: parts of the gear that no earlier file has determined."""
         if self.found is None:
             return known
         gear, before = self.found.drive.gear, known.gear_set.gear
@@ -92,7 +92,7 @@ def between_encoders(
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
         found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
     except (ValueError, FloatingPointError) as error:
-        return Between(remarks=(f"stiffness and hysteresis are not told: {error}",))
+        return Between(remarks=(f"stiffness and hysteresis are not determined: {error}",))
     told = tuple(_told(found, scale, known, taken.in_current))
     remarks = tuple(_remarks(found, scale, taken))
     picture = Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name)
@@ -109,7 +109,7 @@ def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
     if log.regressors:
         raise ValueError("other joints move, and the torque that they add is known by a regression only")
     if not isinstance(drive.gear.structure, structure.Lumped):
-        raise ValueError("the gear of the initial set has stages, whose springs a log does not tell apart")
+        raise ValueError("the gear of the initial set has stages, whose springs a log does not separate")
     used, ratio = abs(errors.ratio.used), abs(drive.gear.kinematics.ratio)
     if abs(used - ratio) > 1e-6 * ratio:
         raise ValueError(f"the angles have the ratio {used:.6g}, the initial set {ratio:.6g}; give --constant ratio={used:.6g}")
@@ -156,7 +156,8 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
         if taken.motor_known:
             missing = f"is not known well enough beside that of the load: ± {taken.rotor:.2g} kg·m² at the output"
         raise ValueError(
-            f"no torque at the output is known to count from: the log tells no gravity, and the inertia of the motor {missing}"
+            f"no torque at the output is known to count from: the log determines no gravity, and the inertia of the "
+            f"motor {missing}"
         )
     return told[0] if len(told) == 1 or told[0].relative < SURER * told[1].relative else told[1]
 
@@ -241,7 +242,8 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
     of = "gravity" if scale.path == GRAVITY else "inertia of the load"
     yield (
         f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
-        f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not told. Torques count from the {of}"
+        f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not determined. Torques count from "
+        f"the {of}"
     )
     together = correlation_length(found.fit.residuals[0])
     if together > HANGS_TOGETHER:
@@ -286,5 +288,5 @@ def _with_sources_kept(
     for path, (value, _) in gear_numbers(after.gear_set.gear).items():
         if path not in sigmas and is_of(path, {"stiffness"} & parts.keys()):
             kept = before.get(path) == value and path in known.gear_set.sources
-            sources[path] = known.gear_set.sources[path] if kept else Entry(source=f"assumed beside what {name} tells")
+            sources[path] = known.gear_set.sources[path] if kept else Entry(source=f"assumed beside what {name} determines")
     return replace(after, gear_set=replace(after.gear_set, sources=sources))

@@ -100,8 +100,8 @@ def _without_motion(file: Recognised) -> str:
     do = "does it" if len(file.unused) == 1 else "do they"
     hint = f" (columns not used: {listed(file.unused)}: {do} hold texts?)" if file.unused else ""
     if {"angle", "speed", *ENCODERS} & {*file.recording.names, *file.constants}:
-        return f"torque without motion tells orders alone: strainwave orders finds them{hint}"
+        return f"torque without motion determines orders alone: strainwave orders finds them{hint}"
     return (
-        "torque alone tells nothing of the gear: record an angle or a speed with it, or, if the shaft turned at one speed, "
-        f"give that with --constant speed='100 1/min'{hint}"
+        "torque alone determines nothing of the gear: record an angle or a speed with it, or, if the shaft turned at one "
+        f"speed, give that with --constant speed='100 1/min'{hint}"
     )

@@ -124,7 +124,7 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
             continue
         fast = bool(np.median(np.abs(speed)) > MIN_MOTOR_SPEED)
         if of is None and side is None and not fast:
-            assumed.append("no side is stated, the input is taken; --side output says that it was measured there")
+            assumed.append("no side is stated, the input is taken; otherwise add --side output")
         taken: Side = "output" if (of or side) == "output" and not fast else "input"
         return speed, parts, taken, tuple(assumed)
     return None

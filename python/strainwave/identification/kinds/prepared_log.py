@@ -113,7 +113,7 @@ def _constant_known(file: Recognised, gear_set: GearSet) -> bool:
 
 
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:
-    """The drive of a log, of the motor that the set or the person tells; remarks; and whether torques are in A."""
+    """Return the drive of a log, with the motor of the set or of the mapping; remarks; and True if torques are in A."""
     constants, remarks, gear = file.constants, list[str](), gear_set.gear
     if unused := sorted(constants.keys() & UNUSED):
         remarks.append(f"given, but not used of a log: {listed(unused)}")
@@ -124,13 +124,13 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         by_voltage = _motor_by_voltage(file, given, inertia)
         share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance
         remarks.append(
-            "the voltage tells the torque, less what the motor induces: if its torque constant is 1 % larger, the viscous "
+            "the torque is that of the voltage, less what the motor induces: if its torque constant is 1 % larger, the viscous "
             f"friction is {share:.2g} N·m·s/rad smaller"
         )
         return Drive(gear=gear, motor=by_voltage, load=loads.Inertia(inertia=1.0)), remarks, False
     in_current = constant is None and not {"input_torque", "joint_torque"} & set(file.recording.names)
     if in_current:
-        remarks.append("the torque constant is not known: torques are told in A; give --constant torque_constant=… for N.m")
+        remarks.append("the torque constant is not known: torques are in A; give --constant torque_constant=… for N.m")
         gear = gear.replace(input_inertia=0.0)
     elif inertia is None:
         remarks.append("the inertia of the motor is not known: that of the load has it inside, times the ratio squared")
@@ -157,15 +157,15 @@ def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> moto
     if missing := [name for name, value in known.items() if value == 0.0]:
         options = " and ".join(f"--constant {name}=…" for name in missing)
         raise ValueError(
-            f"a voltage tells the torque of a motor that is known: give {options}; what a controller asks of an amplifier of "
-            f"currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
+            f"a voltage determines the torque of a motor that is known: give {options}; what a controller asks of an amplifier "
+            f"of currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
         )
     induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
     return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or NO_ROTOR)
 
 
 def _loaded(file: Recognised) -> Recording:
-    """The recording, with a constant torque at the output that a person gave, beside what a model of the arm says."""
+    """Return the recording with a constant torque at the output that was given, added to that of a model of the arm."""
     if "load_torque" not in file.constants:
         return file.recording
     own = file.recording["rigid_torque"] if "rigid_torque" in file.recording else np.zeros(len(file.recording))

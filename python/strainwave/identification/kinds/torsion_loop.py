@@ -119,11 +119,11 @@ def _of_friction(loop: TorsionLoop, best: TorsionCandidate, gear: Any, friction_
     if friction_measured:
         yield f"the friction measured at the input, ±{held:.3g} N·m at the output, is taken out of it"
     elif isinstance(best.beside, Friction):
-        yield f"{together} Friction is fitted, and the hysteresis kept; give a friction table to tell them apart"
+        yield f"{together} Friction is fitted, and the hysteresis kept; give a friction table to separate them"
     elif held > 0.0:
         yield (
             f"{together} Friction is kept, ±{held:.3g} N·m at the output, and the rest is hysteresis; give a friction table to "
-            "tell them apart"
+            "separate them"
         )
     else:
         yield "no friction at the input is known: all of it is fitted as hysteresis, of which a turning gear shows nothing"

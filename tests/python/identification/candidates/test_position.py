@@ -97,7 +97,7 @@ def test_an_encoder_that_begins_anew_with_each_turn_is_followed() -> None:
 
 @pytest.mark.parametrize(
     ("turns", "samples", "message"),
-    [(0.8, 500, r"cover 0\.80 turns"), (30.0, 300, "300 samples over 30.0 turns cannot tell 10 orders")],
+    [(0.8, 500, r"cover 0\.80 turns"), (30.0, 300, "300 samples over 30.0 turns do not separate 10 orders")],
 )
 def test_too_little_is_refused(turns: float, samples: int, message: str) -> None:
     angle = np.linspace(0.0, turns * 2.0 * np.pi, samples)

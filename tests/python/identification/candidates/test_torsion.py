@@ -111,7 +111,7 @@ def test_a_branch_fits_with_parameters_of_the_spring_alone() -> None:
     found = sw.fit(gear, branch, ["stiffness.a1", "stiffness.a3"])
     assert found.gear.stiffness.a1 == pytest.approx(spring.a1, rel=1e-8)
     stuck = gear.replace(hysteresis=ELEMENTS)
-    with pytest.raises(ValueError, match=r"one branch only: .* hysteresis.breakaway\[0\] cannot be told from stiffness"):
+    with pytest.raises(ValueError, match=r"one branch only: .* hysteresis.breakaway\[0\] is not separated from stiffness"):
         sw.fit(stuck, branch, ["stiffness.a1", "hysteresis.breakaway"])
 
 

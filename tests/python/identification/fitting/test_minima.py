@@ -57,7 +57,7 @@ def test_another_minimum_that_explains_as_much_is_named() -> None:
     told = minima(fitted(0.2, 3, (1.95e4, 0.375), "input_speed", "current"))
     (rival,) = told.rivals
     assert rival.values["gear.stiffness.k"] > 1.4 * TRUTH[0]
-    assert "the data do not tell the two apart" in str(told)
+    assert "the data do not separate the two" in str(told)
 
 
 def test_a_drive_that_moves_has_one_minimum() -> None:

@@ -284,7 +284,7 @@ def test_each_record_has_its_own_samples_held_out() -> None:
         (
             {"priors": {COULOMB: Entry("guess")}},
             ValueError,
-            r"its source says neither uncertainty, nor spread of a value that is not 0; give ",
+            r"its source has neither uncertainty, nor spread of a value that is not 0; give ",
         ),
         (
             {"priors": {"damping": (1.0, 1.0)}},

@@ -47,5 +47,5 @@ def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) 
 
 def test_why_encoders_tell_no_stiffness_is_said(tmp_path: Path) -> None:
     found = identified(tmp_path, 0.03)
-    assert any(each.startswith("stiffness and hysteresis are not told: up to") for each in found.files[0].remarks)
+    assert any(each.startswith("stiffness and hysteresis are not determined: up to") for each in found.files[0].remarks)
     assert not any(each.estimate.path.startswith("gear.stiffness") for each in found.parameters)

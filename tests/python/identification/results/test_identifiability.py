@@ -67,7 +67,7 @@ def test_a_loop_from_the_input_alone_determines_friction_and_hysteresis_together
     found = sw.identify("hfuc-20-80", {"torsion": at_the_input(noise=1e-3)})
     together = [each.path for each in found.files[0].estimates if each.state == "identified in combination"]
     assert together in (["gear.friction_input.breakaway"], [path for path in together if "hysteresis.breakaway" in path])
-    assert any("give a friction table to tell them apart" in remark for remark in found.files[0].remarks)
+    assert any("give a friction table to separate them" in remark for remark in found.files[0].remarks)
 
 
 def test_a_gear_loads_without_a_warning_and_breaks_away_no_lower_than_it_slides() -> None:

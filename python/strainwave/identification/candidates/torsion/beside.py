@@ -157,7 +157,7 @@ def _neighbours(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
 
 
 def _dry(gear: Gear) -> friction.Coulomb | friction.Stribeck | friction.LuGre:
-    """The friction at the input, whose breakaway a loop can tell."""
+    """Return the friction at the input, whose breakaway a loop can determine."""
     law = gear.friction_input
     assert isinstance(law, Dry)
     return law

@@ -69,7 +69,7 @@ def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[Torsio
 
 
 def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Beside]:
-    """What the loop is asked for beside the spring: Maxwell elements, or what it tells in place of them."""
+    """Return what is fitted to the loop beside the spring: Maxwell elements, or what takes their place."""
     if loop.single_branch:
         return [Nothing()]
     friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)

@@ -51,7 +51,7 @@ class Kind(ABC):
 
     @property
     def knows_zero(self) -> bool:
-        """Whether its curve tells where twist is zero."""
+        """True if its curve determines where the twist is zero."""
         return True
 
 
