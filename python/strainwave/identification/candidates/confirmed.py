@@ -12,6 +12,7 @@ from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
+from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import held_out_residuals, moving
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.held_out import HeldOut
@@ -20,13 +21,13 @@ Array = NDArray[np.float64]
 
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
-MAX_REFITS = 6  # models that are fitted to all but the last stretch if the best one is not confirmed
+MAX_REFITS = 6  # further models that are fitted to all but the last stretch if the best one is not confirmed
 
 
 def confirmed(
     best: MotionCandidate, others: Sequence[MotionCandidate], drive: Drive
 ) -> tuple[MotionCandidate, HeldOut, Recording]:
-    """Return the best model that predicts the last 30 % of the motion no worse than plain least squares and than their mean.
+    """Return the best model that predicts the last 30 % of the motion no worse than plain least squares and than the mean.
 
     Models were compared by one step of Gauss and Newton, which may hide numbers that the rest of the motion does not determine.
 
@@ -91,24 +92,28 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
 
 
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
-    """Return how far numbers lie apart in models of the same law that predict as well, by path: the choice of a model is part
-    of their uncertainty. A number of another law of friction has another meaning."""
+    """Return how far numbers lie apart in models that predict as well, by path: the choice of a model is part of their spread.
+
+    Numbers of friction are compared within one law: those of another law have another meaning.
+    """
     values = dict(zip(best.model.free, best.values, strict=True))
     found = dict.fromkeys(values, 0.0)
     for other in others:
-        if other.predicts_as_well_as(best) and type(other.model.law) is type(best.model.law):
-            for path, value in zip(other.model.free, other.values, strict=True):
-                if path in found:
-                    off = abs(value - values[path])
-                    turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if path.endswith("_phase") else off
-                    found[path] = max(found[path], float(turned))
+        if not other.predicts_as_well_as(best):
+            continue
+        is_one_law = type(other.model.law) is type(best.model.law)
+        for path, value in zip(other.model.free, other.values, strict=True):
+            if path in found and (is_one_law or not path.startswith(INPUT)):
+                off = abs(value - values[path])
+                turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if path.endswith("_phase") else off
+                found[path] = max(found[path], float(turned))
     return found
 
 
 def other_laws(best: MotionCandidate, others: Sequence[MotionCandidate]) -> list[MotionCandidate]:
     """Return the models with another law of friction that predict as well with another Coulomb torque, the best of each law."""
     laws = {type(best.model.law): best}
-    for other in sorted(others, key=lambda each: each.error_in_band):
+    for other in sorted(others, key=lambda each: each.error):
         if other.predicts_as_well_as(best):
             laws.setdefault(type(other.model.law), other)
     coulomb = best.model.law.coulomb

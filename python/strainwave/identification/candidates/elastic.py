@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.motion_candidate import MAX_RELATIVE_ERROR
-from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.experiments.driven_log import DrivenLog
-from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, needed_torque
+from strainwave.identification.experiments.friction_table import FRICTIONLESS
+from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.fit import Fit, Part, problem_of

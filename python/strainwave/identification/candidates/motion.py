@@ -4,7 +4,7 @@ Numbers are estimated in the pass band and from sliding alone: there no vibratio
 them. What they predict is judged as a user reads it: on contiguous stretches that took no part in the fit, in the full band, at
 every sample. A part is added as long as it predicts better; what shows in the full band alone, bristles that bend at reversals
 and ripple over the turn, is added to the prediction without moving the estimates. Estimates without a stretch follow from those
-with all by one step of Gauss and Newton, as least squares on a motion is nearly linear. Plain least squares stands beside all.
+with all by one step of Gauss and Newton, as least squares on a motion is nearly linear. Plain least squares is fitted, too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, friction, loads
 from strainwave.identification.candidates.motion_candidate import (
     MAX_ERROR,
-    MAX_RELATIVE_ERROR,
     MotionCandidate,
     candidate_of,
 )
@@ -36,6 +35,7 @@ from strainwave.identification.candidates.motion_model import (
 )
 from strainwave.identification.candidates.plain import (
     MAX_DELAY_SAMPLES,
+    MAX_RELATIVE_ERROR,
     Plain,
     best_delay,
     fit_plain,
@@ -43,7 +43,8 @@ from strainwave.identification.candidates.plain import (
     moving,
     stretches,
 )
-from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
+from strainwave.identification.experiments.friction_table import FRICTIONLESS
+from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
@@ -178,7 +179,7 @@ class _Search:
         return best
 
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
-        """Return the best model; if plain least squares predicts better, the best of those tried that is no worse than it."""
+        """Return the best model; if plain least squares predicts clearly better, the best of those better at the end."""
         log = best.log
         left = held_out_residuals(log, self.drive, self.held_out)
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
@@ -264,13 +265,13 @@ def _with(candidate: MotionCandidate, more: MotionCandidate | None) -> MotionCan
 
 def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
     """Return the same with bristles, of the bend that explains most; None if its law of friction has none."""
-    drive, rows = best.model.drive, moving(best.log)
-    if bristled(drive, BENDS[0]) is drive:
+    drive, last = best.model.drive, best.folds[-1]
+    if bristled(drive, BENDS[0]) is drive or bristled(last.drive, BENDS[0]) is last.drive:
         return None
-    nuisances = np.array([each.start for each in best.log.nuisances])
+    rows = moving(best.log) & ~last.stretch  # the last stretch takes no part
 
     def error(bend: float) -> float:
-        return float(np.mean(best.log.residual(bristled(drive, bend), nuisances)[rows] ** 2))
+        return float(np.mean(best.log.residual(bristled(last.drive, bend), last.nuisances)[rows] ** 2))
 
     return replace(best, bend=min(BENDS.tolist(), key=error)).predicted_anew()
 

@@ -13,7 +13,7 @@ from strainwave import Drive, _core
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.leave_out import SHAPES, without_rows
 from strainwave.identification.candidates.motion_model import MotionModel, bristled
-from strainwave.identification.candidates.plain import moving
+from strainwave.identification.candidates.plain import MAX_RELATIVE_ERROR, moving
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.loss import LOSSES as COSTS
@@ -24,7 +24,6 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 RIPPLE_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, found in every gear measured so far
-MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler model: what leaves more is chance
 MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves more is not worth a part more
 MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
 MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
@@ -164,7 +163,13 @@ class MotionCandidate(ComparedByFields):
 
     def predicts_as_well_as(self, other: MotionCandidate) -> bool:
         """True if its error in the pass band is no larger, but for chance: what bends at reversals is compared nowhere else."""
-        return MAX_RELATIVE_ERROR * self.error_in_band < other.error_in_band
+        own, error = self.comparable_errors(other)
+        return MAX_RELATIVE_ERROR * own < error
+
+    def comparable_errors(self, other: MotionCandidate) -> tuple[float, float]:
+        """Return its error and that of another model in the pass band, or in the full band if their pass bands differ."""
+        is_one_band = self.log.motion.cutoff == other.log.motion.cutoff
+        return (self.error_in_band, other.error_in_band) if is_one_band else (self.error, other.error)
 
     def is_clearer_than(self, other: MotionCandidate) -> bool:
         """True if it explains more of its own, narrower band, and predicts no worse."""

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Rows = NDArray[np.bool_]
 Sum = tuple[tuple[int, int], ...]  # places of joints in the chain, each with the sign of its angle
 
 ACROSS, RELATIONS = 0, (0, 1, -1)  # axes at right angles; besides, parallel ones of the same and of opposite sense

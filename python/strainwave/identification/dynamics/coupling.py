@@ -36,6 +36,7 @@ SLOW = (0.1, 0.5)  # of the usual speed, at which friction may fall
 RIGID, FRICTION = 3, 9  # ends of the columns of inertia and gravity, and of offset and friction, of a joint by itself
 PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that gravity is found beside: inertia, offset, Coulomb, viscous
 MIN_INDEPENDENT_WAVE = 0.02  # of the size of a sine or cosine of gravity, that those before it must not explain
+MIN_ROWS = 50  # in the pass band before the last stretch, by which terms are found
 TERMS_AT_ONCE = 64  # that are filtered
 
 
@@ -56,8 +57,11 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     itself = replace(own, angle=own.angle / ratio, speed=own.speed / ratio, acceleration=own.acceleration / ratio)
     arm = _Arm(joint, {joint: itself} | {name: motion_of(time, angle, own.cutoff) for name, angle in others.items()})
     torque = ratio * log.measured[0] / per_torque(drive, log.effort) - own.filtered(log.extra[np.newaxis])[0]
-    base, known = own.filtered(_alone(itself)).T, ~stretches(log)[-1][own.rows]
-    gravity = _gravity(arm, own, torque[known], base[known][:, PLAIN_BASE], known)
+    base = own.filtered(_alone(itself)).T
+    known = own.rows < int(np.argmax(stretches(log)[-1]))
+    if np.count_nonzero(known) < MIN_ROWS:
+        return
+    gravity = _gravity(arm, own, torque[known], base[known], known)
     if gravity:
         with_gravity = _with_regressors(log, gravity)
         yield with_gravity
@@ -75,7 +79,8 @@ def _gravity(arm: _Arm, own: Motion, torque: Array, base: Array, known: Rows) ->
         angle = sum((sense * angles[place] for place, sense in each), np.zeros_like(angles[0]))
         return np.stack([np.sin(angle), np.cos(angle)])
 
-    found = best_chain(torque, base, lambda each: own.filtered(series(each)).T[known], names.index(arm.joint), len(names))
+    place, count = names.index(arm.joint), len(names)
+    found = best_chain(torque, base[:, PLAIN_BASE], lambda each: own.filtered(series(each)).T[known], place, count)
     sums = [each for each in (found.sums() if found else ()) if len(each) > 1]  # its own angle has a place in the load
     waves = {
         f"{wave}({word})": values
@@ -93,9 +98,12 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
     own, terms = log.motion, list(arm.terms())
     columns = _columns(own, arm, terms)
     lossy = np.column_stack([base, _loss(torque, base, known) * np.sign(own.speed[own.rows])])
-    block = (BLOCKS * (log.time - log.time[0]) / np.ptp(log.time[known])).astype(int)
+    begin, end = log.time[known][[0, -1]]
+    block = np.clip(BLOCKS * (log.time - begin) / (end - begin), 0.0, BLOCKS - 1.0).astype(int)
     plain = np.array([term.plain(arm.joint) for term in terms])
     even, odd = known & (block % 2 == 0), known & (block % 2 == 1)
+    if not (even.any() and odd.any()):
+        return
     for places in dict.fromkeys(tuple(Selection(torque, each, plain, even, odd).best(columns)) for each in (lossy, base)):
         selected = {terms[place].name: terms[place].torque(arm) for place in places}
         if selected:
@@ -144,24 +152,24 @@ class _Arm:
         for pair in combinations_with_replacement(sorted(self.moving), 2):
             if self.joint in pair and len(set(pair)) == 2:
                 yield _Term(pair, (), False)
-            for each in _sums(self.behind(*pair), 2, (1, 2)):
+            for each in _sums(self.behind(*pair)):
                 if self.joint in pair or self.joint in dict(each):
                     yield from (_Term(pair, each, is_sine) for is_sine in (True, False))
 
 
-def _sums(names: Sequence[str], most: int, times: Sequence[int]) -> Iterator[tuple[tuple[str, int], ...]]:
-    """Sums of multiples of angles, each but for its sign."""
-    for count in range(1, most + 1):
+def _sums(names: Sequence[str]) -> Iterator[tuple[tuple[str, int], ...]]:
+    """Yield the sums of one or two angles and their doubles, each but for its sign."""
+    for count in (1, 2):
         for chosen in combinations(names, count):
-            for factors in product(times, *((*times, *(-each for each in times)) for _ in chosen[1:])):
+            for factors in product((1, 2), *((1, 2, -1, -2) for _ in chosen[1:])):
                 yield tuple(zip(chosen, factors, strict=True))
 
 
 @dataclass(frozen=True)
 class _Term:
-    """Of the energy: the sine or cosine of a sum of angles, times the speeds of two joints, or of none for gravity."""
+    """A term of the kinetic energy: the sine or cosine of a sum of angles, or 1, times the speeds of two joints."""
 
-    speeds: tuple[str, ...]
+    speeds: tuple[str, str]
     sum_of: tuple[tuple[str, int], ...]
     is_sine: bool
 
@@ -175,18 +183,16 @@ class _Term:
         return " ".join([*(f"dq{name}" for name in self.speeds), *([wave] if wave else [])])
 
     def plain(self, joint: str) -> float:
-        """Less for each other joint in it: arms move in like periods, so that terms of many joints explain what a few cause."""
+        """Return its weight in the choice: joints move in like periods, so that terms of many of them explain anything."""
         others = {*self.speeds, *dict(self.sum_of)} - {joint}
         return float(SHARE_OF_JOINT ** len(others))
 
     def torque(self, arm: _Arm) -> Array:
-        """What it adds to the torque of the joint, by Lagrange's equations, shape (n,)."""
+        """Return what it adds to the torque of the joint, by Lagrange's equations, shape (n,)."""
         moving, own = arm.moving, arm.joint
         angle = sum((times * moving[name].angle for name, times in self.sum_of), np.zeros_like(moving[own].angle))
         wave, slope = (np.sin(angle), np.cos(angle)) if self.is_sine else (np.cos(angle), -np.sin(angle))
         by_own = dict(self.sum_of).get(own, 0) * slope
-        if not self.speeds:
-            return by_own
         first, second = (moving[name] for name in self.speeds)
         found: Array = -by_own * first.speed * second.speed
         if own not in self.speeds:

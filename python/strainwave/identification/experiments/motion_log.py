@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, friction
+from strainwave import Drive, _core, arguments
 from strainwave._core import Gear
 from strainwave.analysis.branches import noise
 from strainwave.equality import ComparedByFields
@@ -34,7 +34,6 @@ MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 DIFFERENCE = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
 OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
-FRICTIONLESS = friction.Viscous(viscous=0.0)
 INPUTS, LOAD, TEMPERATURE = 6, 2, 4  # of the inverse dynamics: how many, and the places of load torque and temperature
 
 
@@ -338,6 +337,8 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
     from scipy import ndimage
 
     clipped = _clipped(values) | _clipped(-values)
+    if clipped.all():  # a square wave, no range that is too small
+        clipped = np.zeros(len(values), bool)
     off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
     scale = noise(values[~clipped])
     if np.median(off) == 0.0:  # values that are held or smooth, of which extremes would look like outliers

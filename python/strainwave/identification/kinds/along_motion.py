@@ -60,8 +60,9 @@ def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
 def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
-    best, *others = _models(taken)
-    best, held_out, predicted = confirmed(best, others, drive)
+    models = _models(taken)
+    best, held_out, predicted = confirmed(models[0], models[1:], drive)
+    others = [each for each in models if each.model is not best.model]
     log = best.log
     of_model = [*_delay(best), *_other_laws(best, others, in_current)]
     if file.neighbours and not file.regressors:
@@ -101,7 +102,8 @@ def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:
     best, *others = _fitted(taken, taken.log)
     for log in taken.with_others:
         more, *rest = _fitted(taken, log)
-        takes_over = more.predicts_no_worse_than(best) and more.error_in_band < best.error_in_band
+        before, after = best.comparable_errors(more)
+        takes_over = more.predicts_no_worse_than(best) and after < before
         best, others = (more, [best, *others, *rest]) if takes_over else (best, [*others, more, *rest])
     return best, *others
 
@@ -114,7 +116,7 @@ def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
 
 def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
     """Return the sentence about the terms of other joints that move."""
-    which = f"joints {listed(names)} move too: "
+    which = f"joint {names[0]} moves too: " if len(names) == 1 else f"joints {listed(names)} move too: "
     if not terms:
         return f"{which}none of their terms makes the model predict better; if they load it, record longer"
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
@@ -125,7 +127,8 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
     """Yield the sentence about a delay that was fitted."""
     for nuisance in best.fit.estimates:
         if nuisance.path == "delay":
-            yield f"{best.log.effort} comes {1e3 * nuisance.value:.3g} ± {1e3 * nuisance.sigma:.2g} ms behind the motion"
+            way = "behind" if nuisance.value > 0.0 else "ahead of"
+            yield f"{best.log.effort} comes {1e3 * abs(nuisance.value):.3g} ± {1e3 * nuisance.sigma:.2g} ms {way} the motion"
 
 
 def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:

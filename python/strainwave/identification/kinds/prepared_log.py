@@ -105,7 +105,8 @@ def _with_angle(recording: Recording) -> tuple[Recording, str]:
 
 def _joint(file: Recognised) -> str:
     """Return the name of the joint, as the columns of other joints have theirs."""
-    return file.joint or which_of(words_of(next(column for name, column in file.columns.items() if name.endswith("_angle"))))
+    own = next(column for name, column in file.columns.items() if name.endswith(("_angle", "_speed")))
+    return file.joint or which_of(words_of(own))
 
 
 def _constant_known(file: Recognised, gear_set: GearSet) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.experiments.motion_log import FRICTIONLESS
+from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.parameters import every
 
 Array = NDArray[np.float64]

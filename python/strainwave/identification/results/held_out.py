@@ -1,4 +1,4 @@
-"""The error of a model on data that took no part in its fit."""
+"""The error of a model on data that its numbers were not fitted to; models were compared by them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ MAX_IN_BAND = 0.01  # of what varies in the pass band
 
 @dataclass(frozen=True)
 class HeldOut:
-    """The error of a model over a contiguous stretch that took no part in its fit: every sample, in the full band.
+    """The error of a model over a contiguous stretch that its numbers were not fitted to: every sample, in the full band.
+
+    Models were chosen by such stretches, this one among them, so that a new record has a somewhat larger error.
 
     Attributes:
         stretch: the stretch, as `last 30 % of the motion`
