@@ -66,8 +66,7 @@ ELSEWHERE = {
     "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Viscous": {
         "identification/dynamics/log.py": LOG,
-        "identification/experiments/motion_log.py": "by which a place without friction is known",
-        "identification/experiments/friction_table.py": "a mesh without loss, before its loss is fitted",
+        "identification/experiments/friction_table.py": "by which a place without friction is known",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "AccelerationSource": {
