@@ -1,4 +1,4 @@
-"""The model of a log that is taken: confirmed by data held out, with the spread of its numbers."""
+"""Choice of the model of a log by a fit to all but the last stretch, and the spread of its numbers."""
 
 from __future__ import annotations
 

@@ -41,11 +41,11 @@ SEEN = 3.0  # standard deviations, beyond which the twist under load is seen
 PRESLIDING = 0.5  # of the stiffness: an element of the hysteresis from which fits start (assumed)
 DAMPING = 0.05  # of critical damping: from where fits start (assumed)
 SPLIT = 0.7  # of the stiffness of an element, which the first of two takes over (assumed)
-NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
-NEARER = 1e-4  # the same of the last fit: a step that promises a thousandth of it moves no number by a tenth of its deviation
+MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
+MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
 TRIALS = 15  # steps of a fit
 SQUARED = LOSSES["linear"]
-SPEED = 2  # place of the speed among what moves the angle between the shafts
+PLACE_OF_SPEED = 2  # among the columns of what moves the angle between the shafts
 OUTER = 0.75  # of the largest torque: where a third segment is taken to begin, from which fits start (assumed)
 FAR = 10.0  # times the largest torque: a knee there does nothing
 DELAY = "output_angle_delay"
@@ -114,7 +114,7 @@ def _fitted(
         _compared(_stretch(recording, log, drive, STRETCH), start, delayed=delayed), start, drive.gear.stiffness, scale, reach
     )
     whole = _compared(_stretch(recording, log, drive, LONGEST), best.drive, delayed=delayed)
-    problem, x = _solved(whole, best.drive, best.free, None, NEARER)
+    problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
     found = _fit_of(problem, x)
     sigmas = sigma_by_blocks(problem, x, found.estimates)
     apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in found.estimates])
@@ -146,7 +146,7 @@ def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_err
     softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
     reach = float(np.abs(torque[motion.compared]).max())
     if not softness > SEEN * sigma:
-        late = 1e3 * ratio * weights[SPEED] / size[SPEED]
+        late = 1e3 * ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
             f"what else moves them leave {float(np.std(left)):.2g} rad unexplained, beside {late:.3g} ms by which output_angle "
@@ -269,7 +269,7 @@ def _with(
 
 def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _Tried:
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
-    problem, x = _solved(log, drive, free, training, NEAR)
+    problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
     ((predicted, _),) = problem.predict(x)
     error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
     return _Tried(_name(drive), free, problem.records[0].model(x), error)
@@ -334,7 +334,7 @@ def _with_element(drive: Drive, law: Any, reach: float) -> Drive | None:
 
 
 def _bent_twice(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """With a third segment, if the second is determined and the torque goes on far beyond its beginning."""
+    """Return the drive with a third segment, if the second is determined and the torque goes far beyond its beginning."""
     spring: Any = drive.gear.stiffness
     knee = OUTER * reach
     if not isinstance(spring, stiffness.ThreeSegment) or spring.t1 > knee:

@@ -1,4 +1,4 @@
-"""What part of the samples determines of a model that all samples were fitted to, by one bounded step of Gauss and Newton.
+"""Estimates without some of the samples, by one bounded step of Gauss and Newton from the fit to all.
 
 Least squares on a motion is nearly linear, so that one step gives what a fit without some samples would.
 """
@@ -20,7 +20,7 @@ SHAPES = ("exponent", "stribeck_speed")  # numbers in which friction is not line
 
 
 def without_rows(problem: Problem, x: Array, outs: Sequence[Rows], kept: Sequence[str]) -> Iterator[Array]:
-    """The unknowns without some of the samples compared: a step of Gauss and Newton from the whole.
+    """Yield the unknowns without each of some parts of the samples: one step of Gauss and Newton from the fit to all.
 
     Numbers at a limit, and those of the names kept, stay as all samples have them.
     """
@@ -58,7 +58,7 @@ def _turned(before: Array, after: Array) -> Array:
 
 
 def _bounded(system: Array, right: Array, low: Array, high: Array) -> Array:
-    """The unknowns of least squares within limits."""
+    """Return the unknowns of least squares within limits, shape (unknowns,)."""
     from scipy.optimize import lsq_linear
 
     orthogonal, triangle = np.linalg.qr(system)

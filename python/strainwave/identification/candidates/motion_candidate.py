@@ -14,6 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.leave_out import SHAPES, without_rows
 from strainwave.identification.candidates.motion_model import MotionModel, bristled
 from strainwave.identification.candidates.plain import MAX_RELATIVE_ERROR, moving
+from strainwave.identification.dynamics.log import ORDERS
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.loss import LOSSES as COSTS
@@ -23,13 +24,12 @@ from strainwave.identification.fitting.unknowns import plan
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-RIPPLE_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, found in every gear measured so far
 MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves more is not worth a part more
 MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
 MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
 SQUARED = COSTS["linear"]
-NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
+MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_STEPS = 8  # of a fit while models are compared
 MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
 
@@ -109,7 +109,7 @@ class MotionCandidate(ComparedByFields):
         if not self.rippled:
             return residual
         angle = self.log.motion.angle
-        waves = np.stack([wave(order * angle) for order in RIPPLE_ORDERS for wave in (np.sin, np.cos)], axis=1)
+        waves = np.stack([wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)], axis=1)
         rows = training & moving(self.log) & ~self.log.motion.resting
         shares = np.linalg.lstsq(waves[rows], residual[rows], rcond=MIN_SINGULAR)[0]
         return np.asarray(residual - np.where(self.log.motion.resting, 0.0, waves @ shares))
@@ -121,7 +121,7 @@ class MotionCandidate(ComparedByFields):
 
     @cached_property
     def residuals(self) -> list[Array]:
-        """Of each stretch held out, in the full band, in the unit of the effort."""
+        """Residuals of each stretch held out, in the full band and the unit of the effort."""
         return [each.residual[each.stretch] for each in self.folds]
 
     @cached_property
@@ -178,7 +178,7 @@ class MotionCandidate(ComparedByFields):
 
 
 def _gain(before: Array, after: Array) -> list[Array]:
-    """By how much squares of residuals become smaller, in blocks of a stretch."""
+    """Return by how much the squares of residuals become smaller, in blocks of a stretch."""
     return np.array_split(before**2 - after**2, GAIN_BLOCKS)
 
 
@@ -187,7 +187,7 @@ def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[s
     known = {path: prior for path, prior in priors.items() if path in model.free}
     asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
     problem = problem_of(asked, [""], [model.drive], [model.log], [None])
-    x = problem.solve(problem.start(), problem.first_weights(), SQUARED, NEAR, trials=MAX_STEPS)
+    x = problem.solve(problem.start(), problem.first_weights(), SQUARED, MAX_RELATIVE_COST, trials=MAX_STEPS)
     (record,) = problem.records
     ((predicted, _),) = problem.predict(x)
     ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
@@ -196,7 +196,7 @@ def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[s
 
 
 def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
-    """The model by what the rest of the log determines without each stretch; shapes of friction stay as the whole has them."""
+    """Yield the model without each stretch; shapes of friction stay as the fit to all has them."""
     (record,) = problem.records
     ((predicted, slopes),) = problem.predict(x)
     out = [stretch[log.motion.rows] for stretch in held_out]

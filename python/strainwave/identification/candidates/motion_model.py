@@ -10,9 +10,9 @@ import numpy as np
 
 from strainwave import Drive, friction
 from strainwave.equality import ComparedByFields
+from strainwave.identification.candidates.steady_shapes import QUADRANTS
 from strainwave.identification.experiments.motion_log import MotionLog
 
-QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}

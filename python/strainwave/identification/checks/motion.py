@@ -22,13 +22,13 @@ from strainwave.identification.results.held_out import HeldOut
 
 Array = NDArray[np.float64]
 
-GRAVITATION = 9.81  # m/s2
+STANDARD_GRAVITY = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
 MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
 RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
-MIN_GAIN_SIGMA = 3.0  # standard deviations of a gain over the blocks of the motion
+MIN_READING_GAIN_SIGMA = 3.0  # standard deviations of a gain over the blocks of the motion
 MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
-BLOCKS = 10  # of the motion
+MOTION_BLOCKS = 10  # of the motion
 MIN_ROWS_PER_BLOCK = 5
 # A body that is wider than a centimetre has a pendulum length above 2 cm, twice its radius of gyration. Arms have some metres;
 # counterweights and rotors make it longer. A wrong unit of time, as minutes or milliseconds, is a factor of 3600 or 1e6.
@@ -72,7 +72,7 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     """
     log, ratio = best.log, abs(drive.gear.kinematics.ratio)
     delay = _delay(best)
-    if len(log.motion.rows) < BLOCKS * MIN_ROWS_PER_BLOCK:
+    if len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK:
         return
     usual = _squares(log, drive, _best_scale(best, drive), delay)  # a ratio near the one taken may be the simpler mistake
     share, found = 1.0, ""
@@ -103,7 +103,11 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     With both encoders their ratio is measured; an angle of the output needs none.
     """
     log, delay = best.log, _delay(best)
-    if "output_angle" in recording or "input_angle" not in recording or len(log.motion.rows) < BLOCKS * MIN_ROWS_PER_BLOCK:
+    if (
+        "output_angle" in recording
+        or "input_angle" not in recording
+        or len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK
+    ):
         return
     scale = _best_scale(best, drive)
     off = float(np.log(scale))
@@ -135,8 +139,8 @@ def _best_scale(best: MotionCandidate, drive: Drive) -> float:
 
 def _is_less(squares: Array, usual: Array) -> bool:
     """True if squares are smaller than the usual ones all over the motion, beyond chance."""
-    gains = np.array([block.sum() for block in np.array_split(usual - squares, BLOCKS)])
-    return bool(gains.sum() > MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(BLOCKS))
+    gains = np.array([block.sum() for block in np.array_split(usual - squares, MOTION_BLOCKS)])
+    return bool(gains.sum() > MIN_READING_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(MOTION_BLOCKS))
 
 
 def _delay(best: MotionCandidate) -> float:
@@ -181,7 +185,7 @@ def pendulum_length(estimates: tuple[Estimate, ...], source: str) -> Iterator[Ch
     relative = float(np.hypot(inertia.sigma / inertia.value, gravity.sigma / gravity.value))
     if relative > MAX_RELATIVE_SIGMA:
         return
-    length = GRAVITATION * inertia.value / gravity.value
+    length = STANDARD_GRAVITY * inertia.value / gravity.value
     off = max(float(np.log(MIN_PENDULUM_LENGTH / length)), float(np.log(length / MAX_PENDULUM_LENGTH)))
     yield Check(
         "gravity against inertia", source, length, MIN_PENDULUM_LENGTH if length < 1.0 else MAX_PENDULUM_LENGTH, "m",

@@ -138,7 +138,7 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
         at_joint = law.steady(speed) / ratio / known.steady(speed * ratio)
         remedy = (
             f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured there, "
-            "say so: --side output; if at the input, --side input"
+            "give --side output; if at the input, --side input"
         )
     yield Check(**vars(check) | {"remedy": remedy})
 

@@ -20,12 +20,12 @@ Array = NDArray[np.float64]
 Sum = tuple[tuple[int, int], ...]  # places of joints in the chain, each with the sign of its angle
 
 ACROSS, RELATIONS = 0, (0, 1, -1)  # axes at right angles; besides, parallel ones of the same and of opposite sense
-BEAM = 6  # parts of the chain of each length that are made longer
+MAX_BEAM_WIDTH = 6  # parts of the chain of each length that are made longer
 MAX_SUMS = 30  # of a part of the chain
 COST_OF_SUM = 0.02  # relative, of the error: by that each sum of angles must make it smaller (assumed)
 MAX_ROWS = 1500  # of the motion, by which parts are compared
-FOLDS = 3  # stretches of the motion, each predicted by the others
-RCOND = 1e-4  # singular values below this share of the largest are taken as zero
+FOLD_COUNT = 3  # stretches of the motion, each predicted by the others
+MIN_SINGULAR = 1e-4  # singular values below this share of the largest are taken as zero
 
 
 @dataclass(frozen=True)
@@ -109,19 +109,19 @@ def best_chain(torque: Array, base: Array, wave: Callable[[Sum], Array], joint: 
     best: Chain | None = min(longest[0], None, key=cost)
     for _ in range(count - 1):
         longer = {chain for each in longest for chain in each.longer(count)}
-        longest = sorted((each for each in longer if len(each.sums()) <= MAX_SUMS), key=cost)[:BEAM]
+        longest = sorted((each for each in longer if len(each.sums()) <= MAX_SUMS), key=cost)[:MAX_BEAM_WIDTH]
         best = min([best, *longest], key=cost)
     return best
 
 
 def _error(torque: Array, columns: Array) -> float:
-    """Root mean square of what least squares leaves of stretches, each predicted by the others."""
+    """Return the root mean square error of least squares over stretches, each predicted by the others."""
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     squares = 0.0
-    for stretch in np.array_split(np.arange(len(torque)), FOLDS):
+    for stretch in np.array_split(np.arange(len(torque)), FOLD_COUNT):
         others = np.ones(len(torque), bool)
         others[stretch] = False
-        shares = np.linalg.lstsq(columns[others], torque[others], rcond=RCOND)[0]
+        shares = np.linalg.lstsq(columns[others], torque[others], rcond=MIN_SINGULAR)[0]
         squares += float(np.sum((torque[stretch] - columns[stretch] @ shares) ** 2))
     return float(np.sqrt(squares / len(torque)))
 

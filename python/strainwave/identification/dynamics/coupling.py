@@ -30,10 +30,10 @@ from strainwave.identification.experiments.motion_log import MotionLog, per_torq
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-BLOCKS = 10  # of time: terms are chosen by the even ones, and checked by the odd ones
+TIME_BLOCKS = 10  # of the motion before the last stretch: terms are chosen by the even ones, and checked by the odd ones
 SHARE_OF_JOINT = 0.5  # what a term counts for each other joint in it, where terms are selected
-SLOW = (0.1, 0.5)  # of the usual speed, at which friction may fall
-RIGID, FRICTION = 3, 9  # ends of the columns of inertia and gravity, and of offset and friction, of a joint by itself
+SLOW_SHARES = (0.1, 0.5)  # of the usual speed, at which friction may fall
+END_OF_RIGID, END_OF_FRICTION = 3, 9  # of the columns of a joint by itself: inertia and gravity, offset and friction
 PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that gravity is found beside: inertia, offset, Coulomb, viscous
 MIN_INDEPENDENT_WAVE = 0.02  # of the size of a sine or cosine of gravity, that those before it must not explain
 MIN_ROWS = 50  # in the pass band before the last stretch, by which terms are found
@@ -99,7 +99,7 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
     columns = _columns(own, arm, terms)
     lossy = np.column_stack([base, _loss(torque, base, known) * np.sign(own.speed[own.rows])])
     begin, end = log.time[known][[0, -1]]
-    block = np.clip(BLOCKS * (log.time - begin) / (end - begin), 0.0, BLOCKS - 1.0).astype(int)
+    block = np.clip(TIME_BLOCKS * (log.time - begin) / (end - begin), 0.0, TIME_BLOCKS - 1.0).astype(int)
     plain = np.array([term.plain(arm.joint) for term in terms])
     even, odd = known & (block % 2 == 0), known & (block % 2 == 1)
     if not (even.any() and odd.any()):
@@ -112,7 +112,7 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
 
 def _loss(torque: Array, base: Array, known: Rows) -> Array:
     """Return the size of the torque by inertia and gravity, of which a gear loses a share, shape (n,)."""
-    rigid = np.array([*range(RIGID), *range(FRICTION, base.shape[1])])
+    rigid = np.array([*range(END_OF_RIGID), *range(END_OF_FRICTION, base.shape[1])])
     return np.asarray(np.abs(base[:, rigid] @ shares_of(base[known], torque[known])[rigid]))
 
 
@@ -121,11 +121,16 @@ def _with_regressors(log: MotionLog, series: Mapping[str, Array]) -> MotionLog:
 
 
 def _alone(joint: Motion) -> Array:
-    """What any joint has by itself: inertia, gravity, an offset, and friction of any shape over the speed, which else terms of
-    other joints would make up for."""
+    """Return inertia, gravity, an offset, and friction of any shape over the speed, for which else terms of other joints would
+    make up, shape (columns, n)."""
     angle, speed = joint.angle, joint.speed
     way, usual = np.sign(speed), float(np.median(np.abs(speed[joint.rows])))
-    friction = [way, speed, way * np.sqrt(np.abs(speed)), *(way * np.exp(-np.abs(speed) / (part * usual)) for part in SLOW)]
+    friction = [
+        way,
+        speed,
+        way * np.sqrt(np.abs(speed)),
+        *(way * np.exp(-np.abs(speed) / (part * usual)) for part in SLOW_SHARES),
+    ]
     return np.stack([joint.acceleration, np.sin(angle), np.cos(angle), np.ones_like(angle), *friction])
 
 
@@ -138,7 +143,7 @@ class _Arm:
 
     @property
     def chain(self) -> list[str]:
-        """The joints from the base on, if their names are numbers; else by name."""
+        """Names of the joints from the base on, if they are numbers; else in alphabetical order."""
         return sorted(self.moving, key=int) if all(each.isdigit() for each in self.moving) else sorted(self.moving)
 
     def behind(self, name: str, other: str) -> list[str]:

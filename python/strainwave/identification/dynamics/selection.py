@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MOST = 40  # terms
-PATIENCE = 4  # terms that may bring nothing before the search ends
-BETTER = 0.99  # of the error, that the terms of a step must leave at most
+MAX_TERMS = 40  # terms
+MAX_IDLE_TERMS = 4  # terms that may bring nothing before the search ends
+MAX_STEP_ERROR = 0.99  # of the error, that the terms of a step must leave at most
 MIN_INDEPENDENT = 1e-3  # of the size of a term, that terms before it must not explain
 
 
@@ -40,7 +40,7 @@ class Selection:
         orthogonal, _ = np.linalg.qr(self.base[self.train])
         left -= orthogonal @ (orthogonal.T @ left)
         rest = self.torque[self.train] - orthogonal @ (orthogonal.T @ self.torque[self.train])
-        while len(taken) < min(MOST, columns.shape[1]):
+        while len(taken) < min(MAX_TERMS, columns.shape[1]):
             squares = np.einsum("ij,ij->j", left, left)
             explained = (rest @ left) ** 2 / np.maximum(squares, 1e-300)
             scores = np.where(squares > MIN_INDEPENDENT**2, self.plain * explained, 0.0)
@@ -52,10 +52,10 @@ class Selection:
             rest -= direction * (direction @ rest)
             taken.append(place)
             errors.append(self.error(columns[:, taken]))
-            if min(errors[-PATIENCE:]) > BETTER * min(errors[:-PATIENCE] or [np.inf]):
+            if min(errors[-MAX_IDLE_TERMS:]) > MAX_STEP_ERROR * min(errors[:-MAX_IDLE_TERMS] or [np.inf]):
                 break
         least = min(errors)
-        return taken[: next(count for count, error in enumerate(errors) if error <= least / BETTER)]
+        return taken[: next(count for count, error in enumerate(errors) if error <= least / MAX_STEP_ERROR)]
 
     def error(self, columns: Array) -> float:
         """Return the error of the rows that check, by the shares of the others, over how much the torque varies."""

@@ -227,7 +227,7 @@ class DrivenLog(ComparedByFields):
         return np.concatenate([late, rate[np.newaxis]])
 
     def _scale(self, model: Drive, name: str) -> float:
-        """What a channel shows of the output that it measures."""
+        """Return what a channel shows of the output that it measures."""
         return per_torque(model, name) if name in EFFORTS else 1.0
 
     def _shown(self, model: Drive, name: str, values: Array) -> Array:
@@ -260,5 +260,5 @@ def _zeros(channels: Sequence[str], measured: Array, rigid: float) -> dict[str, 
 
 
 def _told_by(name: str) -> str:
-    """The output of a simulation that a channel measures."""
+    """Return the output of a simulation that a channel measures."""
     return "motor_torque" if name in EFFORTS else name

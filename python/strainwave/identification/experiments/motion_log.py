@@ -94,7 +94,10 @@ class MotionLog(ComparedByFields):
         effort = _effort(recording, effort)
         time, angle = recording.time, _input_angle(recording, drive)
         if np.ptp(angle) == 0.0:
-            raise ValueError("the angle never changes: only a shaft that moves shows inertia and friction")
+            raise ValueError(
+                "the angle never changes: only a shaft that moves shows inertia and friction; "
+                "record a motion, or give the column of the angle that moves"
+            )
         motion = motion_of(time, angle, cutoff, REVERSAL)
 
         def on_grid(values: Array) -> Array:

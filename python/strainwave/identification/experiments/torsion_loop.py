@@ -136,7 +136,7 @@ class TorsionLoop(ComparedByFields):
 
     @cached_property
     def single_branch(self) -> bool:
-        """Whether the twist never turns back, so that stiffness and hysteresis are not separated."""
+        """True if the twist never turns back, so that stiffness and hysteresis are not separated."""
         return not turning_points(self.twist)
 
     @cached_property

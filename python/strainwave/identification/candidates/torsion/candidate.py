@@ -128,7 +128,7 @@ def candidate(
 
 
 def _readings(loop: TorsionLoop, spring: Kind) -> list[TorsionLoop]:
-    """What a loop does not determine: whether its path had been run before; and which of two guesses is nearer to the zero."""
+    """Choices that a loop does not determine: if its path had been run before, and which guess is nearer to the zero."""
     if loop.single_branch:
         return [loop]
     away = np.inf if loop.unloaded is None else abs(loop.unloaded - loop.centre)
