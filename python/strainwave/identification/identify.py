@@ -13,7 +13,7 @@ from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS
-from strainwave.identification.checks.comparisons import between_files, with_start_set
+from strainwave.identification.checks.comparisons import between_files, other_loads, with_start_set
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
@@ -123,6 +123,10 @@ def identify(
     fits = _Fits.of(start, recognised, mapping, accept, progress)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
+    loads = other_loads(results)
+    results = tuple(
+        replace(each, remarks=(loads[each.name], *each.remarks)) if each.name in loads else each for each in results
+    )
     determined_by = {plain(path): file for path, file in fits.known.determined_by.items()}
     parameters = combine(results, accept=accept, determined_by=determined_by)
     if not any(each.estimates or each.failed for each in results):
@@ -299,7 +303,7 @@ def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognise
     path = file.path
     if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
         known = listed(f"*{suffix}" for suffix in FORMATS)
-        return FileResult(path.name, refused=f"the folder holds no file that may be a measurement, as {known}")
+        return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {known}")
     if file.recording is None and (other := other_format(path)):
         return FileResult(path.name, refused=other)
     try:

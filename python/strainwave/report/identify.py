@@ -10,6 +10,7 @@ import numpy as np
 
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
+from strainwave.identification.checks.comparisons import AGREEMENT
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
@@ -63,9 +64,11 @@ def identify_report(
             "note": found.gear_set.note,
             "verdict": _verdict(found, accepted),
             "failed": found.failed,
+            "accepted": accepted,
             "refused": [(each.name, each.refused) for each in found.files if each.refused],
             "cards": [_card(each, anchors[id(each)]) for each in alone if not each.refused],
-            "contradictions": [_contradiction(each, other) for each in found.parameters for other in each.contradicts],
+            "apart": [_apart(each, other) for each in found.parameters for other in each.contradicts],
+            "agreement_failed": any(check.name == AGREEMENT for check in found.failed),
             "max_distance": number(MAX_DISTANCE),
             "max_distance_in_mean": number(MAX_DISTANCE_IN_MEAN),
             "effects": (effects := list(_by_effect(found))),
@@ -201,7 +204,6 @@ def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
                 "value": uncertain(each.of_file(name).value, each.of_file(name).sigma),
                 "distance": "" if name == each.source else _sigmas(distance(each.of_file(each.source), each.of_file(name))),
                 "counted": name in each.mean_of or name == each.source,
-                "contradicts": name in each.contradicts,
             }
             for name in files
             if not same_as.get(name) or name == each.source
@@ -230,7 +232,7 @@ def _start(start: GearSet, estimate: FileEstimate) -> str:
     return number(value) if entry.uncertainty is None else uncertain(value, entry.uncertainty)
 
 
-def _contradiction(each: CombinedParameter, other: str) -> dict[str, str]:
+def _apart(each: CombinedParameter, other: str) -> dict[str, str]:
     best, estimate = each.of_file(each.source), each.others[other]
     return {
         "title": name_of(best),
@@ -360,9 +362,8 @@ def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
     yield plots.Row(title, 0.0, 100.0 * taken.sigma / scale, "value taken")
     for name in [each.source, *each.others] if mean else each.others:
         other = each.of_file(name)
-        look = "contradicts" if name in each.contradicts else "copy of another" if name in copies else "agrees"
-        if look == "agrees" and name not in each.mean_of:
-            look = "not counted"
+        agrees = "agrees" if name in each.mean_of else "not counted"
+        look = plots.BEYOND if name in each.contradicts else "copy of another" if name in copies else agrees
         yield plots.Row(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
+from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import FileResult, Look, Picture
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT, WIDTH
@@ -27,12 +28,13 @@ ROW_HEIGHT = 0.19  # inches, of a row of a comparison
 ABSCISSAE = {"twist": "twist", "small_angle": "angle of the input"}  # of loops, in words
 MAX_NAME = 22  # letters of the name of a file beside a drawing
 WHOLE_QUANTILE = 0.8  # of the lengths of intervals; longer ones reach beyond the edge
+BEYOND = f"more than {MAX_DISTANCE:g} σ apart"
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
     "value taken": ("o", "measured", True),
     "agrees": ("o", "ink", True),
     "not counted": ("s", "muted", True),
     "copy of another": ("o", "muted", False),
-    "contradicts": ("D", "model", True),
+    BEYOND: ("D", "model", True),
 }
 
 

@@ -7,13 +7,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from importlib import metadata
 from io import StringIO
+from itertools import groupby
 from typing import Any
 
 from strainwave.files import gear_file
+from strainwave.identification.checks.comparisons import AGREEMENT
 from strainwave.identification.identify import Identified
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.messages import with_options
 from strainwave.report.errors import share_held_out
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.identify import identify_report
@@ -156,14 +159,15 @@ def identify_summary(found: Identified) -> Iterator[str]:
         yield from (f"  {remark}" for remark in dict.fromkeys(remark for result in points for remark in result.remarks))
     yield ""
     yield from lines_of([*found.parameters, *_in_combination(found)])
-    yield from (check.message for check in found.checks if check.name == "agreement of files" and not check.failed)
+    passed = [check for check in found.checks if check.name == AGREEMENT and not check.failed and check.message]
+    yield from (f"{check.source}: {check.message}" for check in passed)
 
 
 def failed_lines(failed: Iterable[Check]) -> Iterator[str]:
-    """Yield failed checks in lines, each with what to do."""
-    for check in failed:
-        yield f"FAILED: {check.source}: {check.message}"
-        yield f"  what to do: {check.remedy}"
+    """Yield failed checks in lines, with what to do once behind those that have the same remedy."""
+    for remedy, checks in groupby(failed, lambda check: check.remedy):
+        yield from (f"FAILED: {check.source}: {check.message}" for check in checks)
+        yield f"  what to do: {with_options(remedy)}"
 
 
 def _in_combination(found: Identified) -> Iterator[CombinedParameter]:

@@ -13,6 +13,7 @@ from strainwave.identification.joints import Joints
 from strainwave.identification.results.combined_parameter import lines_of
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.report.errors import LEAST_SQUARES, THIS_MODEL, ZERO_MODEL, held_out_rows, share_held_out
+from strainwave.report.identify_files import failed_lines
 from strainwave.report.page import render
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
@@ -58,7 +59,7 @@ def joints_summary(joints: Joints) -> Iterator[str]:
     """Yield what was identified of each joint, in lines."""
     for name, found in joints.found.items():
         yield f"joint {name}: {'; '.join(_of_files(found))}"
-        yield from (f"  FAILED: {check.source}: {check.message}. What to do: {check.remedy}" for check in found.failed)
+        yield from (f"  {line}" for line in failed_lines(found.failed))
         yield from lines_of(found.parameters)
     yield from (f"joint {name}: NOT USED: {why}" for name, why in joints.refused.items())
     yield from (f"{name}: NOT USED: {why}" for name, why in joints.left_out.items())

@@ -21,7 +21,7 @@ _FINEST = 8  # digits; a standard deviation below the last of them is written by
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number to so many significant digits at most, with a power of ten where that is shorter.
+    """Return a number to so many significant digits at most, with a power of ten where that is shorter.
 
     >>> number(31000.0), number(0.0126), number(-5.818e-5), number(2e9)
     ('31000', '0.0126', '−58.18 × 10⁻⁶', '2 × 10⁹')
@@ -37,7 +37,7 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def uncertain(value: float, sigma: float) -> str:
-    """A value with its standard deviation, which is written to two significant digits.
+    """Return a value with its standard deviation, which is written to two significant digits.
 
     Not-a-number stands for no standard deviation, infinity for a value that nothing determines.
 
@@ -54,7 +54,7 @@ def uncertain(value: float, sigma: float) -> str:
 
 
 def interval(low: float, high: float, sigma: float) -> str:
-    """An interval, its ends to the digits of a standard deviation.
+    """Return an interval, its ends to the digits of a standard deviation.
 
     >>> interval(0.945, 1.0117, 0.017), interval(7.83e-6, 17.0e-6, 2.3e-6), interval(1.0, 1.0, 0.0)
     ('0.945 to 1.012', '(7.8 to 17.0) × 10⁻⁶', '1 to 1')
@@ -65,7 +65,7 @@ def interval(low: float, high: float, sigma: float) -> str:
 
 
 def _to_digits_of(sigma: float, numbers: tuple[float, float], between: str) -> str:
-    """Two numbers with as many digits as a standard deviation of two, and one power of ten."""
+    """Return two numbers with as many digits as a standard deviation of two, and one power of ten."""
     decade = _decade(max(*map(abs, numbers), sigma), 2)
     power = 3 * math.floor(decade / 3) if _decade(sigma, 2) < -5 else _power(decade)
     places = 1 - _decade(sigma / 10.0**power, 2)
@@ -74,7 +74,7 @@ def _to_digits_of(sigma: float, numbers: tuple[float, float], between: str) -> s
 
 
 def unit(text: str) -> str:
-    """A unit in print; nothing for plain numbers.
+    """Return a unit in print; nothing for plain numbers.
 
     >>> unit("N.m.s/rad"), unit("kg.m2"), unit("V/(rad.s)"), unit("Ohm"), unit("1")
     ('N·m·s/rad', 'kg·m²', 'V/(rad·s)', 'Ω', '')
@@ -86,7 +86,7 @@ def unit(text: str) -> str:
 
 
 def quantity(value: float, of: str, digits: int = 3) -> str:
-    """A number with its unit, scaled by a prefix where that reads better.
+    """Return a number with its unit, scaled by a prefix where that reads better.
 
     >>> quantity(0.000612, "N.m"), quantity(3.2e-6, "rad"), quantity(31000.0, "N.m/rad"), quantity(0.5, "1")
     ('612 µN·m', '3.2 µrad', '31 kN·m/rad', '0.5')
@@ -96,7 +96,7 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """A text as HTML, escaped, with the symbols in it set as such.
+    """Return a text as HTML, escaped, with the symbols in it set as such.
 
     >>> print(symbols("Kinetic friction torque F_c < F_s, where theta_out = 0"))
     Kinetic friction torque <var>F<sub>c</sub></var> &lt; <var>F<sub>s</sub></var>, where <var>θ<sub>out</sub></var> = 0
@@ -107,7 +107,7 @@ def symbols(text: str) -> Markup:
 
 
 def plain_symbols(text: str) -> str:
-    """A text with the symbols in it as a drawing has them, which knows no indices.
+    """Return a text with its symbols as a drawing shows them, without indices.
 
     >>> plain_symbols("Kinetic friction torque F_c, where theta_out = 0")
     'Kinetic friction torque Fc, where θout = 0'
@@ -120,7 +120,7 @@ def _in_greek(text: str) -> str:
 
 
 def breakable(path: str) -> Markup:
-    """The path of a parameter as HTML, to be broken between words where a line is too short.
+    """Return the path of a parameter as HTML, in which a short line may be broken between words.
 
     >>> print(breakable("gear.input_inertia"))
     gear.<wbr>input_<wbr>inertia
@@ -131,7 +131,7 @@ def breakable(path: str) -> Markup:
 
 
 def fixed(value: float, places: int) -> str:
-    """A number rounded to so many decimal places, or to tens, hundreds … where there are fewer than none.
+    """Return a number rounded to so many decimal places; if negative, to tens, hundreds …
 
     >>> fixed(-0.0312, 2), fixed(-0.001, 2), fixed(31234.0, -2)
     ('−0.03', '0.00', '31200')
@@ -140,7 +140,7 @@ def fixed(value: float, places: int) -> str:
 
 
 def uncertain_quantity(value: float, sigma: float, of: str) -> str:
-    """A value with its standard deviation and unit, scaled by a prefix where that reads better.
+    """Return a value with its standard deviation and unit, scaled by a prefix where that reads better.
 
     >>> uncertain_quantity(1.2e-5, 1.4e-5, "rad"), uncertain_quantity(-340.7e-6, 2.2e-6, "rad/A")
     ('12 ± 14 µrad', '−340.7 ± 2.2 µrad/A')
@@ -150,7 +150,7 @@ def uncertain_quantity(value: float, sigma: float, of: str) -> str:
 
 
 def prefix_power(largest: float, of: str) -> int:
-    """The power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
+    """Return the power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
     takes_none = of == "1" or of.startswith(("k", "1/"))
     if takes_none or not math.isfinite(largest) or 0.1 <= abs(largest) < 1e4 or largest == 0.0:
         return 0
@@ -158,12 +158,12 @@ def prefix_power(largest: float, of: str) -> int:
 
 
 def prefixed(of: str, power: int) -> str:
-    """A unit in print with the prefix of a power of ten."""
+    """Return a unit in print with the prefix of a power of ten."""
     return _PREFIXES[power] + unit(of)
 
 
 def _decade(value: float, digits: int) -> int:
-    """Power of ten of the first digit, once the number is rounded to so many."""
+    """Return the power of ten of the first digit of a number rounded to so many digits."""
     return int(f"{value:.{digits - 1}e}".partition("e")[2])
 
 

@@ -26,7 +26,7 @@ from strainwave.parameters import gear_numbers
 from strainwave.report import figures, identify_figures
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.report.identify import identify_report
-from strainwave.report.identify_files import identify_files
+from strainwave.report.identify_files import failed_lines, identify_files
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 
@@ -85,7 +85,8 @@ def test_the_verdict_comes_first_then_files_measured_against_predicted_then_para
     order = (
         "5 files: 3 determine 2 parameters, 1 contains the measurement of another, 1 is refused; the one check passed.",
         "Files that cannot be used", "give --column", "Measured against predicted", "Coulomb torque",
-        "13 standard deviations lie between them",  # 0.03 over the root of 0.001² + 0.002²
+        "Estimates more than 3 σ apart", "13 σ apart.",  # 0.03 over the root of 0.001² + 0.002²
+        "By the check “agreement of files” no two files",
     )  # fmt: skip
     places = [text.index(each) for each in order]
     assert places == sorted(places)
@@ -102,7 +103,10 @@ def test_a_failed_check_stands_first_with_what_to_do_and_marks_its_file(found: I
     for words in ("warm.csv", check.message, check.remedy):
         assert words in alert.text
     assert "1 of 1 check failed, and no gear was written" in root.text
-    assert "accepted" in text_of(identify_report(failed, accepted=True))
+    assert "--accept" in alert.text
+    accepted = text_of(identify_report(failed, accepted=True))
+    assert "accepted" in accepted
+    assert "--accept" not in accepted
     assert "A check of this file failed" in section(identify_report(failed), "measured").text
     results = json.loads(identify_files(failed)["results.json"])
     assert results["failed"] == ["input speed"]
@@ -147,7 +151,7 @@ def test_each_parameter_stands_with_its_file_the_start_set_and_the_others(page: 
     assert "0.0480 to 0.0520" in row.text
     assert "warm.csv" in row.text
     assert f"{gear_numbers(START.gear)[COULOMB][0]:.4g}" in row.text
-    assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart: contradiction)" in row.text
+    assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart, not counted)" in row.text
     assert "1 more of the same measurement" in row.text
 
 
@@ -303,7 +307,7 @@ def test_a_phase_is_compared_around_the_turn() -> None:
         FileResult(name, estimates=(told(path, phase, 0.05, "rad"),)) for name, phase in (("a.csv", 3.1), ("b.csv", -3.1))
     )
     html = identify_report(Identified(START, findings, combine(findings), START))
-    assert "1.2 σ)" in text_of(html)  # 2 pi - 6.2 over the root of 2 x 0.05²
+    assert "1.2 σ apart)" in text_of(html)  # 2 pi - 6.2 over the root of 2 x 0.05²
 
 
 def test_numbers_of_nothing_and_without_size_do_not_stop_the_page(found: Identified) -> None:
@@ -322,7 +326,7 @@ def test_a_file_beyond_two_sigma_is_shown_as_not_counted() -> None:
         FileResult(name, estimates=(told(COULOMB, value, 1e-3, "N.m"),)) for name, value in (("a.csv", 0.05), ("b.csv", 0.0535))
     )
     page = identify_report(Identified(START, findings, combine(findings), START))
-    assert "b.csv: 0.0535 ± 0.0010 (2.5 σ, not counted)" in text_of(page)
+    assert "b.csv: 0.0535 ± 0.0010 (2.5 σ apart, not counted)" in text_of(page)
     drawn = next(each for each in Page(page).root.find("svg")).text
     assert "not counted" in drawn
     assert "agrees" not in drawn
@@ -336,3 +340,14 @@ def test_numbers_of_the_gear_come_before_the_loads_of_runs() -> None:
     )
     order = [(each.estimate.path, each.source) for each in combine(findings)]
     assert order == [(COULOMB, "a.csv"), (first, "a.csv"), (second, "a.csv"), (first, "b.csv"), (second, "b.csv")]
+
+
+def test_checks_with_one_remedy_name_it_once(found: Identified) -> None:
+    failed = [
+        Check("agreement of files", name, 9.0, 3.0, "1", True, "they differ", "compare them") for name in ("a, b", "a, c")
+    ]
+    html = identify_report(Identified(START, found.files, found.parameters, START, tuple(failed)))
+    assert text_of(html).count("compare them") == 1
+    assert "are among the failed checks" in text_of(html)
+    lines = ["FAILED: a, b: they differ", "FAILED: a, c: they differ", "  what to do: compare them"]
+    assert list(failed_lines(failed)) == lines

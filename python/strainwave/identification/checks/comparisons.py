@@ -24,6 +24,9 @@ from strainwave.identification.results.file_result import FileEstimate, FileResu
 from strainwave.identification.results.friction_of_file import friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
 
+AGREEMENT = "agreement of files"  # name of the check of two files
+GRAVITY = "load.gravity_torque"
+OF_LOAD = ("load.inertia", GRAVITY)
 CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit by chance: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
 EDGES, SPEEDS = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
@@ -138,12 +141,40 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
         found.sort(key=lambda each: -each.apart)
         more = f", and {len(found) - MAX_LISTED} more" if len(found) > MAX_LISTED else ""
         yield Check(
-            "agreement of files", f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
-            f"{one} and {other} differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}; this is "
+            AGREEMENT, f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
+            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}; this is "
             f"{found[0].apart:.2g} times what runs of one gear and chance differ by, up to {MAX_DISTANCE:g} are allowed",
             "see whether both files are of one joint, and whether sides, columns, units and the ratio are right for both; "
-            "compare temperature, load, speed and lubricant; leave out the file that is not of this gear as you want it",
+            "compare temperature, load, speed and lubricant; leave out a file of another gear",
         )  # fmt: skip
+
+
+def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
+    """Return a remark on each log whose load is not that of the first log that determines it, by file name.
+
+    Runs of one joint may carry two loads, so this is no check. But two joints often differ by their loads alone: gears of one
+    size have friction as similar as two runs of one gear.
+    """
+    logs = [each for each in files if each.recognised and each.recognised.kind == "log" and each.estimates and not each.same_as]
+    remarks = dict[str, list[str]]()
+    for path in OF_LOAD:
+        own = {log.name: next((each for each in log.estimates if each.path == path), None) for log in logs}
+        known = {name: each for name, each in own.items() if each is not None and not each.why}
+        for first, reference in list(known.items())[:1]:
+            for name, each in own.items():
+                if (each is None or name in known) and (words := _load_apart(each, reference)):
+                    remarks.setdefault(name, []).append(f"{words}, of {first}")
+    causes = "one joint had another load, or these are two joints, each with a gear of its own"
+    return {name: f"its load differs: {'; '.join(words)}; {causes}" for name, words in remarks.items()}
+
+
+def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
+    """Return in words how a number of a load differs from that of another log; empty if it does not."""
+    if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
+        shows = reference.path == GRAVITY and reference.value > MAX_DISTANCE * reference.sigma
+        return f"no {GRAVITY} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
+    found = _contradiction(estimate, reference)
+    return found.words if estimate.unit == reference.unit and found.apart > MAX_DISTANCE else ""
 
 
 def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, FileEstimate] | None:

@@ -129,7 +129,7 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
         return
     factor = law.steady(speed) / known.steady(speed)
     mistake, rest = nearest(factor, wrong_units("torque", recording.unit("torque")))
-    remedy = f"{mistake}see whether the units of both columns are right; if they are, --accept"
+    remedy = f"{mistake}see whether the units of both columns are right"
     if side == "output":
         remedy = f"if it was measured at the input, leave --side output out; {mistake}see whether units are right"
     elif factor > MAX_FACTOR and _off_at_output(table, law, known, ratio) < min(
@@ -273,8 +273,7 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
     yield Check(
         "stiffness of the start set", source, max(factor, 1.0 / factor), limit, "1", not 1.0 / limit < factor < limit,
         f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({known:.3g} N·m/rad)",
-        f"{nearest(factor, mistakes)[0]}see whether sides and units are right, and the start set is that of this gear; "
-        "if they are, --accept",
+        f"{nearest(factor, mistakes)[0]}see whether sides and units are right, and the start set is that of this gear",
     )  # fmt: skip
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.checks.comparisons import CHANCE, between_files, with_start_set
+from strainwave.identification.checks.comparisons import CHANCE, between_files, other_loads, with_start_set
+from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
 from strainwave.identification.results.file_result import FileEstimate, FileResult
@@ -137,3 +139,25 @@ def test_further_segments_of_a_spring_of_the_same_law_are_compared_too() -> None
     (check,) = against(SMALL, FileResult("loop.csv", estimates=estimates))
     assert check.failed
     assert "gear.stiffness.k2" in check.message
+
+
+def log(name: str, numbers: dict[str, tuple[float, str]], same_as: str = "") -> FileResult:
+    constants: dict[str, float] = {}
+    read = Recognised(Path(name), "log", {}, {}, None, (), (), constants, sw.Recording({"time": [0.0, 1.0]}, {"time": "s"}))
+    estimates = tuple(FileEstimate(path, unit, value, 0.01 * value, "") for path, (value, unit) in numbers.items())
+    return FileResult(name, read, estimates=estimates, same_as=same_as)
+
+
+def test_logs_with_different_loads_may_be_of_two_joints() -> None:
+    friction = {"gear.friction_input.coulomb": (0.05, "N.m")}
+    first = log("one.csv", {**friction, "load.inertia": (1.0, "kg.m2"), "load.gravity_torque": (25.0, "N.m")})
+    again = log("again.csv", {**friction, "load.inertia": (1.08, "kg.m2"), "load.gravity_torque": (25.5, "N.m")})
+    other = log("two.csv", {**friction, "load.inertia": (3.0, "kg.m2")})
+    remarks = other_loads((first, again, other))
+    assert list(remarks) == ["two.csv"]
+    assert "load.inertia = 3 ± 0.03 against 1 ± 0.01 kg.m2" in remarks["two.csv"]
+    assert "no load.gravity_torque against 25 ± 0.25 N.m, of one.csv" in remarks["two.csv"]
+    assert "two joints" in remarks["two.csv"]
+    assert not other_loads((first, log("copy.csv", {"load.inertia": (3.0, "kg.m2")}, same_as="one.csv")))
+    in_current = log("a.csv", {"load.inertia": (30.0, "A.s2/rad"), "load.gravity_torque": (250.0, "A")})
+    assert not other_loads((first, in_current))

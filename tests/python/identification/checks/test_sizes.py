@@ -166,3 +166,14 @@ def test_a_table_at_one_load_determines_coulomb_friction_and_loss_together_only(
     assert coulomb.state == "identified in combination"
     assert any("all its rows are at one load" in remark for remark in found.files[0].remarks)
     assert not any("the loss is" in remark for remark in found.files[0].remarks)
+
+
+def test_a_table_without_load_determines_no_loss() -> None:
+    columns = {**table(SPEED, 0.05 + 3e-4 * SPEED).columns, "load_torque": np.zeros(len(SPEED))}
+    measured = sw.Recording(columns, {"speed": "rad/s", "torque": "N.m", "load_torque": "N.m"})
+    assert any("the loss under load is not determined" in remark for remark in of_friction(measured).files[0].remarks)
+
+
+@pytest.mark.parametrize("factor", [0.1, 10.5])
+def test_a_remedy_names_no_option_that_other_commands_lack(factor: float) -> None:
+    assert not any("--accept" in check.remedy for check in of_friction(table(SPEED, factor * LAW.steady(SPEED))).checks)
