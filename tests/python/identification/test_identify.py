@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -217,6 +218,18 @@ def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path,
         assert abs(told[path].value - truth) < 4.0 * told[path].sigma
         assert told[path].sigma < 0.1 * truth
     assert CONSTANT**2 / 0.4 > 50.0 * 3e-4  # of the voltage what the motor induces is by far the most
+
+
+def test_numbers_by_a_voltage_are_as_uncertain_as_the_resistance(tmp_path: Path) -> None:
+    start, path = measured_motor(), voltage_log(tmp_path / "log.csv")
+    own = start.sources["motor.resistance"]
+    told = [
+        {each.path: each for each in identify(other, [path]).files[0].estimates}
+        for other in (start, replace(start, sources={**start.sources, "motor.resistance": replace(own, spread=0.1)}))
+    ]
+    for name in ("gear.friction_input.coulomb", "load.gravity_torque"):
+        one, other = (each[name] for each in told)
+        assert np.sqrt(other.sigma**2 - one.sigma**2) == pytest.approx(0.1 * one.value)
 
 
 def test_a_torque_that_was_measured_is_as_sure_as_itself_whatever_the_torque_constant(tmp_path: Path) -> None:

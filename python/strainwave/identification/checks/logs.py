@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.identification.reading.names import words_of
+from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.messages import listed
+from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
 
 Array = NDArray[np.float64]
@@ -23,6 +25,9 @@ MAX_CONSTANT_DIFFERENCE = 0.1  # relative, of a torque constant by the voltage: 
 MAX_CONSTANT_SIGMA = 0.03  # relative: a voltage that determines the constant less well is no check of it
 MAX_INERTIA_FACTOR = 1.4  # between the inertias of a load by its winding up and by the torque of the motor
 MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
+OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
+MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
+MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
 BLOCKS = 10  # of a record, over which what is left of the voltage scatters
 
 
@@ -51,6 +56,27 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
             "plain least squares", source, share, limit, "1", share > limit,
             f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
             "record longer, at several speeds and both ways: the record does not determine more than its mean friction",
+        )  # fmt: skip
+
+
+def unit_of_torque(file: Recognised) -> Iterator[Check]:
+    """Yield the check that a torque whose unit a person gave is not what CiA 402 counts in thousandths of a rated value.
+
+    Drives of this profile record objects named as `Torque actual value` in whole thousandths, without a unit. No other number
+    of a record separates a unit of torque from another one: inertia, gravity and friction all grow with it.
+    """
+    for name in ("input_torque", "joint_torque"):
+        unit = file.units.get(name, "")
+        is_object = set(words_of(file.columns.get(name, ""))).issuperset(OBJECT_OF_CIA_402)
+        if name not in file.units_given or not is_object or " of " in unit:  # a share of a rated value
+            continue
+        raw = file.recording.values(name, unit)
+        share = float(np.mean(np.abs(raw - np.round(raw)) < MAX_OFF_WHOLE))
+        yield Check(
+            "unit of the torque", file.path.name, share, MAX_SHARE_OF_WHOLE, "1", share > MAX_SHARE_OF_WHOLE,
+            f"{file.columns[name]} contains whole numbers and is the name of CiA 402 for thousandths of the rated torque, but "
+            f"{unit} is taken",
+            "give the rated torque of the motor, as " + as_option("unit", file.columns[name], "permille of 0.4 N.m"),
         )  # fmt: skip
 
 

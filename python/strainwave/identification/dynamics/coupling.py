@@ -13,7 +13,7 @@ they were not chosen. A term of one more joint must explain twice as much, as jo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, combinations_with_replacement, product
 
@@ -144,13 +144,13 @@ class _Arm:
     @property
     def chain(self) -> list[str]:
         """Names of the joints from the base on, if they are numbers; else in alphabetical order."""
-        return sorted(self.moving, key=int) if all(each.isdigit() for each in self.moving) else sorted(self.moving)
+        return in_order(self.moving)
 
     def behind(self, name: str, other: str) -> list[str]:
         """The joints behind the first of two, on whose angles alone their inertia depends; all where no order is known."""
-        if not all(each.isdigit() for each in self.moving):
+        if not are_numbers(self.moving):
             return sorted(self.moving)
-        return sorted((each for each in self.moving if int(each) > min(int(name), int(other))), key=int)
+        return in_order(each for each in self.moving if int(each) > min(int(name), int(other)))
 
     def terms(self) -> Iterator[_Term]:
         """Yield those of the kinetic energy of which the torque of the joint has anything."""
@@ -160,6 +160,17 @@ class _Arm:
             for each in _sums(self.behind(*pair)):
                 if self.joint in pair or self.joint in dict(each):
                     yield from (_Term(pair, each, is_sine) for is_sine in (True, False))
+
+
+def are_numbers(names: Iterable[str]) -> bool:
+    """True if all joints are named by numbers, which count from the base."""
+    return all(each.isdigit() for each in names)
+
+
+def in_order(names: Iterable[str]) -> list[str]:
+    """Return joints from the base on, if they are named by numbers; else in alphabetical order."""
+    names = list(names)
+    return sorted(names, key=int if are_numbers(names) else None)
 
 
 def _sums(names: Sequence[str]) -> Iterator[tuple[tuple[str, int], ...]]:

@@ -145,7 +145,8 @@ def with_load(recording: Recording, ratio: float, side: str | None = "input") ->
     load = sensible(recording, "load_torque", "N.m")
     if not varies(load):
         held = f"{np.abs(load).max():.4g} N·m"
-        remark = f"all its rows are at one load of {held}: its loss is part of the Coulomb torque; record two loads or more"
+        loss = "is part of the Coulomb torque" if load.any() else "is not determined"
+        remark = f"all its rows are at one load of {held}: the loss under load {loss}; record two loads or more"
         return _loaded(recording, torque, load / ratio), (remark,)
     found, _ = _plain(speed, np.sign(speed) * np.abs(torque), load)
     at_input = MIN_LOSS <= found < MAX_LOSS or not MIN_LOSS <= ratio * found < MAX_LOSS

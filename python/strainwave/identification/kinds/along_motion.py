@@ -12,7 +12,7 @@ from strainwave.identification.candidates.confirmed import confirmed, other_laws
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain
-from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage
+from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
@@ -85,7 +85,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
     level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
     checks += [] if in_current else level
-    checks += [input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
+    checks += [*unit_of_torque(file), input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
     checks += checks_of_motion(best, drive, recording, held_out, name)
     pictures = (Picture(predicted), *between.pictures)
     return (
@@ -189,8 +189,9 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
     beside = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
+    induced = {}
     if taken.log.effort == "voltage":
-        beside["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
+        induced["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     spread, apart = spread_by_blocks(best), spread_by_models(best, others)
@@ -200,7 +201,9 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
         law = encoder if estimate.path == "load.gravity_phase" else ""
         sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
         told = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
-        told = told.resting_on(taken.relative, beside.get(estimate.path, 0.0))
+        besides = beside.get(estimate.path, 0.0)
+        told = told.resting_on(taken.relative, besides + induced.get(estimate.path, 0.0))
+        told = told.resting_on(taken.of_resistance, besides)
         told = told.sharing(taken.rotor) if estimate.path == "load.inertia" else told
         told = replace(told, why=_untold(estimate, told.sigma, best))
         yield told.in_current() if in_current else told

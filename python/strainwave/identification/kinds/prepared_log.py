@@ -13,11 +13,11 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
-from strainwave.identification.dynamics.coupling import coupled
+from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, rotor_sigma
+from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
 from strainwave.messages import as_option, listed
 
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
@@ -37,6 +37,7 @@ class PreparedLog(ComparedByFields):
         in_current: whether torques are in A, as the torque constant is not known
         said: numbers of the drive that a person gave with the file, by path
         relative: standard deviation of the torque constant over its value, where the torque rests on it; else 0 [1]
+        of_resistance: the same of the resistance, where the torque is that of a voltage [1]
         rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2]; 0 where torques are in A
     """
 
@@ -48,6 +49,7 @@ class PreparedLog(ComparedByFields):
     in_current: bool
     said: Mapping[str, float]
     relative: float
+    of_resistance: float
     rotor: float
 
     @property
@@ -81,6 +83,11 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     ] * is_of_speed
     others = {name: file.recording[at] for name, at in file.neighbours.items()}
     with_others = tuple(coupled(log, drive, recording.time, others, _joint(file))) if others and not file.regressors else ()
+    if with_others and not are_numbers(joints := [_joint(file), *others]):
+        remarks.append(
+            f"the names of joints are no numbers: their order from the base on is taken as {listed(in_order(joints))}; if the "
+            "arm has another one, name the columns with numbers, as q1, q2"
+        )
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         share = 100.0 * spoilt_rows / len(recording)
@@ -90,7 +97,11 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     constant = TorqueConstant.of(file, known.gear_set) if rests else None
     rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
     relative = 0.0 if constant is None else constant.relative
-    return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, said, relative, rotor)
+    by_voltage = log.effort == "voltage" and "resistance" not in file.constants
+    of_resistance = (
+        relative_sigma(known.gear_set, "motor.resistance", getattr(drive.motor, "resistance", 0.0)) if by_voltage else 0.0
+    )
+    return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, said, relative, of_resistance, rotor)
 
 
 def _with_angle(recording: Recording) -> tuple[Recording, str]:
@@ -126,7 +137,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance
         remarks.append(
             "the torque is that of the voltage, less what the motor induces: if its torque constant is 1 % larger, the viscous "
-            f"friction is {share:.2g} N·m·s/rad smaller"
+            f"friction is {share:.2g} N·m·s/rad smaller; if its resistance is 1 % larger, all torques are 1 % smaller"
         )
         return Drive(gear=gear, motor=by_voltage, load=loads.Inertia(inertia=1.0)), remarks, False
     in_current = constant is None and not {"input_torque", "joint_torque"} & set(file.recording.names)

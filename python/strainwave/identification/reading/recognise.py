@@ -59,6 +59,7 @@ class Recognised:
         alternatives: other ways to read it that its names and numbers leave open; the fit may decide between them
         question: what to ask if the fit does not decide; empty if this reading is the usual one
         is_of_robot: True if its motions have the names of a robot's joints, which are in radians by convention
+        units_given: channels whose unit a person gave, and the file does not contain
     """
 
     path: Path
@@ -78,6 +79,7 @@ class Recognised:
     alternatives: tuple[Alternative, ...] = ()
     question: str = ""
     is_of_robot: bool = False
+    units_given: tuple[str, ...] = ()
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -200,6 +202,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         began=began,
         alternatives=_other_units(columns, found.columns, given),
         is_of_robot=any(column.robot and column.channel.quantity in ("angle", "speed") for column in found.columns.values()),
+        units_given=tuple(name for name, each in found.columns.items() if each.sure and each.unit and not each.label.unit),
     )
 
 

@@ -199,9 +199,13 @@ class TorqueConstant:
         value = getattr(gear_set.motor, "torque_constant", None)
         if not value:
             return None
-        entry = gear_set.sources.get("motor.torque_constant")
-        relative = 0.0 if entry is None else entry.uncertainty / value if entry.uncertainty else entry.spread or 0.0
-        return cls(value, float(relative))
+        return cls(value, relative_sigma(gear_set, "motor.torque_constant", value))
+
+
+def relative_sigma(gear_set: GearSet, path: str, value: float) -> float:
+    """Return the standard deviation of a number of a set over its value [1]; 0 if the set states none."""
+    entry = gear_set.sources.get(path)
+    return 0.0 if entry is None else float(entry.uncertainty / value if entry.uncertainty else entry.spread or 0.0)
 
 
 def rotor_sigma(file: Recognised, gear_set: GearSet) -> float:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.dynamics.chain import Chain
-from strainwave.identification.dynamics.coupling import _Arm
+from strainwave.identification.dynamics.coupling import _Arm, in_order
 from strainwave.identification.dynamics.selection import shares_of
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.identify import identify
@@ -55,6 +55,11 @@ def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> 
     print(f"\n{told}, truth {joint}, error held out {finding.held_out.relative:.3g}")
     assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.05)
     assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
+
+
+def test_joints_without_numbers_are_in_alphabetical_order() -> None:
+    assert in_order(["10", "9", "1"]) == ["1", "9", "10"]
+    assert in_order(["shoulder", "elbow"]) == ["elbow", "shoulder"]
 
 
 def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:

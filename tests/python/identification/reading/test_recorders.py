@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from strainwave.identification.checks.logs import unit_of_torque
 from strainwave.identification.identify import identify
 from strainwave.identification.joints import identify_joints
 from strainwave.identification.reading.mapping import FileMapping
@@ -344,3 +345,24 @@ def test_the_counts_that_a_person_gives_go_before_those_that_the_speed_shows(tmp
     path = written(tmp_path / "log.csv", "t [s],motor position,motor speed [rpm],current [A]\n", [TIME, counts, rpm, TORQUE])
     assert recognise(path).units["input_angle"] == "counts/4096"
     assert recognise(path, FileMapping(units={"angle": "counts/5000"})).units["input_angle"] == "counts/5000"
+
+
+@pytest.mark.parametrize(
+    ("header", "unit", "fails"),
+    [
+        ("Torque actual value", "mN.m", [True]),
+        ("Torque actual value", "permille of 0.4 N.m", []),
+        ("Torque actual value [mNm]", "", []),
+        ("motor torque", "mN.m", []),
+    ],
+)
+def test_the_object_of_cia_402_is_in_thousandths_of_the_rated_torque(
+    header: str, unit: str, fails: list[bool], tmp_path: Path
+) -> None:
+    counts, rpm = np.round(RATIO * ANGLE / (2.0 * np.pi) * 4096), RATIO * SPEED * 30.0 / np.pi
+    columns = [1e3 * TIME, counts, rpm, np.round(TORQUE / RATIO / 0.4e-3)]
+    names = f"Time [ms];Position actual value [inc];Velocity actual value [rpm];{header}\n"
+    given = FileMapping(units={"torque": unit} if unit else {})
+    found = recognise(written(tmp_path / "log.csv", names, columns, ";"), given)
+    assert "input_torque" in found.columns
+    assert [check.failed for check in unit_of_torque(found)] == fails
