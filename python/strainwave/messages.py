@@ -1,4 +1,4 @@
-"""What messages show of input: one line, short, and no characters that a terminal would obey.
+"""Texts of input as messages show them: one line, short, and without characters that a terminal would obey.
 
 All messages that repeat something from a file, a command line or an argument use these functions.
 """
@@ -10,25 +10,25 @@ import reprlib
 import shlex
 from collections.abc import Iterable, Sequence
 
-_LONGEST_TEXT = 60  # characters of a text in quotes
-_LONGEST_LINE = 960  # characters of a whole message; with its options in both spellings a question has some 600
-_MOST_NAMES = 20  # of a list
+MAX_TEXT = 60  # characters of a text in quotes
+MAX_LINE = 960  # characters of a whole message; with its options in both spellings a question has some 600
+MAX_NAMES = 20  # of a list
 _CONTROLS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 def one_line(message: str) -> str:
-    """A message on one line: what cannot be printed is written as in Python, and a very long one loses its middle.
+    """Return a message on one line: what cannot be printed is written as in Python, and a very long one loses its middle.
 
     >>> print(one_line("no file \\x1b[31mred.csv"))
     no file \\x1b[31mred.csv
     """
     line = "".join(each if each.isprintable() else _escaped(each) for each in message)
-    half = _LONGEST_LINE // 2
-    return line if len(line) <= _LONGEST_LINE else f"{line[:half]} … {line[-half:]}"
+    half = MAX_LINE // 2
+    return line if len(line) <= MAX_LINE else f"{line[:half]} … {line[-half:]}"
 
 
 def printable(text: str) -> str:
-    """A text of several lines, in which control characters and those that turn the direction of writing are escaped.
+    """Return a text of several lines, in which control characters and those that turn the direction of writing are escaped.
 
     >>> print(printable("red \\x1b[31m\\nand \\u202e"))
     red \\x1b[31m
@@ -38,7 +38,7 @@ def printable(text: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """A text in quotes, on one line, and only its beginning where it is long.
+    """Return a text in quotes, on one line; of a long one the beginning.
 
     >>> print(quoted("N.m"), quoted(1000 * "x"))
     "N.m" "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx…"
@@ -47,24 +47,24 @@ def quoted(text: str) -> str:
 
 
 def unquoted(text: str) -> str:
-    """A text as `quoted` shows it, without the quotes: a name in a list, or a path within a model."""
-    line = one_line(text[: _LONGEST_TEXT + 1])
-    return line if len(line) <= _LONGEST_TEXT else f"{line[:_LONGEST_TEXT]}…"
+    """Return a text as `quoted` shows it, without the quotes: a name in a list, or a path within a model."""
+    line = one_line(text[: MAX_TEXT + 1])
+    return line if len(line) <= MAX_TEXT else f"{line[:MAX_TEXT]}…"
 
 
 def listed(names: Iterable[str]) -> str:
-    """Names separated by commas, the first ones where they are many.
+    """Return names separated by commas; of many the first ones.
 
     >>> listed(["speed", "torque"])
     'speed, torque'
     """
     names = list(names)
-    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
-    return ", ".join(unquoted(name) for name in names[:_MOST_NAMES]) + more
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(unquoted(name) for name in names[:MAX_NAMES]) + more
 
 
 def shortened(value: object) -> str:
-    """A value of any type as Python writes it, on one line, and only a part of it where it is long.
+    """Return a value of any type as Python writes it, on one line; of a long one a part.
 
     >>> shortened(list(range(100)))
     '[0, 1, 2, 3, 4, 5, ...]'
@@ -76,7 +76,7 @@ def shortened(value: object) -> str:
 
 
 def as_option(option: str, name: str, value: str) -> str:
-    """How to give the name or the unit of a column, on the command line and in Python.
+    """Return the option that names a column or its unit, on the command line and in Python.
 
     >>> print(as_option("column", "speed", "Motor Speed"))
     --column 'speed=Motor Speed' (in Python columns={"speed": "Motor Speed"})
@@ -86,11 +86,11 @@ def as_option(option: str, name: str, value: str) -> str:
 
 
 def with_options(message: str, *, names_columns: bool = True) -> str:
-    """A message as the command line says it: with options and commands in place of arguments and functions of Python.
+    """Return a message for the command line: with options and commands in place of arguments and functions of Python.
 
     Args:
-        message: as Python says it
-        names_columns: whether the verb has the options --column and --unit
+        message: as Python has it
+        names_columns: True if the verb has the options --column and --unit
 
     >>> print(with_options("name it like " + as_option("column", "speed", "v")))
     name it like --column speed=v
@@ -103,17 +103,17 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     """
     if not names_columns:
         message = re.sub(r", or give it with --unit .*? \(in Python units=\{.*?\}\)", "", message)
-    told = re.sub(r", or pick columns with columns=\{\.\.\.\}", "", message)
-    told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", told)
-    told = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", told)
-    told = re.sub(r"^rtol = ", "--tolerance ", told)
-    told = re.sub(r"^(speed_limit|lowest_speed|torque_limit)\b", lambda found: "--" + found[1].replace("_", "-"), told)
+    text = re.sub(r", or pick columns with columns=\{\.\.\.\}", "", message)
+    text = re.sub(r" \(in Python \w+=\{.*?\}\)", "", text)
+    text = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", text)
+    text = re.sub(r"^rtol = ", "--tolerance ", text)
+    text = re.sub(r"^(speed_limit|lowest_speed|torque_limit)\b", lambda found: "--" + found[1].replace("_", "-"), text)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
-    return told.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
+    return text.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
 
 
 def pairs(option: str, values: Sequence[str] | None, known: set[str]) -> dict[str, str]:
-    """What options as --column name=value say of columns.
+    """Return the values of options as --column name=value, by name.
 
     Raises:
         ValueError: one is not written so, or its name is none of the columns that are known

@@ -19,12 +19,12 @@ MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids ha
 
 @dataclass(frozen=True)
 class Joints:
-    """What files tell of the joints of an arm.
+    """Result of `identify_joints`: the gear of each joint of an arm.
 
     Attributes:
-        found: what they tell of each joint, by its name
-        refused: why nothing was found of a joint, by its name
-        left_out: why a file was not used of any joint, by its name
+        found: the result of each joint, by its name
+        refused: the reason why a joint could not be identified, by its name
+        left_out: the reason why a file was used for no joint, by its name
     """
 
     found: Mapping[str, Identified]
@@ -41,7 +41,7 @@ def identify_joints(
     name: str | None = None,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Joints:
-    """Finds out what files tell of every joint that moves in them.
+    """Identify every joint that moves in files, each by itself.
 
     Args:
         start: the set to start from, for each joint
@@ -52,28 +52,28 @@ def identify_joints(
 
     Raises:
         TypeError: as `identify`
-        ValueError: no joint moves in any file, more than `MAX_JOINTS` do, or nothing is found of any; says why of each
+        ValueError: no joint moves in any file, more than `MAX_JOINTS` do, or none can be identified, with the reason of each
     """
     check_arguments(files, mapping)
-    said = mapping or (lambda path: FileMapping())
+    user_mapping = mapping or (lambda path: FileMapping())
     by_joint, left_out = dict[str, list[MeasurementFile]](), dict[str, str]()
     opened = measurement_files(files)
     left_out |= {link.name: LINK_NOT_FOLLOWED for link in opened.links}
     for file in opened.files:
         try:
-            joints = joints_of(file, replace(said(file.path), joint=None))
+            joints = joints_of(file, replace(user_mapping(file.path), joint=None))
         except ValueError as error:
             left_out[file.path.name] = str(error)
             continue
         if not joints:
             left_out[file.path.name] = (
-                "it has not the angles of several joints by their names, and one that moves; name its joint"
+                "its columns are not named as angles of several joints of which one moves; name its joint with --joint"
             )
         for joint in joints:
             by_joint.setdefault(joint, []).append(file)
     if not by_joint:
         why = "; ".join(f"{name}: {each}" for name, each in left_out.items())
-        raise ValueError(f"no file contains several joints, leave --joint away or name one: {why}")
+        raise ValueError(f"no file contains several joints; leave out --joint, or name one: {why}")
     if len(by_joint) > MAX_JOINTS:
         raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
     found, refused = dict[str, Identified](), dict[str, str]()
@@ -82,7 +82,7 @@ def identify_joints(
         of_joint = None if name is None else f"{name}, joint {joint}"
         try:
             found[joint] = identify(
-                start, MeasurementFiles(own, []), mapping=_of_joint(said, joint), accept=accept, name=of_joint
+                start, MeasurementFiles(own, []), mapping=_of_joint(user_mapping, joint), accept=accept, name=of_joint
             )
         except ValueError as error:
             refused[joint] = str(error)
@@ -91,6 +91,6 @@ def identify_joints(
     return Joints(found, refused, left_out)
 
 
-def _of_joint(said: Callable[[Path], FileMapping], joint: str) -> Callable[[Path], FileMapping]:
-    """What is said of files, with the joint that is asked for."""
-    return lambda path: replace(said(path), joint=joint)
+def _of_joint(user_mapping: Callable[[Path], FileMapping], joint: str) -> Callable[[Path], FileMapping]:
+    """Return the mapping of each file, with the joint that is asked for."""
+    return lambda path: replace(user_mapping(path), joint=joint)
