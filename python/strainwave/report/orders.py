@@ -41,13 +41,8 @@ def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = 
     Returns:
         HTML; the same for the same arguments
     """
-    return render(
-        "orders.html.jinja",
-        {
-            "recordings": [_section(each, place) for place, each in enumerate(found)],
-        },
-        provenance,
-    )
+    recordings = [_section(each, place) for place, each in enumerate(found)]
+    return render("orders.html.jinja", {"recordings": recordings}, provenance)
 
 
 def _section(found: OrdersFound, place: int) -> dict[str, Any]:
@@ -153,7 +148,7 @@ def line_numbers(line: Line) -> dict[str, Any]:
 
 
 def _parts(line: Line, of: str) -> Iterator[str]:
-    """Return the parts of a line, the largest first; parts that noise explains are left out."""
+    """Yield the parts of a line, the largest first; parts that noise explains are left out."""
     words = {"constant": "constant", "direction": "with the direction", "load": "with the load"}
     for part in sorted(line.parts, key=lambda each: -each.amplitude):
         if part.false_alarm < 0.01:
@@ -182,11 +177,8 @@ def orders_summary(found: Sequence[OrdersFound]) -> str:
         lines += ["", each.name] if lines else [each.name]
         lines += [] if each.transmission is None else _error_lines(each.transmission)
         lines += [] if each.ripple is None else _ripple_lines(each.ripple)
-        lines += [
-            line
-            for remark in _remarks(each)
-            for line in textwrap.wrap(f"  note: {remark}", MAX_LINE_LETTERS, subsequent_indent="    ")
-        ]
+        for remark in _remarks(each):
+            lines += textwrap.wrap(f"  note: {remark}", MAX_LINE_LETTERS, subsequent_indent="    ")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
 
 
