@@ -40,7 +40,7 @@ def identify(
     opened = measurement_files(paths)
     fit = _every_joint if given.joint == ALL else _one_gear
     if fit(gear, opened, given.mapping_of(opened.files), accept, name, out) and not accept:
-        print("no gear is written while a check fails: settle it, or --accept writes it")
+        print("a gear with a failed check is not written: settle it, or --accept writes it")
         raise typer.Exit(FAILED)
 
 

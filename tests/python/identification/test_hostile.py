@@ -94,7 +94,7 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "three rows": (text("few.csv", "time [s],input_angle [rad],current [A]\n0,0,0\n1,1,1\n2,2,2\n"), "has 3 samples; at least"),
     "a wrong delimiter": (text("bars.csv", "speed|torque\n1|0.05\n2|0.06\n"), r"separated by .\|.: separate them by commas"),
     "no file": (lambda folder: folder / "none.csv", "cannot be read: No such file"),
-    "an empty folder": (folder_of(empty=True), r"holds no file that may be a measurement, as \*\.csv"),
+    "an empty folder": (folder_of(empty=True), r"contains no file that may be a measurement, as \*\.csv"),
     "texts among numbers": (text("texts.csv", with_texts()), r"columns not used: speed \[rad/s\]: does it hold texts"),
     "torque alone": (text("torque.csv", "time [s],torque [N.m]\n" + "0,1\n1,2\n2,1\n" * 20), "--constant speed="),
     "a constant current": (log(current=np.full(len(CURRENT), 1.0)), "current never changes: a set value, a limit"),

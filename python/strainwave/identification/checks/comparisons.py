@@ -164,7 +164,7 @@ def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
             for name, each in own.items():
                 if (each is None or name in known) and (words := _load_apart(each, reference)):
                     remarks.setdefault(name, []).append(f"{words}, of {first}")
-    causes = "one joint had another load, or these are two joints, each with a gear of its own"
+    causes = "one joint had another load or its arm another pose, or these are two joints, each with a gear of its own"
     return {name: f"its load differs: {'; '.join(words)}; {causes}" for name, words in remarks.items()}
 
 
