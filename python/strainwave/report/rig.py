@@ -34,7 +34,7 @@ from strainwave.rig.reading.evaluation import Evaluation
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:
-    """The report of a test, as one HTML file that needs nothing else.
+    """Return the report of a test, as one HTML file that needs nothing else.
 
     Args:
         found: the test
@@ -103,31 +103,31 @@ def _sections(content: dict[str, Any]) -> dict[str, str]:
 
 
 def setting(found: Evaluation) -> dict[str, str]:
-    """What was tested, in words."""
+    """Return what was tested, in words."""
     loops = found.loops
-    said = {"Specimen": found.gear_set.name if found.gear_set is not None else "not stated"}
+    facts = {"Specimen": found.gear_set.name if found.gear_set is not None else "not stated"}
     if units := [unit for unit in dict.fromkeys(loop.unit for loop in loops) if unit]:
-        said["Units"] = ", ".join(units)
+        facts["Units"] = ", ".join(units)
     held = {"input": "input loaded, output held", "output": "output loaded, input held"}
-    said["Loaded shaft"] = ", ".join(held[side] for side in dict.fromkeys(loop.side for loop in loops))
-    said["Positions of the flexspline"] = ", ".join(dict.fromkeys(f"{degrees(loop.position):.6g}°" for loop in loops))
+    facts["Loaded shaft"] = ", ".join(held[side] for side in dict.fromkeys(loop.side for loop in loops))
+    facts["Positions of the flexspline"] = ", ".join(dict.fromkeys(f"{degrees(loop.position):.6g}°" for loop in loops))
     low, high = (
         pick(end) for pick, end in zip((min, max), zip(*(each.peaks for each in found.analyses), strict=True), strict=True)
     )
-    said["Torque"] = f"{fixed(low, 3)} to {fixed(high, 3)} N·m"
-    said["Points"] = f"{sum(map(len, loops))} in {len(loops)} loop{'s' if len(loops) > 1 else ''}"
+    facts["Torque"] = f"{fixed(low, 3)} to {fixed(high, 3)} N·m"
+    facts["Points"] = f"{sum(map(len, loops))} in {len(loops)} loop{'s' if len(loops) > 1 else ''}"
     if found.angles:
         frames = [frame for each in found.angles for frame in each.frames]
         lost = sum(frame.markers is None for frame in frames)
-        said["Photographs"] = f"{len(frames)}, {f'{lost} without an angle' if lost else 'each with an angle'}"
+        facts["Photographs"] = f"{len(frames)}, {f'{lost} without an angle' if lost else 'each with an angle'}"
     if times := [step.time for step in found.steps if step.time is not None]:
-        said["Duration"] = _duration(max(times) - min(times))
+        facts["Duration"] = _duration(max(times) - min(times))
     temperatures = [value for loop in loops if loop.temperature is not None for value in loop.temperature.tolist()]
     if temperatures:
-        said["Temperature"] = f"{fixed(min(temperatures) - 273.15, 1)} to {fixed(max(temperatures) - 273.15, 1)} °C"
+        facts["Temperature"] = f"{fixed(min(temperatures) - 273.15, 1)} to {fixed(max(temperatures) - 273.15, 1)} °C"
     if found.rig is not None:
-        said["Rig"] = found.rig.name
-    return said
+        facts["Rig"] = found.rig.name
+    return facts
 
 
 def _duration(seconds: float) -> str:
@@ -147,8 +147,8 @@ def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
     unit, scale = rig_plates.angle_unit(found.loops[0])
     widths = [row.hysteresis for row in rows]
     at_output = ""
-    if (ratio := ratio_of(found)) is not None and (told := [each for each in widths if each is not None]):
-        low, high = (ARCMIN * degrees(pick(each.value for each in told)) / ratio for pick in (min, max))
+    if (ratio := ratio_of(found)) is not None and (known := [each for each in widths if each is not None]):
+        low, high = (ARCMIN * degrees(pick(each.value for each in known)) / ratio for pick in (min, max))
         at_output = f" Divided by the ratio of {number(ratio)}: {_range(low, high, 3)}′ at the output."
     yield _card("Hysteresis", widths, scale, unit, f"Widest separation of the branches at equal torque.{at_output}")
     energy = [each.area for each in found.analyses]
@@ -156,14 +156,14 @@ def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
 
 
 def _card(eyebrow: str, results: Sequence[Result | None], scale: float, unit: str, text: str) -> dict[str, str]:
-    told = [each for each in results if each is not None and np.isfinite(each.value)]
-    card = {"eyebrow": eyebrow, "headline": "not told", "unit": "", "text": text}
-    if len(told) == 1:
-        only = stated(told[0], scale)
+    known = [each for each in results if each is not None and np.isfinite(each.value)]
+    card = {"eyebrow": eyebrow, "headline": "not determined", "unit": "", "text": text}
+    if len(known) == 1:
+        only = stated(known[0], scale)
         interval = f" 95 %: {only.interval}{'' if unit in '°′' else ' '}{unit}." if only.interval else ""
         card |= {"headline": only.value, "unit": unit, "text": f"{text}{interval}"}
-    elif told:
-        values = [scale * each.value for each in told]
+    elif known:
+        values = [scale * each.value for each in known]
         card |= {"headline": _range(min(values), max(values), 3), "unit": unit}
     if unit in "°′":  # stands at the number
         card |= {"headline": f"{card['headline']}{card['unit']}", "unit": ""}
@@ -176,14 +176,14 @@ def _range(low: float, high: float, digits: int) -> str:
 
 
 def unknown(found: Evaluation) -> list[str]:
-    """What the test could not tell, or what makes it doubtful, each once, with the loops that it holds for."""
-    said: dict[str, list[str]] = {}
+    """Return what the test does not determine, or what makes it doubtful, each once, with its loops."""
+    facts: dict[str, list[str]] = {}
     for label, analysis in zip(found.labels, found.analyses, strict=True):
         for remark in analysis.remarks:
             if not remark.startswith(OF_REGIMES):  # these stand with the loop
-                said.setdefault(remark, []).append(label)
+                facts.setdefault(remark, []).append(label)
     every = len(found.analyses)
-    lines = [remark if len(labels) == every else f"{', '.join(labels)}: {remark}" for remark, labels in said.items()]
+    lines = [remark if len(labels) == every else f"{', '.join(labels)}: {remark}" for remark, labels in facts.items()]
     on_photographs = [each for each in found.remarks if not any(line.endswith(f"is left out: {each}") for line in lines)]
     lines += [*on_photographs, *(found.deviations or ()), *(remark for each in found.comparisons for remark in each.remarks)]
     lines += [remark for each in found.angles for remark in each.remarks]
@@ -208,7 +208,7 @@ def _catalogued(found: Evaluation) -> Iterator[str]:
 
 
 def summary(found: Evaluation) -> str:
-    """What the test found, as lines of text."""
+    """Return the results of the test, as lines of text."""
     shown = stiffness_table(found, "softest")
     head = ["", *(each.replace(" [", "\n[") for each in shown["heads"])]
     rows = [[label, *(str(cell) for cell in cells)] for label, cells in shown["rows"]]
@@ -226,6 +226,6 @@ def summary(found: Evaluation) -> str:
     lines += ["", *catalogued] if (catalogued := list(_catalogued(found))) else []
     for each in found.comparisons:
         lines += ["", *(str(compared) for compared in each.quantities)]
-    if told := unknown(found):
-        lines += ["", "not determined, or in doubt:", *(f"  {line}" for line in told)]
+    if open_questions := unknown(found):
+        lines += ["", "not determined, or in doubt:", *(f"  {line}" for line in open_questions)]
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""What a torsion test leaves beside its report: loops, the angle of each photograph, and every number found."""
+"""Files of a torsion test beside its report: loops, the angle of each photograph, and every number found."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MAX_NAME_PART = 40  # characters of a specimen in the name of a file, which has 
 
 
 def loop_names(loops: Sequence[Loop]) -> list[str]:
-    """A name for each loop, as its files have it: unit, position and, where several are alike, a number.
+    """Return the name of each loop, as its files have it: unit, position and, where several are alike, a number.
 
     >>> turned = [Loop([0.0, 0.1], [0.0, 0.1], side="input", name="a", position=p) for p in (0.0, 1.0471975511965976, 0.0)]
     >>> loop_names(turned)
@@ -49,7 +49,7 @@ def loop_names(loops: Sequence[Loop]) -> list[str]:
 
 
 def _file_part(text: str) -> str:
-    """A text as part of a file's name."""
+    """Return a text as part of a file's name."""
     kept = "".join(each if each.isalnum() or each in "._" else "-" for each in text[:MAX_NAME_PART])
     return f"{kept.strip('-.')}-" if kept.strip("-.") else ""
 
@@ -70,7 +70,7 @@ def loop_files(loops: Sequence[Loop]) -> dict[str, bytes]:
 
 
 def angle_files(angles: Sequence[Angles]) -> dict[str, bytes]:
-    """What each photograph told, a row for each, as CSV and as Parquet: its angle, both markers, and what is wrong with it."""
+    """Return a row for each photograph, as CSV and as Parquet: its angle, both markers, and what is wrong with it."""
     import pyarrow
     from pyarrow.parquet import write_table
 
@@ -87,9 +87,9 @@ def angle_files(angles: Sequence[Angles]) -> dict[str, bytes]:
 
 def _angle_rows(angles: Sequence[Angles]) -> Iterator[dict[str, str | float | None]]:
     for each in angles:
-        told = {frame.name: (angle, sigma) for frame, angle, sigma in zip(each.useful, each.angle, each.sigma, strict=True)}
+        by_name = {frame.name: (angle, sigma) for frame, angle, sigma in zip(each.useful, each.angle, each.sigma, strict=True)}
         for frame in each.frames:
-            angle, sigma = told.get(frame.name, (None, None))
+            angle, sigma = by_name.get(frame.name, (None, None))
             row: dict[str, str | float | None] = {"image": frame.name, "sha256": frame.sha256, "reference": each.reference}
             row |= {"angle [rad]": angle, "angle_sigma [rad]": sigma}
             row |= {"fault": frame.fault, "warnings": "; ".join(frame.warnings)}
@@ -161,12 +161,12 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
 
 
 def results_json(found: Mapping[str, Any]) -> str:
-    """Every number found, as JSON: SI units unless a unit stands beside; null where there is no number."""
+    """Return every number found, as JSON: in SI units unless a unit is given; null for no number."""
     return json.dumps(plain(found), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def plain(value: Any) -> Any:
-    """A value of dataclasses, arrays and numbers in the types that JSON has.
+    """Return a value of dataclasses, arrays and numbers in the types that JSON has.
 
     >>> plain({"a": np.array([1.0, np.nan]), "b": (True, Path("x"))})
     {'a': [1.0, None], 'b': [True, 'x']}

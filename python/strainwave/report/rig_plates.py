@@ -28,7 +28,7 @@ FALLING = ("positive_unloading", "negative_loading")
 
 
 def angle_unit(loop: Loop) -> tuple[str, float]:
-    """The unit in which angles of the loaded shaft are printed, and the factor to it: degrees, at the output arcminutes."""
+    """Return the unit of angles of the loaded shaft as printed, and the factor to it: degrees, at the output arcminutes."""
     return ("°", degrees(1.0)) if loop.side == "input" else ("′", ARCMIN * degrees(1.0))
 
 
@@ -43,7 +43,7 @@ def _markup(svg: str) -> Markup:
 
 
 def loop(analysis: LoopAnalysis, label: str, name: str, ratio: float | None) -> Markup:
-    """A loop with its regimes and widths."""
+    """Draw a loop with its regimes and widths."""
     measured, scale = analysis.loop, angle_unit(analysis.loop)[1]
     output = ARCMIN / ratio if ratio and measured.side == "input" else None
     whole = scale * measured.angle, measured.torque
@@ -61,7 +61,7 @@ def _branches(analysis: LoopAnalysis, scale: float) -> Iterator[Branch]:
 
 
 def _widths(analysis: LoopAnalysis, scale: float) -> Iterator[Width]:
-    """The widths that the loop has; two at nearly the same torque as one."""
+    """Return the widths of a loop; two at nearly the same torque as one."""
     falling, rising = analysis.cut.falling, analysis.cut.rising
     if falling is None or rising is None or analysis.hysteresis is None:
         return
@@ -96,7 +96,7 @@ def stiffness(analysis: LoopAnalysis, label: str, name: str) -> Markup:
 
 
 def overlay(found: Evaluation) -> Markup:
-    """All loops in one picture, where there are several at one shaft."""
+    """Draw all loops in one picture, if several are at one shaft."""
     loops = found.loops
     if len(loops) < 2 or len({loop.side for loop in loops}) > 1:
         return _markup("")
@@ -132,8 +132,8 @@ def comparison(found: Evaluation, compared: Comparison) -> Markup:
 
 
 def _row(name: str, results: list[Result | None], scale: float) -> list[Compared]:
-    told = [each for each in results if each is not None]
-    if len(told) < len(results):
+    known = [each for each in results if each is not None]
+    if len(known) < len(results):
         return []
-    values = np.array([scale * each.value for each in told])
-    return [Compared(name, values, student(np.inf) * np.array([scale * each.random for each in told]))]
+    values = np.array([scale * each.value for each in known])
+    return [Compared(name, values, student(np.inf) * np.array([scale * each.random for each in known]))]

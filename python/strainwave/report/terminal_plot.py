@@ -1,4 +1,4 @@
-"""A loop drawn with the letters of a terminal, for whoever stands at the rig."""
+"""A loop drawn with the letters of a terminal, for work at the rig."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-ROWS = 16  # of the plot, its axis not counted
-NARROWEST = 36  # columns of a terminal that a plot needs
+PLOT_ROWS = 16  # of the plot, its axis not counted
+MIN_COLUMNS = 36  # columns of a terminal that a plot needs
 BRAILLE = 0x2800  # the empty sign; its dots are bits, two columns of four
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 SIGNS = "⣿·┤└─●°−"  # what a terminal must be able to show; plain letters take their place otherwise
 ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # ends of axes, times a power of ten
 
 
-def loop_lines(angle: Array, torque: Array, width: int, letters: str = "utf-8", rows: int = ROWS) -> list[str]:
-    """A loop as lines of text: torque upwards in N.m, angle to the right in degrees, the last point marked.
+def loop_lines(angle: Array, torque: Array, width: int, letters: str = "utf-8", rows: int = PLOT_ROWS) -> list[str]:
+    """Return a loop as lines of text: torque upwards in N.m, angle to the right in degrees, the last point marked.
 
     Args:
         angle: how far the shaft has turned [rad], shape (n,), n >= 1
@@ -40,7 +40,7 @@ def loop_lines(angle: Array, torque: Array, width: int, letters: str = "utf-8", 
             -50                               0
                                     angle [deg]
     """
-    if width < NARROWEST:
+    if width < MIN_COLUMNS:
         return []
     plain = not _shows(SIGNS, letters)
     degrees = np.degrees(angle)
