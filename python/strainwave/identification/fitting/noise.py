@@ -81,3 +81,8 @@ def correlation_length(residual: Array) -> float:
     time = 2.0 * np.cumsum(correlation / correlation[0]) - 1.0
     window = np.arange(len(time)) >= 5.0 * time
     return float(max(1.0, time[np.argmax(window)] if window.any() else time[-1]))
+
+
+def rms(values: Array) -> float:
+    """Return the root mean square of values."""
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,193 +1,90 @@
-"""Friction at rest, before a shaft slides: presliding loops and ramps of torque."""
+"""Friction at rest, before a shaft slides: the columns of presliding loops and ramps of torque, and their input."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from abc import abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 
 from strainwave import friction
+from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.presliding import (
-    BreakawayTorque,
-    PreslidingCandidate,
-    breakaway_torque,
-    fit_presliding,
-)
-from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.checks.unexplained import (
-    MAX_SHARE_OF_PRESLIDING,
-    MAX_SHARE_OF_TORQUE,
-    only_if_explained,
-    share_left,
-)
-from strainwave.identification.experiments.presliding import Breakaway, PreslidingLoop, breakaways
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Quantity
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
-from strainwave.identification.results.gear_so_far import GearSoFar, plain, with_torque
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 
 SIGNIFICANCE_SIGMA = 3.0  # beyond which two numbers differ
-MAX_RELATIVE_SIGMA = 0.5  # of an estimate that is determined
 SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
 BRISTLES = (friction.LuGre, friction.MaxwellSlipFriction)
-NO_RAMP = "no ramp went that way"
+WITH_BREAKAWAY = (*SLIDING, friction.LuGre)  # laws with a torque of breakaway
+MIN_RATIO = 2.0  # of a gear
+MAX_PRESLIDING = 0.05  # rad of the input: what moves to and fro by less has not slid far, and hardly twists the gear
 
 
-def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    """Fit bristle or Maxwell elements to a loop of small motion at rest.
+class AtRest(Kind):
+    """The common base of both kinds: one angle beside a torque or current."""
 
-    Raises:
-        ValueError: the file does not determine it; states why
-    """
-    recording, uncertain = at_input(file, known)
-    loop = PreslidingLoop.of(recording)
-    slides = _sliding_beyond(0.5 * float(np.ptp(loop.torque)), known)
-    best, *_ = fit_presliding(loop)
-    slid = best.reach >= 1.0 and slides is None
-    begun = np.arange(len(loop.angle)) >= loop.turns[0]
-    held_out = HeldOut(
-        "each part of the loop, predicted from the others", "torque at rest", "N.m", best.error,
-        float(np.std(loop.torque[begun])), samples=int(begun.sum()),
-    )  # fmt: skip
-    whole = share_left({held_out.channel: (held_out.relative, MAX_SHARE_OF_PRESLIDING)}, file.path.name)
-    estimates = only_if_explained(_elements(best, uncertain, slid=slid), whole)
-    remarks = [*file.remarks]
-    if slides is not None:
-        remarks.append(
-            f"its torque stays below the {slides:.3g} N·m at which the shaft slides by other files: it determines the "
-            "stiffness, and the torque from below"
-        )
-    elif not slid:
-        remarks.append(
-            f"the shaft moved {best.reach:.2g} times as far as it must to slide: it determines the torque from below only"
-        )
-    sliding, after = known.sliding(), known
-    if not isinstance(sliding, SLIDING):
-        why = "which has bristles by an earlier file" if isinstance(sliding, BRISTLES) else "which has no bristles"
-        remarks.append(f"the gear keeps its friction law, {sliding.name}, {why}; the numbers stand in the results")
-    elif best.reach >= 1.0 or slides is not None:
-        law = best.law(sliding, slid=slid)
-        if not isinstance(sliding, friction.Stribeck):
-            remarks.append("a Stribeck speed of 1 rad/s is assumed in the gear, as no table determines it")
-        level = next(each.sigma for each in estimates if each.path.endswith(("breakaway", "share[0]")))
-        if slid and sliding.coulomb - best.breakaway > SIGNIFICANCE_SIGMA * level and sliding.coulomb > 1.01 * best.breakaway:
-            remarks.append(
-                f"it breaks away at {best.breakaway:.3g} N·m, below the {sliding.coulomb:.3g} N·m with which it slides: "
-                "the smaller one is taken in the gear"
-            )
-        sigmas = {each.path.removeprefix("gear.friction_input."): each.sigma for each in estimates if not each.why}
-        after = known.with_sliding(law, sigmas, file.path.name)
-    compared = {"small_angle": loop.angle, "torque": loop.torque, "modelled": best.predicted}
-    units = {"small_angle": "rad", "torque": "N.m", "modelled": "N.m"}
-    curves = Recording({name: values[begun] for name, values in compared.items()}, units)
-    picture = Picture(curves, "loop", "torque at the input")
-    checks = (*friction_at_rest(0.5 * float(np.ptp(loop.torque)), known.initial.gear, file.path.name), whole)
-    return FileResult(
-        file.path.name, file, _in_words(best), estimates, tuple(remarks), checks, pictures=(picture,), held_out=held_out
-    ), after
+    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+        angle, (effort, force) = needed(columns, "angle", self.title), needed_effort(columns, self.title)
+        side = mapping.side or angle.channel.side or ("output" if angle.robot else "input")
+        time = {} if self.time == "none" else first(columns, "time")
+        why = f"{self.motion(angle, force)}: {self.title}"
+        return ColumnRoles(self.name, {"angle": angle, effort: force, **time}, side, (why,))
+
+    @abstractmethod
+    def motion(self, angle: Column, force: Column) -> str:
+        """Return in words how the shaft moves."""
 
 
-def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:
-    """Return the torque at which the input slides by other files, if it exceeds the largest of a loop beyond doubt [N.m]."""
-    law = known.sliding()
-    if "friction_input" not in known.determined or not isinstance(law, (*SLIDING, friction.LuGre)):
+def goes_to_and_fro(columns: Sequence[Column], mapping: FileMapping) -> bool:
+    """True if one angle of an input moves to and fro by little beside a torque or current."""
+    if (pair := angle_and_effort(columns, mapping)) is None:
+        return False
+    angle, _ = pair
+    is_geared = mapping.constants.get("ratio", np.inf) >= MIN_RATIO  # without a gear, motion of the output twists none
+    at_output = is_geared and (angle.robot or "output" in (angle.channel.side, mapping.side))
+    is_known = mapping.side is not None or angle.channel.side is not None or not is_geared
+    return is_known and not at_output and bool(np.ptp(angle.si) <= MAX_PRESLIDING) and len(turning_points(angle.si)) >= 2
+
+
+def angle_and_effort(columns: Sequence[Column], mapping: FileMapping) -> tuple[Column, Column] | None:
+    """Return the angle and the torque or current of a record at rest; None if it has not one of both, or is a torsion loop."""
+    is_twisted = measured(columns, "twist") and measured(columns, "torque")
+    if is_twisted and "rate" not in mapping.constants and not measured(columns, "time"):
         return None
-    entries = [entry for path, entry in known.gear_set.sources.items() if plain(path) == "gear.friction_input.coulomb"]
-    sigma = max((entry.uncertainty or 0.0 for entry in entries), default=0.0)
-    level = max(law.coulomb, law.breakaway)
-    return level if level - SIGNIFICANCE_SIGMA * sigma > largest else None
+    angle, effort = _one(columns, "angle"), _one(columns, "torque") or _one(columns, "current")
+    return None if angle is None or effort is None else (angle, effort)
 
 
-def _in_words(best: PreslidingCandidate) -> str:
-    return "a bristle (LuGre)" if best.name == "bristle" else f"{best.name} (Maxwell slip)"
+def _one(columns: Sequence[Column], quantity: Quantity) -> Column | None:
+    """Return the column of a quantity, of the input if there are several; None if it is not one."""
+    found = measured(columns, quantity)
+    own = [column for column in found if column.channel.side == "input"] or found
+    return own[0] if len(own) == 1 else None
 
 
-def _elements(best: PreslidingCandidate, uncertain: float, *, slid: bool) -> Iterator[FileEstimate]:
-    """Yield the numbers of a law with bristles, under the names that it has for them."""
-    short = "" if slid else "the loop never slid, so that it determines the torque from below only"
-    if best.name == "bristle":
-        names, law = {"stiffness": "bristle_stiffness", "breakaway": "breakaway"}, "lugre"
-    else:
-        places = len(best.estimates) // 2
-        names, law = {"stiffness": "stiffness[0]", "breakaway": "share[0]"}, "maxwell_slip_friction"
-        names |= {f"stiffness[{i}]": f"stiffness[{i}]" for i in range(places)}
-        names |= {f"breakaway[{i}]": f"share[{i}]" for i in range(places)}
-    for each in best.estimates:
-        level = each.path.startswith("breakaway")
-        own = "" if level and best.name == "bristle" else law  # breakaway is the same in every law that has it
-        yield _estimate(each, f"gear.friction_input.{names[each.path]}", own, uncertain, short if level else "")
+# ---- What both fits share --------------------------------------------------------------------------------------------
 
 
-def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    """Fit the breakaway torque of ramps, in both directions.
+def estimate_of(each: Estimate, path: str, law: str, uncertain: float, why: str) -> FileEstimate:
+    """Return an estimate of a file, which rests on a torque constant.
 
-    Raises:
-        ValueError: no ramp broke the shaft away
+    Args:
+        each: of the fit
+        path: of the parameter
+        law: that it belongs to
+        uncertain: standard deviation of the torque constant over its value [1]
+        why: the reason why the file does not determine it; empty if it does
     """
-    recording, uncertain = at_input(file, known)
-    ramps = breakaways(recording)
-    found = breakaway_torque(ramps)
-    remarks = [*file.remarks, f"{len(ramps)} {'ramp of torque breaks' if len(ramps) == 1 else 'ramps of torque break'} it away"]
-    sides = [each for each in (found.forward, found.reverse) if each is not None]
-    few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
-    both = _mean(sides)
-    for each, way in zip((found.forward, found.reverse), ("forward", "in reverse"), strict=True):
-        remarks.append(f"{way}: " + (NO_RAMP if each is None else _with_sigma(each)))
-    if found.slope is not None:
-        remarks.append(
-            f"for each decade of the ramps' rate it changes by {found.slope.value:.2g} ± {found.slope.sigma:.1g} N·m"
-        )
-    scatter = np.array([abs(ramp.torque) - each.value for ramp in ramps for each in [_of_way(ramp, found)]])
-    left = float(np.sqrt(np.mean(scatter**2))) / both.value
-    whole = share_left({"the torque of breakaway": (left, MAX_SHARE_OF_TORQUE)}, file.path.name)
-    estimates = only_if_explained((_estimate(both, "gear.friction_input.breakaway", "", uncertain, few),), whole)
-    law, after = known.sliding(), known
-    if isinstance(law, (*SLIDING, friction.LuGre)) and not _has_breakaway(known) and not estimates[0].why:
-        if both.value >= law.coulomb:
-            after = known.with_sliding(law.replace(breakaway=both.value), {"breakaway": estimates[0].sigma}, file.path.name)
-        else:
-            remarks.append(
-                f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
-            )
-    checks = (*friction_at_rest(both.value, known.initial.gear, file.path.name), whole)
-    return FileResult(file.path.name, file, "breakaway of each ramp", estimates, tuple(remarks), checks), after
-
-
-def _with_sigma(each: Estimate) -> str:
-    scatter = f"± {each.sigma:.2g} N·m" if np.isfinite(each.sigma) else "N·m, of one ramp"
-    return f"{each.value:.4g} {scatter}"
-
-
-def _of_way(ramp: Breakaway, found: BreakawayTorque) -> Estimate:
-    """Return the breakaway torque in the direction of a ramp."""
-    each = found.forward if ramp.torque > 0.0 else found.reverse
-    assert each is not None
-    return each
-
-
-def _has_breakaway(known: GearSoFar) -> bool:
-    """True if an earlier file determines the breakaway torque."""
-    return any(plain(path) == "gear.friction_input.breakaway" for path in known.determined_by)
-
-
-def _mean(sides: list[Estimate]) -> Estimate:
-    """Return the mean of both directions; if they differ by more than chance, half the difference adds to its uncertainty."""
-    values, sigmas = np.array([each.value for each in sides]), np.array([each.sigma for each in sides])
-    value, sigma = float(values.mean()), float(np.linalg.norm(sigmas)) / len(sides)
-    half = 0.5 * float(np.ptp(values))
-    if 2.0 * half > SIGNIFICANCE_SIGMA * np.linalg.norm(sigmas):
-        sigma = float(np.hypot(sigma, half))
-    return replace(sides[0], path="breakaway", value=value, sigma=sigma)
-
-
-def _estimate(each: Estimate, path: str, law: str, uncertain: float, short: str) -> FileEstimate:
-    common = uncertain * abs(each.value)
-    sigma = float(np.hypot(each.sigma, common))
-    why = short or ("its standard deviation exceeds half the value" if sigma > MAX_RELATIVE_SIGMA * abs(each.value) else "")
-    return FileEstimate(path, each.unit, each.value, sigma, law, why, common)
+    found = FileEstimate(path, each.unit, each.value, each.sigma, law, why)
+    return found.sharing(uncertain * abs(each.value)).unless_uncertain()
 
 
 def at_input(file: Recognised, known: GearSoFar) -> tuple[Recording, float]:

@@ -2,26 +2,128 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from strainwave.identification.kinds import at_rest
-from strainwave.identification.kinds.kind import Kind
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque
+from strainwave.identification.checks.sizes import friction_at_rest
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.experiments.presliding import breakaways
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.noise import rms
+from strainwave.identification.kinds.at_rest import (
+    SIGNIFICANCE_SIGMA,
+    WITH_BREAKAWAY,
+    AtRest,
+    angle_and_effort,
+    at_input,
+    estimate_of,
+    goes_to_and_fro,
+)
+from strainwave.identification.reading.angles import jumps
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, at_rest_roles
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.motions import MAX_SPEED_AT_REST, runs_of
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import first
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, plain
+
+Array = NDArray[np.float64]
+
+MIN_LOAD = 0.1  # of the largest torque
+MIN_TIME_AT_REST = 0.5  # of the time under load, while ramps rise
+MIN_CORRELATION = 0.9  # of a ramp with time
+MOTIONS = 500  # over which a record is divided
+MIN_ROWS, MIN_ROWS_OF_RAMP = 100, 10
 
 
-class Breakaway(Kind):
+class Breakaway(AtRest):
     """A torque that rises while the shaft rests, until it moves."""
 
     time = "needed"
 
-    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return at_rest_roles(columns, mapping, "breakaway")
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True if the torque rises while the shaft rests, most of the time under load."""
+        pair, time = angle_and_effort(columns, mapping), first(columns, "time")
+        if pair is None or not time or goes_to_and_fro(columns, mapping):
+            return False
+        angle, effort = pair
+        return _ramps(time["time"].si, angle.si, effort.si)
+
+    def motion(self, angle: Column, force: Column) -> str:
+        """Return in words how the shaft moves."""
+        return f"{force.name} rises while {angle.name} rests, until it moves"
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-        """Estimate the torque of breakaway in both directions."""
-        return at_rest.breakaway(file, known)
+        """Fit the breakaway torque of ramps, in both directions.
+
+        Raises:
+            ValueError: no ramp broke the shaft away
+        """
+        name = file.path.name
+        recording, uncertain = at_input(file, known)
+        ramps = breakaways(recording)
+        found = breakaway_torque(ramps)
+        ways = (found.reverse, found.forward)
+        sides = [each for each in ways if each is not None]
+        both = _mean(sides)
+        off = [abs(ramp.torque) - each.value for ramp in ramps if (each := ways[ramp.torque > 0.0]) is not None]
+        left = rms(np.array(off)) / both.value
+        whole = share_left({"the torque of breakaway": (left, MAX_SHARE_OF_TORQUE)}, name)
+        few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
+        estimates = only_if_explained((estimate_of(both, "gear.friction_input.breakaway", "", uncertain, few),), whole)
+        remarks, (law, after) = [*file.remarks, *_remarks(found, len(ramps))], (known.sliding(), known)
+        is_known = any(plain(path) == "gear.friction_input.breakaway" for path in known.determined_by)
+        if isinstance(law, WITH_BREAKAWAY) and not is_known and not estimates[0].why:
+            if both.value >= law.coulomb:
+                after = known.with_sliding(law.replace(breakaway=both.value), {"breakaway": estimates[0].sigma}, name)
+            else:
+                remarks.append(
+                    f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
+                )
+        checks = (*friction_at_rest(both.value, known.initial.gear, name), whole)
+        return FileResult(name, file, "breakaway of each ramp", estimates, tuple(remarks), checks), after
+
+
+def _remarks(found: BreakawayTorque, ramps: int) -> Iterator[str]:
+    yield f"{ramps} {'ramp of torque breaks' if ramps == 1 else 'ramps of torque break'} it away"
+    for each, way in ((found.forward, "forward"), (found.reverse, "in reverse")):
+        if each is None:
+            yield f"{way}: no ramp went that way"
+        else:
+            scatter = f"± {each.sigma:.2g} N·m" if np.isfinite(each.sigma) else "N·m, of one ramp"
+            yield f"{way}: {each.value:.4g} {scatter}"
+    if found.slope is not None:
+        yield f"for each decade of the ramps' rate it changes by {found.slope.value:.2g} ± {found.slope.sigma:.1g} N·m"
+
+
+def _mean(sides: list[Estimate]) -> Estimate:
+    """Return the mean of both directions; if they differ by more than chance, half the difference adds to its uncertainty."""
+    values, sigmas = np.array([each.value for each in sides]), np.array([each.sigma for each in sides])
+    value, sigma = float(values.mean()), float(np.linalg.norm(sigmas)) / len(sides)
+    half = 0.5 * float(np.ptp(values))
+    if 2.0 * half > SIGNIFICANCE_SIGMA * np.linalg.norm(sigmas):
+        sigma = float(np.hypot(sigma, half))
+    return replace(sides[0], path="breakaway", value=value, sigma=sigma)
+
+
+def _ramps(time: Array, angle: Array, effort: Array) -> bool:
+    """True if the torque rises while the shaft rests, most of the time under load."""
+    if len(time) < MIN_ROWS or not np.isfinite(time + angle + effort).all():
+        return False
+    apart = max(len(time) // MOTIONS, 1)
+    for row in jumps(angle, time):
+        angle = np.concatenate([angle[:row], angle[row:] - (angle[row] - angle[row - 1])])
+    moved, size = np.abs(angle[apart:] - angle[:-apart]), np.abs(effort[apart:])
+    loaded, resting = size > MIN_LOAD * size.max(), moved <= MAX_SPEED_AT_REST * moved.max()
+    if not moved.max() > 0.0:
+        return False
+    ramps = [size[rows] for rows in runs_of(loaded & resting, MIN_ROWS_OF_RAMP)]
+    rising = [
+        len(ramp) for ramp in ramps if np.ptp(ramp) > 0.0 and np.corrcoef(np.arange(len(ramp)), ramp)[0, 1] > MIN_CORRELATION
+    ]
+    return sum(rising) > MIN_TIME_AT_REST * float(loaded.sum())

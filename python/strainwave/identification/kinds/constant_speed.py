@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.analysis.branches import turning_points
 from strainwave.identification.candidates.plain import sliding_squares
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.kinds import constant_speed_runs
@@ -11,15 +15,22 @@ from strainwave.identification.kinds.constant_speed_runs import Run, run_of
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, effort_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles, channels, measured
+from strainwave.identification.reading.sides import UndecidedError, pair
 from strainwave.identification.readings import MAX_UNEXPLAINED
 from strainwave.identification.results.determined import MIN_SPEEDS
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.ratio import with_ratio
 from strainwave.messages import listed
+
+Array = NDArray[np.float64]
+
+MAX_DEVIATION = 0.05  # from the usual speed, of a record at one speed
+SPEED_QUANTILE = 0.95  # of its rows: the others are its beginning and end
+MIN_ROWS = 20  # of a record at one speed: fewer are a table
 
 
 class ConstantSpeed(Kind):
@@ -28,8 +39,37 @@ class ConstantSpeed(Kind):
     time = "used"
     section = "Files at constant speed"
 
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True for a torque or current alone, beside an angle, or beside one speed.
+
+        Raises:
+            UndecidedError: an angle goes to and fro beside a current, as before it slides or in a log
+        """
+        efforts, angles, speeds = (measured(columns, *each) for each in (("torque", "current"), ("angle",), ("speed",)))
+        if efforts and angles and not measured(columns, "torque") and turning_points(angles[0].si):
+            raise UndecidedError(
+                f"{pair(angles[0], efforts[0])} go to and fro without time: friction before it slides, with "
+                "--kind presliding, or samples of a log if their rate is known, with --constant rate=HZ"
+            )
+        return bool(efforts) and (bool(angles) or not speeds or _is_one_speed(speeds[0].si))
+
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return effort_roles(columns, mapping)
+        quantities = dict.fromkeys(column.channel.quantity for column in columns if column.channel.measured)
+        found = channels({quantity: measured(columns, quantity) for quantity in quantities})
+        effort = listed(found[name].name for name in ("torque", "current") if name in found)
+        side = mapping.side or next((column.channel.side for column in found.values() if column.channel.side), None)
+        robot = next((column.name for column in found.values() if column.robot), None) if side is None else None
+        if "speed" in found:
+            why = f"at one speed, {found['speed'].si.mean():.4g} rad/s: a record at constant speed"
+        elif "angle" in found:
+            turns = np.ptp(found["angle"].si) / (2.0 * np.pi)
+            why = f"over {found['angle'].name}, which runs on for {turns:.3g} turns"
+        elif "speed" in mapping.constants:
+            why = f"at {mapping.constants['speed']:.4g} rad/s, as was given: a record at constant speed"
+        else:
+            why = "and nothing that moves: the output was locked, or the speed was constant and is not stated"
+        why_side = (f"{robot} is what robots call a channel of a joint: it is taken to be at the output",) if robot else ()
+        return ColumnRoles(self.name, found, "output" if robot else side, (f"it has {effort} {why}", *why_side))
 
     def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
         """True also for logs at constant speed, but for one of few speeds whose torque changes as that of a log.
@@ -71,6 +111,12 @@ class ConstantSpeed(Kind):
         except (ValueError, FloatingPointError) as error:
             return (FileResult("friction over the angle", refused=str(error)),), known
         return ((), known) if found is None else ((found[0],), found[1])
+
+
+def _is_one_speed(speed: Array) -> bool:
+    """True if the speed of many rows is the same but for their beginning and end."""
+    usual = np.median(speed)
+    return len(speed) > MIN_ROWS and bool(np.quantile(abs(speed - usual), SPEED_QUANTILE) < MAX_DEVIATION * abs(usual))
 
 
 def _runs(files: Sequence[Recognised], known: GearSoFar) -> list[Run]:

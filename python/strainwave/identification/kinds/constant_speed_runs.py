@@ -17,6 +17,7 @@ from strainwave.identification.checks.sizes import opposes_motion
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
+from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.names import Side
@@ -289,7 +290,7 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, G
     found = fit_position(recordings)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
-    left = float(np.sqrt(np.mean(found.residual**2) / np.mean(found.friction**2)))
+    left = rms(found.residual) / rms(found.friction)
     whole = share_left({"friction over the angle": (left, MAX_SHARE_OF_TORQUE)}, listed(names))
     estimates = only_if_explained(_estimates(found, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
@@ -349,8 +350,7 @@ def _estimates(found: PositionFit, uncertain: float, *, measured: bool) -> Itera
 def _of_position(found: PositionFit, count: int) -> Iterator[str]:
     if count > 1:
         yield f"{count} runs are fitted together: their angles must count from one zero"
-    left = float(np.sqrt(np.mean(found.residual**2)))
-    yield f"the law leaves {left:.2g} N·m of {float(np.mean(np.abs(found.friction))):.3g} N·m"
+    yield f"the law leaves {rms(found.residual):.2g} N·m of {float(np.mean(np.abs(found.friction))):.3g} N·m"
     none = [order for order in range(1, len(found.law.cosine) + 1) if order not in _waves(found)]
     if none:
         bound = SIGNIFICANCE_SIGMA * max(each.sigma for each in found.estimates if "[" in each.path)

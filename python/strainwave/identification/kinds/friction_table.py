@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.identification.candidates.friction import FrictionCandidate, fit_friction, ranking
 from strainwave.identification.candidates.steady_shapes import is_loaded
 from strainwave.identification.checks.sizes import (
@@ -24,12 +25,15 @@ from strainwave.identification.checks.unexplained import explained
 from strainwave.identification.experiments.friction_table import BESIDE, FrictionTable, with_load
 from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.fitting.influence import influence
+from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, friction_roles
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
+from strainwave.identification.reading.sides import UndecidedError, pair, side_of_table
 from strainwave.identification.results.changes import changes_of, friction_directions, slopes_by_numbers
 from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.determined import (
@@ -44,8 +48,13 @@ from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import Fitted
 from strainwave.identification.results.prediction import Prediction, judged, model_error
+from strainwave.messages import as_option
 
 Array = NDArray[np.float64]
+MAX_ROWS = 500  # of a table that was measured point by point
+MIN_ROWS = 4  # speeds of a table
+MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
+SPEEDS = ("rad/s", "rpm", "rev/s")  # of tables of friction
 UNITS = {"speed": "rad/s", "torque": "N.m"}
 MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
 
@@ -53,8 +62,41 @@ MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from wh
 class SteadyFriction(Kind):
     """Speed and torque of steady motion, a row for each speed."""
 
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True for speeds beside a torque or current.
+
+        Raises:
+            UndecidedError: these may be samples of a log
+        """
+        if not (speeds := measured(columns, "speed")) or not measured(columns, "torque", "current"):
+            return False
+        if (rows := len(speeds[0].si)) > MAX_ROWS and len(stretches(speeds[0].si)) < MIN_ROWS:
+            raise UndecidedError(
+                f"it has {rows} rows of speed and torque without time: samples of a log if their rate is known, with "
+                "--constant rate=HZ, or a table of friction, with --kind friction"
+            )
+        return True
+
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return friction_roles(columns, mapping)
+        speed = needed(columns, "speed", self.title)
+        _check_speed_unit(speed)
+        columns, load, loaded = _with_load(columns, speed)
+        effort, torque = needed_effort(columns, self.title)
+        side, why_side = side_of_table(speed, torque, mapping.side)
+        found = {"speed": speed, effort: torque, **load, **first(columns, "temperature")}
+        rows, remarks = len(speed.si), tuple[str, ...]()
+        order = f", {rows} rows in {'no order of time' if (np.diff(speed.si) < 0.0).any() else 'the order of speed'}"
+        if rows > MAX_ROWS:
+            if not (parts := stretches(speed.si)):
+                none = f"none of its {rows} rows belongs to a stretch at one speed"
+                raise UndecidedError(f"{none}: give a row for each speed, or its time, as a log")
+            steady = sum(part.stop - part.start for part in parts)
+            remarks = (f"{steady} of its {rows} rows are steady; the means of {len(parts)} stretches at one speed are taken",)
+            means = {name: np.array([column.si[part].mean() for part in parts]) for name, column in found.items()}
+            found = {name: replace(column, si=means[name]) for name, column in found.items()}
+            order = " at one speed after another"
+        why = f"its columns are {pair(speed, torque)}{order}: {self.title}"
+        return ColumnRoles(self.name, found, side, (why, why_side, *loaded), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the laws of steady friction that a table may show."""
@@ -71,8 +113,8 @@ class SteadyFriction(Kind):
         changes, explained = changes_of(left, directions, slopes, covariance, model_error(gear_set, "torque"))
         curves = {"speed": table.speed, "torque": table.torque, "predicted": table.torque - left, "residual": left}
         found = Prediction(
-            file.path.name, gear_set.name, file.kind, "torque", "N.m", _rms(left), float(np.std(table.torque)),
-            samples=len(left), changes=changes, error_with_changes=_rms(left - explained),
+            file.path.name, gear_set.name, file.kind, "torque", "N.m", rms(left), float(np.std(table.torque)),
+            samples=len(left), changes=changes, error_with_changes=rms(left - explained),
             curves=Recording(curves, dict.fromkeys(curves, "N.m") | {"speed": "rad/s"}), remarks=(*file.remarks, *remarks),
         )  # fmt: skip
         return judged(found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes, covariance, slopes))))
@@ -90,6 +132,57 @@ class SteadyFriction(Kind):
             )
             for line, each in zip(ranking(found), found, strict=True)
         )  # fmt: skip
+
+
+# ---- Columns ----------------------------------------------------------------------------------------------------------
+
+
+def _check_speed_unit(speed: Column) -> None:
+    """Ask for the unit of the speeds of a table, which friction alone does not determine; robots have radians.
+
+    Raises:
+        UndecidedError: no unit is stated
+    """
+    if speed.sure or speed.robot:
+        return
+    fastest = float(np.abs(speed.raw[np.isfinite(speed.raw)]).max(initial=0.0))
+    ways = [f"{as_option('unit', speed.name, each)} ({convert(fastest, each, 'rpm'):.0f} 1/min at most)" for each in SPEEDS]
+    question = f"the unit of {speed.name} is not stated, and a table of friction does not determine it; give it, with "
+    answer = FileMapping(units={speed.name: SPEEDS[0]})
+    raise UndecidedError(question + " or ".join(ways), (), as_option("unit", speed.name, SPEEDS[0]), answer)
+
+
+def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:
+    """Return the columns without the torque that loads the gear, this torque by its name, and what determines it.
+
+    It is `output_torque` if the other torque drives it too, as on a dynamometer, and `load_torque` beside a torque that is
+    friction alone.
+    """
+    named = [column for column in columns if column.channel.loading]
+    torques = measured(columns, "torque")
+    loads = named or [column for column in torques if column.channel.side == "output"]
+    own = [column for column in torques if column not in loads]
+    if len(loads) != 1 or len(own) != 1 or loads[0].by_user != own[0].by_user:
+        return columns, {}, ()
+    ((load,), (torque,)) = loads, own
+    name = "load_torque" if named or not _drives(speed.si, torque, load) else "output_torque"
+    what = "which loads the gear" if name == "load_torque" else f"which {torque.name} drives through the gear"
+    return [column for column in columns if column is not load], {name: load}, (f"{load.name} is a torque {what}",)
+
+
+@np.errstate(all="ignore")
+def _drives(speed: Array, torque: Column, load: Column) -> bool:
+    """True if a torque contains what drives a load, not only the friction under it."""
+    way = np.sign(speed)
+    terms = np.stack([way, speed, load.si, way * np.abs(load.si)], axis=1)
+    sizes = np.linalg.norm(terms, axis=0)
+    if not sizes.all() or np.linalg.matrix_rank(terms / sizes, tol=MIN_INDEPENDENCE) < len(sizes):
+        return torque.channel.side == "input"
+    _, _, driving, rubbing = np.linalg.lstsq(terms, torque.si, rcond=None)[0]
+    return bool(abs(driving) > abs(rubbing))
+
+
+# ---- Fit --------------------------------------------------------------------------------------------------------------
 
 
 def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
@@ -144,10 +237,6 @@ def _with_torque_and_load(file: Recognised, gear_set: GearSet) -> tuple[Recordin
 
 def _at(table: FrictionTable, gear: Any) -> Array:
     return np.asarray(table.predict(gear, [], np.zeros(0))[0][0])
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _table_of(recording: Recording, side: str | None, gear: Any) -> FrictionTable:

@@ -12,9 +12,9 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
@@ -66,7 +66,11 @@ class Kind(ABC):
         return KINDS[self.name].title
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
-        """True if columns are those of this kind without doubt; False leaves it to the other kinds, or to `--kind`."""
+        """True if columns are those of this kind; the kinds that `KINDS` has after it were asked before, and declined.
+
+        Raises:
+            UndecidedError: they may be those of several kinds
+        """
         return False
 
     @abstractmethod

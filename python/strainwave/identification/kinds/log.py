@@ -14,13 +14,16 @@ from strainwave.identification.kinds.along_motion import fit_log
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
+from strainwave.identification.kinds.shafts import put_sided
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, log_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
+from strainwave.messages import as_option
 
 
 class Log(Kind):
@@ -28,8 +31,29 @@ class Log(Kind):
 
     time = "needed"
 
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True for a motion in time, and what drove it."""
+        if not measured(columns, "time") and "rate" not in mapping.constants:
+            return False
+        drove = measured(columns, "torque", "current", "voltage") or any(column.channel.commanded for column in columns)
+        return bool(drove and measured(columns, "angle", "speed"))
+
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return log_roles(columns, mapping)
+        torques, currents, remarks = _efforts(columns)
+        _check_voltage(columns, [*torques, *currents])
+        found = channels(
+            {
+                "time": measured(columns, "time"),
+                "command": commanded(columns, "angle"),
+                "voltage": measured(columns, "voltage") or commanded(columns, "voltage"),
+                "current": currents,
+                "temperature": measured(columns, "temperature"),
+                "rigid_torque": [column for column in columns if column.channel.modelled],
+            }
+        )
+        sides, why = put_sided(found, columns, torques, mapping)
+        first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
+        return ColumnRoles(self.name, found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit friction, inertia and gravity along the motion, and with two encoders what lies between them."""
@@ -44,6 +68,31 @@ class Log(Kind):
     def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
         """Compare the torque along the motion with that of a saved drive."""
         return predict_log(file, gear_set)
+
+
+def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tuple[str, ...]]:
+    """Return torques and currents of a log: those that a person named, else those measured, else those commanded."""
+    torques, currents = measured(columns, "torque"), measured(columns, "current")
+    if any(column.by_user for column in (*torques, *currents)):
+        torques, currents = ([column for column in some if column.by_user] for some in (torques, currents))
+    if torques or currents:
+        return torques, currents, ()
+    torques, currents = commanded(columns, "torque"), commanded(columns, "current")
+    remarks = (f"{column.name} is a reference, and is taken for what the drive did" for column in (*torques, *currents))
+    return torques, currents, tuple(remarks)
+
+
+def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
+    """Ask for the letter u, which is a voltage beside motors, and any input of a robot beside joints.
+
+    Raises:
+        UndecidedError: a column has this letter and nothing else for a name
+    """
+    for column in measured(columns, "voltage"):
+        is_letter = len(column.name.rstrip("_0123456789[]")) == 1 and column.label.unit is None
+        if is_letter and not others and not column.by_user and any(each.robot for each in columns):
+            ways = " or ".join(as_option("column", name, column.name) for name in ("joint_torque", "current", "voltage"))
+            raise UndecidedError(f"{column.name} may be a torque, a current or a voltage; name it with {ways}")
 
 
 def _ranked(each: MotionCandidate, unit: str) -> Ranked:

@@ -17,6 +17,7 @@ from strainwave.identification.candidates.motion import bands
 from strainwave.identification.candidates.plain import fit_plain, held_out_rms, moving
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.changes import (
@@ -151,10 +152,10 @@ class _Compared(ComparedByFields):
         channel, unit, measured = log.effort, log.units[0], log.recorded + self.zero
         lines, about_lines = self._lines(residual, file)
         found = Prediction(
-            file.path.name, gear_set.name, file.kind, channel, unit, _rms(residual[rows]), float(np.std(measured[rows])),
+            file.path.name, gear_set.name, file.kind, channel, unit, rms(residual[rows]), float(np.std(measured[rows])),
             self._plain_error(), samples=int(rows.sum()),
             changes=tuple(each for each in changes if not each.name.startswith(OTHER)),
-            error_with_changes=_rms(np.where(resting, residual, residual - own)[rows]),
+            error_with_changes=rms(np.where(resting, residual, residual - own)[rows]),
             lines=lines,
             curves=Recording(
                 {"time": log.motion.time, channel: measured, "predicted": measured - residual, "residual": residual},
@@ -238,8 +239,4 @@ def _effect(name: str, effects: dict[str, Array]) -> Array:
 def _by_speed(left: Array, speed: Array) -> float:
     """Return the root mean square of what is left on average at each speed: another motion weighs it otherwise."""
     parts = np.array_split(left[np.argsort(speed, kind="stable")], SPEED_BINS)
-    return _rms(np.array([float(np.mean(part)) for part in parts if len(part)]))
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+    return rms(np.array([float(np.mean(part)) for part in parts if len(part)]))

@@ -16,10 +16,12 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import Influence, influence
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.kinds.shafts import put_sided
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, run_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import pictures_of_channels
 from strainwave.identification.results.file_result import FileResult
@@ -38,7 +40,19 @@ class RunFromRest(Kind):
     time = "needed"
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return run_roles(columns, mapping)
+        """Return the channel of each column; an encoder is that of the motor."""
+        found = channels(
+            {
+                "time": measured(columns, "time"),
+                "command": commanded(columns, "angle") or commanded(columns, "voltage"),
+                "current": measured(columns, "current"),
+            }
+        )
+        if "command" not in found:
+            raise UndecidedError(f"{self.title} needs its command; it has {names_of(columns)}")
+        _, why = put_sided(found, columns, [], mapping if mapping.side else replace(mapping, side="input"))
+        first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
+        return ColumnRoles(self.name, found, None, (first, *why))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit what no better file determines, by simulating the drive."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.torsion import Friction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
@@ -18,23 +19,69 @@ from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, torsion_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles, measured, needed
+from strainwave.identification.reading.sides import UndecidedError, pair
 from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import Fitted
 
+MIN_ROWS = 4  # of a loop or branch
+MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
+MAX_TWIST = 0.3  # rad of a gear at the output
+MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
+MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
 class Torsion(Kind):
     """Twist and torque at the output, or angle and torque of the input with the output locked."""
 
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True for a twist beside a torque, or for an angle beside one if it may be a twist: a shaft that turns on is none.
+
+        Raises:
+            UndecidedError: these may be samples of a log
+        """
+        angles, torques = measured(columns, "angle"), measured(columns, "torque")
+        if measured(columns, "twist") and torques:
+            return True
+        if not angles or not torques:
+            return False
+        column, angle, torque = angles[0], angles[0].si, torques[0].si
+        if np.ptp(angle) > MAX_TWIST and (column.channel.side == "output" or column.robot or mapping.side == "output"):
+            raise UndecidedError(
+                f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists: samples of a log whose rate is "
+                "needed, with --constant rate=HZ; or, if it is a torsion loop all the same, --kind torsion"
+            )
+        is_spring = torque.min() < 0.0 < torque.max() and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING
+        return bool(abs(angle[-1] - angle[0]) <= MIN_TURNING or turning_points(angle) or is_spring)
+
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return torsion_roles(columns, mapping)
+        torque = needed(columns, "torque", self.title)
+        twists = measured(columns, "twist")
+        angle = twists[0] if twists else needed(columns, "angle", self.title)
+        both, rows = pair(angle, torque), len(angle.si)
+        if rows < MIN_ROWS:
+            raise UndecidedError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
+        turns = len(turning_points(angle.si))
+        branch = "one branch of a torsion loop, which shows stiffness only"
+        shape = f"a torsion loop with {turns} reversals" if turns else branch
+        why = f"its columns are {both}, {rows} rows: {shape}"
+        side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twists else None)
+        if side == "input":
+            locked = "the output was locked, and the friction of the input is in the loop"
+            of_input = f"angle and torque are those of the input: {locked}"
+            return ColumnRoles(self.name, {"input_angle": angle, "input_torque": torque}, side, (why, of_input))
+        of_side = ["twist and torque are those of the output"]
+        if side is None:
+            of_side.append(_why_output(angle, torque))
+        counted = f"{torque.name} is a torque of the motor, counted at the output: the friction of the input is in the loop"
+        remarks = (counted,) if "motor" in torque.name.casefold() else ()
+        return ColumnRoles(self.name, {"twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
         """Return its turn: loops at the output go first, as they separate hysteresis from friction."""
@@ -79,6 +126,22 @@ class Torsion(Kind):
             Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
             for each in found
         )
+
+
+def _why_output(angle: Column, torque: Column) -> str:
+    """Return why a loop is one of the output, if its columns contain no side.
+
+    Raises:
+        UndecidedError: it may be one of the input
+    """
+    stiffness = np.ptp(torque.si) / max(float(np.ptp(angle.si)), 1e-300)
+    if stiffness > MIN_STIFFNESS_AT_OUTPUT:
+        return f"its stiffness of {stiffness:.3g} N.m/rad is that of an output; at an input it is far smaller"
+    raise UndecidedError(
+        f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
+        "with the output locked, --side output if the output was loaded with the input locked; or, if the motor was moved "
+        "to and fro at rest, --kind presliding"
+    )
 
 
 def _place(loop: TorsionLoop) -> str:

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles, encoder_roles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
+from strainwave.identification.reading.sides import UndecidedError, pair, sides_of_angles
 from strainwave.identification.results.curves import curves_of_orders
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -20,8 +21,18 @@ class TwoEncoders(Kind):
 
     time = "used"
 
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True for several angles without torque or current."""
+        return len(measured(columns, "angle")) > 1 and not measured(columns, "torque", "current")
+
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        return encoder_roles(columns, mapping)
+        angles = measured(columns, "angle")
+        if len(angles) != 2:
+            raise UndecidedError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
+        fast, slow, why_side = sides_of_angles(angles)
+        why = f"its columns are {pair(*angles)}, and no torque or current: {self.title}"
+        found = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}
+        return ColumnRoles(self.name, found, None, tuple(filter(None, (why, why_side))))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""

@@ -12,22 +12,22 @@ from numpy.typing import NDArray
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
 from strainwave.files.tables import OpenTable
-from strainwave.identification.kinds import kind_named
+from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints
-from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
 from strainwave.identification.reading.name_of_file import joint_in, speed_in
 from strainwave.identification.reading.names import Side, meaning, which_of, words_of
+from strainwave.identification.reading.roles import ColumnRoles, names_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
 from strainwave.identification.reading.source import MeasurementFile, beside, measurement_file
 from strainwave.identification.reading.values import read
-from strainwave.messages import listed, one_line, quoted
+from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
@@ -166,7 +166,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         remarks.append(f"its columns name no joint: they are taken for those of joint {given.joint}")
     given, by_name = _with_speed_of_name(columns, given, source.path)
     try:
-        found = kind_of([column for column in columns if column.own], given)
+        found = _roles([column for column in columns if column.own], given)
     except UndecidedError as undecided:
         left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns))))
         is_complete = undecided.ways or undecided.options
@@ -203,6 +203,23 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         alternatives=_other_units(columns, found.columns, given),
         is_of_robot=any(column.robot and column.channel.quantity in ("angle", "speed") for column in found.columns.values()),
         units_given=tuple(name for name, each in found.columns.items() if each.sure and each.unit and not each.label.unit),
+    )
+
+
+def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
+    """Return the kind of a set of columns, and the channel of each; the kinds that need most are asked first.
+
+    Raises:
+        UndecidedError: several kinds or channels are possible, or none
+    """
+    for name in reversed(KINDS) if given.kind is None else (given.kind,):
+        kind = kind_named(name)
+        if given.kind is not None or kind.recognises(columns, given):
+            return kind.roles(columns, given)
+    raise UndecidedError(
+        f"it has {names_of(columns)}, which is no measurement that is known: friction needs speed and torque; torsion twist "
+        "and torque, or input_angle and input_torque; a log time, a motion, and a current, torque, voltage or command; "
+        f"encoders two angles. If it has more, name it, as with {as_option('column', 'torque', 'NAME')}"
     )
 
 

@@ -77,6 +77,10 @@ class FileEstimate:
         """Return the same with more of its standard deviation in common with other files."""
         return replace(self, sigma=float(np.hypot(self.sigma, common)), common=float(np.hypot(self.common, common)))
 
+    def unless_uncertain(self) -> FileEstimate:
+        """Return the same, not identified if its standard deviation is too large."""
+        return replace(self, why=self.why or (TOO_UNCERTAIN if is_uncertain(self.value, self.sigma) else ""))
+
     def in_current(self) -> FileEstimate:
         """Return the same estimate in A, for a torque constant that is not known."""
         if not self.is_of_torque:

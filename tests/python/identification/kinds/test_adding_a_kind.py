@@ -16,9 +16,9 @@ from strainwave.identification.kinds import Listed
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.rank import rank, table_of
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kinds import ColumnRoles
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.roles import ColumnRoles
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.report.identify import identify_report
