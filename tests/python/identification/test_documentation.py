@@ -40,7 +40,7 @@ def percent(share: float) -> str:
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
         f"with {percent(comparisons.REPEATABILITY['friction_input'])} of friction and hysteresis and "
         f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers from run to run",
-        f"the log shows another one, by more than {percent(along_motion.UNLIKE)}",
+        f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )
 def test_a_threshold_is_stated_as_it_is(statement: str) -> None:

@@ -1,4 +1,7 @@
-"""The kinds of measurement, one line each, in the order of their fits: a file comes after those that it rests on."""
+"""The kinds of measurement, one line each, in the order of their fits: a file comes after those that it rests on.
+
+Columns are recognised in the reverse order: the kinds that are fitted last need most columns, and are asked first.
+"""
 
 from __future__ import annotations
 

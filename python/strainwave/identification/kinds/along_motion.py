@@ -17,47 +17,25 @@ from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import MotionLog
-from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.kinds.between_encoders import Between, between_encoders
+from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
-from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
 
-UNLIKE = 0.1  # relative: two inertias that differ by more are not one
+MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
-EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as that
+RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
-def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    """Return the estimates of a log along its motion, and over temperature if it warms up; and the gear with them."""
-    warm, name = warmed(file), file.path.name
-    try:
-        finding, after = _along_motion(file, known)
-    except ValueError as error:
-        if warm is None:
-            raise
-        unused = f"not used along its motion: {error}"
-        finding, after = FileResult(name, file, "friction over the temperature", remarks=(*file.remarks, unused)), known
-        finding = replace(finding, pictures=(warm.picture,))
-    if warm is None:
-        return finding, after
-    after, said = warm.known(after, name)
-    return replace(
-        finding,
-        estimates=(*finding.estimates, *warm.estimates),
-        remarks=(*warm.remarks, *said, *finding.remarks),
-        checks=(*finding.checks, warm.check),
-    ), after
-
-
-def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+    """Return the estimates of a log along its motion, and between its encoders; and the gear with them."""
     taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     models = _models(taken)
@@ -67,18 +45,18 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     of_model = [*_delay(best), *_other_laws(best, others, in_current)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
-    told, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
+    estimates, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
     if not in_current:
-        known = _with_friction(known, best, told, file.path.name)
-    between = Between()
+        known = _with_friction(known, best, estimates, file.path.name)
+    between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
         errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
-        between = between_encoders(taken, best, errors, known, file.path.name)
+        between, known = between_encoders(taken, best, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         surer = {each.path for each in between.estimates}
-        told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
+        estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
         remarks += [*errors.remarks, *between.remarks]
-        known = with_error(between.known(known, file.path.name), errors, file.path.name)
+        known = with_error(known, errors, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
@@ -90,7 +68,7 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(
-            name, file, best.name, tuple(told), every, tuple(checks), pictures=pictures, held_out=held_out,
+            name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
             fit=best.fit, bend=best.bend,
         ),
         known,
@@ -110,7 +88,7 @@ def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:
 
 def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
     """Return the models of a log, best first."""
-    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
+    priors = {path: (value, RELATIVE_SIGMA_OF_GIVEN * value) for path, value in taken.given.items()}
     return fit_motion([log] if taken.in_current else bands(log, taken.drive), taken.drive, priors=priors)
 
 
@@ -144,11 +122,11 @@ def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_cur
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
     """Return the share of each given regressor."""
     shares = {each.path.removeprefix("share of "): each for each in found.estimates}
-    said = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
-    return [f"shares of the regressors in the torque at the output: {listed(said)}"] if said else []
+    each = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
+    return [f"shares of the regressors in the torque at the output: {listed(each)}"] if each else []
 
 
-def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileEstimate], name: str) -> GearSoFar:
+def _with_friction(known: GearSoFar, best: MotionCandidate, estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
     """Return the set with the friction of a log, whole, if no earlier file determines friction.
 
     The loss under load was fitted beside this Coulomb torque: with that of another file it would be a friction of neither.
@@ -157,7 +135,7 @@ def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileE
     laws = {part: getattr(gear, part) for part in FRICTION if getattr(gear, part) != getattr(before, part)}
     if known.determined & set(FRICTION) or not laws:
         return known
-    return known.with_parts(laws, {each.path: each.sigma for each in told}, name)
+    return known.with_parts(laws, {each.path: each.sigma for each in estimates}, name)
 
 
 def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
@@ -171,13 +149,13 @@ def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
 
 def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     """Yield the check that a given inertia of the load agrees with the log."""
-    if "load.inertia" not in taken.said:
+    if "load.inertia" not in taken.given:
         return
     drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
-    given = drive.motor.inertia + drive.gear.input_inertia + taken.said["load.inertia"] / drive.gear.kinematics.ratio**2
+    given = drive.motor.inertia + drive.gear.input_inertia + taken.given["load.inertia"] / drive.gear.kinematics.ratio**2
     off = abs(shown - given) / given
     yield Check(
-        "given inertia of the load", name, off, UNLIKE, "1", off > UNLIKE,
+        "given inertia of the load", name, off, MAX_OFF_INERTIA, "1", off > MAX_OFF_INERTIA,
         f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
         f"{given:.3g} with motor and gear",
         "see whether load_inertia, motor_inertia, ratio and torque constant are right",
@@ -185,7 +163,7 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
 
 
 def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[FileEstimate]:
-    """The numbers of a log; each as uncertain as the torque constant, besides, and inertia as that of the rotor."""
+    """Yield the estimates of a log; each is as uncertain as the torque constant too, and inertia as that of the rotor."""
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
     beside = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
@@ -195,23 +173,19 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     spread, apart = spread_by_blocks(best), spread_by_models(best, others)
+    gravity = next(((each.value, each.sigma) for each in best.fit.estimates if each.path == "load.gravity_torque"), (0.0, 0.0))
     for estimate in best.fit.estimates:
-        if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.said:
+        if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
         law = encoder if estimate.path == "load.gravity_phase" else ""
         sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
-        told = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
+        found = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
         besides = beside.get(estimate.path, 0.0)
-        told = told.resting_on(taken.relative, besides + induced.get(estimate.path, 0.0))
-        told = told.resting_on(taken.of_resistance, besides)
-        told = told.sharing(taken.rotor) if estimate.path == "load.inertia" else told
-        told = replace(told, why=_untold(estimate, told.sigma, best))
-        yield told.in_current() if in_current else told
-
-
-def _untold(estimate: Estimate, sigma: float, best: MotionCandidate) -> str:
-    """Return the reason why a log does not determine a number; empty if it does."""
-    if estimate.path != "load.gravity_phase":
-        return "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) else ""
-    gravity = next(each for each in best.fit.estimates if each.path == "load.gravity_torque")
-    return "the log determines no gravity" if gravity.sigma > 0.5 * abs(gravity.value) or sigma > 0.5 else ""
+        found = found.resting_on(taken.relative, besides + induced.get(estimate.path, 0.0))
+        found = found.resting_on(taken.of_resistance, besides)
+        found = found.sharing(taken.rotor) if estimate.path == "load.inertia" else found
+        if not found.is_phase:
+            found = found.unless_uncertain()
+        elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
+            found = replace(found, why="the log determines no gravity")
+        yield found.in_current() if in_current else found

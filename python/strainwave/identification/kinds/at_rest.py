@@ -33,7 +33,7 @@ class AtRest(Kind):
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         angle, (effort, force) = needed(columns, "angle", self.title), needed_effort(columns, self.title)
-        side = mapping.side or angle.channel.side or ("output" if angle.robot else "input")
+        side = mapping.side or ("output" if angle.at_joint else "input")
         time = {} if self.time == "none" else first(columns, "time")
         why = f"{self.motion(angle, force)}: {self.title}"
         return ColumnRoles(self.name, {"angle": angle, effort: force, **time}, side, (why,))
@@ -49,7 +49,7 @@ def goes_to_and_fro(columns: Sequence[Column], mapping: FileMapping) -> bool:
         return False
     angle, _ = pair
     is_geared = mapping.constants.get("ratio", np.inf) >= MIN_RATIO  # without a gear, motion of the output twists none
-    at_output = is_geared and (angle.robot or "output" in (angle.channel.side, mapping.side))
+    at_output = is_geared and (angle.at_joint or mapping.side == "output")
     is_known = mapping.side is not None or angle.channel.side is not None or not is_geared
     return is_known and not at_output and bool(np.ptp(angle.si) <= MAX_PRESLIDING) and len(turning_points(angle.si)) >= 2
 

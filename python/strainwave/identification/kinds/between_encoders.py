@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, stiffness, structure
-from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
@@ -22,61 +21,23 @@ from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.prepared_log import PreparedLog
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
-from strainwave.identification.results.file_result import FileEstimate, Picture
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of
 from strainwave.orders.two_encoders import TransmissionError
-from strainwave.parameters import gear_numbers
 
 Array = NDArray[np.float64]
 
-LATE = 2.5  # standard deviations, beyond which a delay is there
-SURER = 3.0  # times as sure as gravity an inertia must be known to be what torques count from
-UNTOLD = 0.5  # of its value: a number whose standard deviation exceeds that is not told
-HANGS_TOGETHER = 3.0  # samples: what is left of less is noise (assumed)
+SIGNIFICANT_DELAY_SIGMA = 2.5  # standard deviations, beyond which a delay is there
+MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the inertia: beyond, torques count from inertia
+MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
+PARTS = ("stiffness", "hysteresis", "damping", "kinematic_error")  # of the gear; the last one also from torques in A
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
-
-
-@dataclass(frozen=True)
-class Between:
-    """What is told of the gear between two encoders.
-
-    Attributes:
-        estimates: its numbers; they take the place of those that the log has told of the same paths
-        remarks: what to know of them
-        pictures: the angle between the shafts as measured and as modelled; none if nothing was fitted
-        found: the model; None likewise
-        checks: of the numbers that it determines in a second way
-        parts: those of the gear that it tells in units of a gear; none but the kinematic error where torques are in A
-    """
-
-    estimates: tuple[FileEstimate, ...] = ()
-    remarks: tuple[str, ...] = ()
-    pictures: tuple[Picture, ...] = ()
-    found: ElasticCandidate | None = None
-    parts: tuple[str, ...] = ("stiffness", "hysteresis", "damping", "kinematic_error")
-    checks: tuple[Check, ...] = ()
-
-    def known(self, known: GearSoFar, name: str) -> GearSoFar:
-        """Return what is known after it: parts of the gear that no earlier file has determined."""
-        if self.found is None:
-            return known
-        gear, before = self.found.drive.gear, known.gear_set.gear
-        new = {part: getattr(gear, part) for part in self.parts if part not in known.determined}
-        if "stiffness" in new:
-            new["stiffness"] = _spring(gear.stiffness, before.stiffness, self.found.reach)
-        sigmas = {each.path: each.sigma for each in self.estimates if not each.why}
-        sigmas |= {
-            each.path: float(sigma)
-            for each, sigma in zip(self.found.fit.estimates, self.found.sigmas, strict=True)
-            if is_of(each.path, {"kinematic_error"})
-        }
-        return _with_sources_kept(known.with_parts(new, sigmas, name), known, new, sigmas, name)
 
 
 def between_encoders(
     taken: PreparedLog, best: MotionCandidate, errors: TransmissionError, known: GearSoFar, source: str
-) -> Between:
-    """Spring, hysteresis, damping and kinematic error of the gear in a log of both encoders, or why they are not told.
+) -> tuple[FileResult, GearSoFar]:
+    """Return spring, hysteresis, damping and kinematic error by a log of both encoders, or why not; and the gear with them.
 
     Args:
         taken: the log
@@ -92,13 +53,15 @@ def between_encoders(
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
         found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
     except (ValueError, FloatingPointError) as error:
-        return Between(remarks=(f"stiffness and hysteresis are not determined: {error}",))
-    told = tuple(_told(found, scale, known, taken.in_current))
-    remarks = tuple(_remarks(found, scale, taken))
-    picture = Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name)
-    checks = tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source))
-    between = Between(told, remarks, (picture,), found, checks=checks)
-    return replace(between, parts=("kinematic_error",)) if taken.in_current else between
+        return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
+    result = FileResult(
+        source, model=found.name, estimates=tuple(_estimates(found, scale, known, taken.in_current)),
+        remarks=tuple(_remarks(found, scale, taken)),
+        checks=tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source)),
+        pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),),
+    )  # fmt: skip
+    parts = PARTS[-1:] if taken.in_current else PARTS
+    return result, _with_parts(known, found, [part for part in parts if part not in known.determined], result)
 
 
 def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
@@ -117,7 +80,7 @@ def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
 
 @dataclass(frozen=True)
 class _Scale:
-    """The torque that is known, from which those of the output stage count.
+    """A torque that is known, from which those of the output stage count.
 
     Attributes:
         path: `load.gravity_torque` or `load.inertia`
@@ -136,12 +99,12 @@ class _Scale:
 
 
 def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) -> _Scale:
-    """What torques count from: gravity, which slow motion tells whatever the motor's inertia is, or the load's inertia.
+    """Return what torques count from: gravity, which slow motion determines without the motor's inertia, or the load's inertia.
 
     That of the load is what is left beside the rotor's, so that a small one may be known badly.
 
     Raises:
-        ValueError: the log tells neither
+        ValueError: the log determines neither
     """
     gravity, inertia = (each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY, INERTIA))
     by_gravity = [] if gravity is None else [_Scale(GRAVITY, gravity.sigma / gravity.value, taken.relative)]
@@ -150,8 +113,8 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
         rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
         common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
         by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
-    told = [each for each in (*by_gravity, *by_inertia) if each.relative < UNTOLD]
-    if not told:
+    known = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
+    if not known:
         missing = "is not known: give --constant motor_inertia=…"
         if taken.motor_known:
             missing = f"is not known well enough beside that of the load: ± {taken.rotor:.2g} kg·m² at the output"
@@ -159,28 +122,28 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
             f"no torque at the output is known to count from: the log determines no gravity, and the inertia of the "
             f"motor {missing}"
         )
-    return told[0] if len(told) == 1 or told[0].relative < SURER * told[1].relative else told[1]
+    return known[0] if len(known) == 1 or known[0].relative < MAX_RELATIVE_TO_INERTIA * known[1].relative else known[1]
 
 
 def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Recording:
-    """The recording with the output counted as the ratio of the drive has it."""
+    """Return the recording with the output counted as the ratio of the drive has it."""
     if errors.ratio.used * drive.gear.kinematics.ratio > 0.0:
         return recording
     return recording.with_column("output_angle", -recording["output_angle"], recording.unit("output_angle"))
 
 
 def _law(errors: TransmissionError, drive: Drive) -> Any:
-    """The kinematic error as two encoders show it; with the output counted the other way round it has the other sign."""
+    """Return the kinematic error of two encoders; with the output counted the other way round it has the other sign."""
     law = errors.law
     turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi
     return law.replace(phase=[phase + turned for phase in law.phase])
 
 
-# ---- What is told ----------------------------------------------------------------------------------------------------
+# ---- Estimates and remarks -------------------------------------------------------------------------------------------
 
 
-def _told(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_current: bool) -> Iterator[FileEstimate]:
-    """The numbers of the gear, each as uncertain as the torque that all count from."""
+def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_current: bool) -> Iterator[FileEstimate]:
+    """Yield the numbers of the gear, each as uncertain as the torque that all count from."""
     gear: Any = found.drive.gear
     law, orders = known.gear_set.gear.stiffness, gear.kinematic_error.order
     nuisances = {each.name for each in found.fit.experiment.nuisances}
@@ -188,16 +151,15 @@ def _told(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_current: 
         if estimate.path in nuisances or estimate.path.startswith(("gear.kinematic_error.phase", "load.gravity")):
             continue
         path = _path(estimate.path, orders, found, law)
-        told = FileEstimate(path, estimate.unit, estimate.value, float(sigma), _law_of(path, found))
-        if told.is_of_torque:
-            told = replace(told, sigma=float(np.hypot(sigma, scale.own * told.value))).resting_on(scale.common)
-        why = "its standard deviation exceeds half the value" if told.sigma > UNTOLD * abs(told.value) else ""
-        told = replace(told, why=why)
-        yield told.in_current() if in_current else told
+        own = FileEstimate(path, estimate.unit, estimate.value, float(sigma), _law_of(path, found))
+        if own.is_of_torque:
+            own = replace(own, sigma=float(np.hypot(sigma, scale.own * own.value))).resting_on(scale.common)
+        own = own.unless_uncertain()
+        yield own.in_current() if in_current else own
 
 
 def _path(path: str, orders: Any, found: ElasticCandidate, law: Any) -> str:
-    """Where a number is compared with those of other files."""
+    """Return the path by which a number is compared with those of other files."""
     if path.startswith("gear.kinematic_error.amplitude["):
         return f"gear.kinematic_error.amplitude of order {orders[int(path.partition('[')[2][:-1])]:g}"
     if path == "gear.stiffness.k" and _first_segment(found, law):
@@ -206,7 +168,7 @@ def _path(path: str, orders: Any, found: ElasticCandidate, law: Any) -> str:
 
 
 def _first_segment(found: ElasticCandidate, law: Any) -> bool:
-    """Whether a linear spring is the first of three segments, of which the log has reached no other."""
+    """True if a linear spring is the first of three segments, of which the log has reached no other."""
     linear = isinstance(found.drive.gear.stiffness, stiffness.Linear)
     return linear and isinstance(law, stiffness.ThreeSegment) and found.reach < law.t1
 
@@ -246,7 +208,7 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
         f"the {of}"
     )
     together = correlation_length(found.fit.residuals[0])
-    if together > HANGS_TOGETHER:
+    if together > MAX_CORRELATION_LENGTH:
         yield (
             f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
             "that the model lacks, and its numbers may be off by more than they say"
@@ -258,18 +220,31 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
         )
         return
     delay, sigma = estimates[DELAY]
-    if abs(delay.value) > LATE * sigma:
+    if abs(delay.value) > SIGNIFICANT_DELAY_SIGMA * sigma:
         yield (
             f"output_angle comes {1e3 * delay.value:.3g} ± {1e3 * sigma:.1g} ms behind input_angle; viscous friction at the "
             "output would look alike"
         )
 
 
-# ---- What is known after it ------------------------------------------------------------------------------------------
+# ---- The gear with them ----------------------------------------------------------------------------------------------
+
+
+def _with_parts(known: GearSoFar, found: ElasticCandidate, parts: Sequence[str], result: FileResult) -> GearSoFar:
+    """Return the gear with parts of what was found."""
+    gear = found.drive.gear
+    if "stiffness" in parts:
+        gear = gear.replace(stiffness=_spring(gear.stiffness, known.gear_set.gear.stiffness, found.reach))
+    of_error = (
+        FileEstimate(each.path, each.unit, each.value, float(sigma), "")
+        for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)
+        if is_of(each.path, {"kinematic_error"})
+    )
+    return known.with_fit(gear, parts, (*result.estimates, *of_error), result.name)
 
 
 def _spring(found: Any, before: Any, reach: float) -> Any:
-    """The spring that was found, with what lies beyond the torque of the log as it was before."""
+    """Return the spring that was found, with what lies beyond the torque of the log as it was before."""
     if not isinstance(before, stiffness.ThreeSegment):
         return found
     if isinstance(found, stiffness.Linear) and reach < before.t1:
@@ -277,16 +252,3 @@ def _spring(found: Any, before: Any, reach: float) -> Any:
     if isinstance(found, stiffness.ThreeSegment) and found.t2 > reach:
         return found.replace(k3=before.k3, t2=max(before.t2, reach))
     return found
-
-
-def _with_sources_kept(
-    after: GearSoFar, known: GearSoFar, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str
-) -> GearSoFar:
-    """The same, where numbers of the spring that the log does not reach have the source that they had, or are assumed."""
-    before = {path: value for path, (value, _) in gear_numbers(known.gear_set.gear).items()}
-    sources = dict(after.gear_set.sources)
-    for path, (value, _) in gear_numbers(after.gear_set.gear).items():
-        if path not in sigmas and is_of(path, {"stiffness"} & parts.keys()):
-            kept = before.get(path) == value and path in known.gear_set.sources
-            sources[path] = known.gear_set.sources[path] if kept else Entry(source=f"assumed beside what {name} determines")
-    return replace(after, gear_set=replace(after.gear_set, sources=sources))

@@ -37,7 +37,7 @@ Array = NDArray[np.float64]
 MIN_LOAD = 0.1  # of the largest torque
 MIN_TIME_AT_REST = 0.5  # of the time under load, while ramps rise
 MIN_CORRELATION = 0.9  # of a ramp with time
-MOTIONS = 500  # over which a record is divided
+PARTS_OF_RECORD = 500  # over which motion is counted
 MIN_ROWS, MIN_ROWS_OF_RAMP = 100, 10
 
 
@@ -115,7 +115,7 @@ def _ramps(time: Array, angle: Array, effort: Array) -> bool:
     """True if the torque rises while the shaft rests, most of the time under load."""
     if len(time) < MIN_ROWS or not np.isfinite(time + angle + effort).all():
         return False
-    apart = max(len(time) // MOTIONS, 1)
+    apart = max(len(time) // PARTS_OF_RECORD, 1)
     for row in jumps(angle, time):
         angle = np.concatenate([angle[:row], angle[row:] - (angle[row] - angle[row - 1])])
     moved, size = np.abs(angle[apart:] - angle[:-apart]), np.abs(effort[apart:])

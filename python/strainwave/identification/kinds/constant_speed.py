@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.identification.candidates.plain import sliding_squares
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.kinds import constant_speed_runs
-from strainwave.identification.kinds.constant_speed_runs import Run, run_of
+from strainwave.identification.kinds.constant_speed_runs import Run, Together, is_one_speed, run_of
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.reading.column import Column
@@ -26,10 +25,6 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.ratio import with_ratio
 from strainwave.messages import listed
 
-Array = NDArray[np.float64]
-
-MAX_DEVIATION = 0.05  # from the usual speed, of a record at one speed
-SPEED_QUANTILE = 0.95  # of its rows: the others are its beginning and end
 MIN_ROWS = 20  # of a record at one speed: fewer are a table
 
 
@@ -51,7 +46,7 @@ class ConstantSpeed(Kind):
                 f"{pair(angles[0], efforts[0])} go to and fro without time: friction before it slides, with "
                 "--kind presliding, or samples of a log if their rate is known, with --constant rate=HZ"
             )
-        return bool(efforts) and (bool(angles) or not speeds or _is_one_speed(speeds[0].si))
+        return bool(efforts) and (bool(angles) or not speeds or (len(speeds[0].si) > MIN_ROWS and is_one_speed(speeds[0].si)))
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         quantities = dict.fromkeys(column.channel.quantity for column in columns if column.channel.measured)
@@ -95,28 +90,21 @@ class ConstantSpeed(Kind):
 
     def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
         """Fit the friction table of the means of all files."""
-        runs = _runs(files, known)
-        if not runs:
-            return (), known
-        try:
-            table, after = constant_speed_runs.joined(runs, known)
-        except (ValueError, FloatingPointError) as error:
-            return (FileResult(constant_speed_runs.JOINED, refused=str(error)),), known
-        return (table,), after
+        return _or_refused(constant_speed_runs.JOINED, constant_speed_runs.joined, files, known)
 
     def fit_last(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
         """Fit friction over the angle of the input, around that which other files determine."""
-        try:
-            found = constant_speed_runs.over_the_angle(_runs(files, known), known)
-        except (ValueError, FloatingPointError) as error:
-            return (FileResult("friction over the angle", refused=str(error)),), known
-        return ((), known) if found is None else ((found[0],), found[1])
+        return _or_refused("friction over the angle", constant_speed_runs.over_the_angle, files, known)
 
 
-def _is_one_speed(speed: Array) -> bool:
-    """True if the speed of many rows is the same but for their beginning and end."""
-    usual = np.median(speed)
-    return len(speed) > MIN_ROWS and bool(np.quantile(abs(speed - usual), SPEED_QUANTILE) < MAX_DEVIATION * abs(usual))
+def _or_refused(
+    name: str, fit: Callable[[Sequence[Run], GearSoFar], Together], files: Sequence[Recognised], known: GearSoFar
+) -> Together:
+    """Return what the runs of files determine together, or a result of this name that is refused."""
+    try:
+        return fit(_runs(files, known), known)
+    except (ValueError, FloatingPointError) as error:
+        return (FileResult(name, refused=str(error)),), known
 
 
 def _runs(files: Sequence[Recognised], known: GearSoFar) -> list[Run]:

@@ -29,6 +29,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.messages import listed
 
 Array = NDArray[np.float64]
+Together = tuple[tuple[FileResult, ...], GearSoFar]  # the results of several files, and the gear with them
 
 MAX_CHANGE = 0.05  # of the median speed, by which the speed of a record at one speed varies
 MIN_SHARE_OF_ROWS = 0.95  # of a record at one speed, whose speed varies by no more
@@ -67,7 +68,7 @@ class Run:
         file: that it came from
         side: on which it was measured
         stretches: at constant speed
-        turning: angle and torque of the input, if it turns once or more at one speed; else None
+        turning: usual speed, angle and torque of the input, if it turns once or more at one speed; else None
         uncertain: relative standard deviation of the torque constant that the torques rest on [1]
         remarks: what was assumed
     """
@@ -99,7 +100,7 @@ def run_of(file: Recognised, known: GearSoFar) -> Run | None:
     load = file.constants.get("load_torque", 0.0)
     torque = torque - (load if side == "output" else load / known.gear_set.gear.kinematics.ratio)
     angle = _angle(file, side)
-    turning = _turning(angle, torque, parts[0]) if angle is not None and side == "input" and len(parts) == 1 else None
+    turning = _turning(speed, angle, torque, parts[0]) if angle is not None and side == "input" and len(parts) == 1 else None
     if angle is not None and side == "input":
         parts = [_whole_turns(angle, part) for part in parts]
     stretches = tuple(_stretches(file, speed, torque, angle, parts, ratio if side == "input" else 1.0))
@@ -133,12 +134,14 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
 
 def _in_time(recording: Recording, prefix: str) -> tuple[Array, list[slice]]:
     """Return the speed at each row, as measured or the mean of its stretch, and the rows of each stretch at constant speed."""
-    time, speed = recording.time, np.zeros(len(recording))
-    if measured := f"{prefix}speed" in recording:
-        speed = sensible(recording, f"{prefix}speed", "rad/s")
-    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    from scipy.integrate import cumulative_trapezoid
+
+    time, measured = recording.time, f"{prefix}speed" in recording
+    speed = sensible(recording, f"{prefix}speed", "rad/s") if measured else np.zeros(len(recording))
     if f"{prefix}angle" in recording:
         angle = sensible(recording, f"{prefix}angle", "rad")
+    else:
+        angle = cumulative_trapezoid(speed, time, initial=0)
     parts = constant_speeds(time, angle)
     for part in [] if measured else parts:
         last = part.stop - 1
@@ -146,10 +149,15 @@ def _in_time(recording: Recording, prefix: str) -> tuple[Array, list[slice]]:
     return speed, parts
 
 
+def is_one_speed(speed: Array) -> bool:
+    """True if a speed is the same in nearly all rows."""
+    middle = float(np.median(speed))
+    return bool(np.quantile(np.abs(speed - middle), MIN_SHARE_OF_ROWS) < MAX_CHANGE * abs(middle))
+
+
 def _of_speed(speed: Array) -> list[slice]:
     """Return the rows of each stretch of a measured speed."""
-    middle = float(np.median(speed))
-    if np.quantile(np.abs(speed - middle), MIN_SHARE_OF_ROWS) < MAX_CHANGE * abs(middle):
+    if is_one_speed(speed):
         return [slice(0, len(speed))]
     return stretches(speed) if speed.min() >= 0.0 or speed.max() <= 0.0 else []
 
@@ -192,11 +200,13 @@ def _whole_turns(angle: Array, part: slice) -> slice:
     return part if turns < 1.0 else slice(part.start, part.start + max(int(np.argmax(way >= turns * TURN)), 1))
 
 
-def _turning(angle: Array, torque: Array, part: slice) -> Recording | None:
-    """Return angle and torque of a stretch in which the input turns once or more; None for less."""
+def _turning(speed: Array, angle: Array, torque: Array, part: slice) -> Recording | None:
+    """Return usual speed, angle and torque of a stretch in which the input turns once or more; None for less."""
     if abs(angle[part][-1] - angle[part][0]) < TURN:
         return None
-    return Recording({"angle": angle[part], "torque": torque[part]}, {"angle": "rad", "torque": "N.m"})
+    usual = np.full(len(angle[part]), abs(np.median(speed[part])))
+    columns = {"angle": angle[part], "torque": torque[part], "speed": usual}
+    return Recording(columns, {"angle": "rad", "torque": "N.m", "speed": "rad/s"})
 
 
 # ---- Results ----------------------------------------------------------------------------------------------------------
@@ -218,7 +228,7 @@ def of_run(run: Run) -> FileResult:
     )
 
 
-def joined(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+def joined(runs: Sequence[Run], known: GearSoFar) -> Together:
     """Return the friction that runs determine together: a law from four speeds on, else the friction at each speed.
 
     If the runs determine gravity over the angle of the joint, it is taken out, and is a result, too.
@@ -226,6 +236,8 @@ def joined(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar
     Raises:
         ValueError: the runs were measured on different sides
     """
+    if not runs:
+        return (), known
     if len({run.side for run in runs}) > 1:
         raise ValueError("some were measured at the input, some at the output: give the files of each side by themselves")
     side, parts = runs[0].side, [stretch for run in runs for stretch in run.stretches]
@@ -237,10 +249,8 @@ def joined(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar
         remarks = (*remarks, "gravity is one wave over the angle of the joint, which counts from one zero in all files")
     kept = np.array([each.whole for each in parts]) | (gravity != ())
     if not kept.all() and different_speeds(speed[kept]) >= MIN_SPEEDS:
-        remarks = (
-            *remarks,
-            f"{np.sum(~kept)} means over less than a turn are left out, as what varies over the turn is in them",
-        )
+        left_out = f"{np.sum(~kept)} means over less than a turn are left out, as what varies over the turn is in them"
+        remarks = (*remarks, left_out)
     else:
         kept[:] = True
     uncertain = max(run.uncertain for run in runs)
@@ -256,9 +266,9 @@ def joined(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar
         estimates = tuple(each.resting_on(uncertain) for each in estimates)
         checks = tuple(opposes_motion(estimates, names))
         every = (*estimates, *gravity)
-        return FileResult(JOINED, file, AT_SPEEDS, every, remarks=(*remarks, *few), checks=checks, what=TABLE), known
+        return (FileResult(JOINED, file, AT_SPEEDS, every, (*remarks, *few), checks, what=TABLE),), known
     result, after = fit_table(file, file.recording, uncertain, known)
-    return replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)), after
+    return (replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)),), after
 
 
 def _signed(speed: Array, torque: Array) -> tuple[Array, tuple[str, ...]]:
@@ -281,12 +291,12 @@ def _gravity(levels: Levels) -> Iterator[FileEstimate]:
     yield FileEstimate("load.gravity_phase", "rad", phase, across, "")
 
 
-def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar] | None:
-    """Return friction over the angle of the input, as document P describes it; None if no run turns once or more."""
+def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> Together:
+    """Return friction over the angle of the input, as document P describes it; nothing if no run turns once or more."""
     turning = [run for run in runs if run.turning is not None]
     if not turning:
-        return None
-    recordings = [_with_speed(run) for run in turning]
+        return (), known
+    recordings = [run.turning for run in turning if run.turning is not None]
     found = fit_position(recordings)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
@@ -314,21 +324,8 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, G
         {each: values[rows][order] for each, values in columns.items()}, {"angle": "rad", "torque": "N.m", "modelled": "N.m"}
     )
     read = replace(file, path=Path(name), why=why, remarks=())
-    return FileResult(
-        name,
-        read,
-        "a parabola and ten orders of the turn",
-        estimates,
-        remarks=tuple(remarks),
-        checks=(whole,),
-        what=WHAT,
-        pictures=(Picture(curves),),
-    ), after
-
-
-def _with_speed(run: Run) -> Recording:
-    assert run.turning is not None
-    return run.turning.with_column("speed", np.full(len(run.turning), abs(run.stretches[0].speed)), "rad/s")
+    model, picture = "a parabola and ten orders of the turn", Picture(curves)
+    return (FileResult(name, read, model, estimates, tuple(remarks), (whole,), what=WHAT, pictures=(picture,)),), after
 
 
 def _estimates(found: PositionFit, uncertain: float, *, measured: bool) -> Iterator[FileEstimate]:
@@ -336,15 +333,14 @@ def _estimates(found: PositionFit, uncertain: float, *, measured: bool) -> Itera
     waves = {f"{name}[{order - 1}]" for order in _waves(found) for name in ("cosine", "sine")}
     one_speed = all(each.path != "viscous" for each in found.estimates)
     for each in found.estimates:
-        common = uncertain * abs(each.value)
-        sigma = float(np.hypot(each.sigma, common))
         if (each.path == "viscous" and measured) or ("[" in each.path and each.path not in waves):
             continue
         sure = each.path in waves or abs(each.value) > SIGNIFICANCE_SIGMA * each.sigma
         why = "" if sure else "it is no larger than what chance may make"
         if each.path == "constant" and one_speed:
             why = "one speed determines its sum with the viscous part, see steady friction"
-        yield FileEstimate(f"gear.friction_input.{each.path}", each.unit, each.value, sigma, "position_dependent", why, common)
+        own = FileEstimate(f"gear.friction_input.{each.path}", each.unit, each.value, each.sigma, "position_dependent", why)
+        yield own.sharing(uncertain * abs(each.value))
 
 
 def _of_position(found: PositionFit, count: int) -> Iterator[str]:

@@ -62,6 +62,8 @@ MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from wh
 class SteadyFriction(Kind):
     """Speed and torque of steady motion, a row for each speed."""
 
+    needs = "speed and torque"
+
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
         """True for speeds beside a torque or current.
 
@@ -206,7 +208,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     speed_check = input_speed(experiment.speed, name)
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole = explained(best.fit, name)
-    fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, _shared(best))
+    fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
     estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
@@ -215,10 +217,13 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
         name, file, best.name, estimates,
-        (*file.remarks, *_remarks(table, best, known.initial), *hints_of_levels(table)),
+        (*file.remarks, *_remarks(table, best, experiment, known.initial), *hints_of_levels(table)),
         (*checks, *([] if any(check.failed for check in checks) else [whole])),
         pictures=(Picture(curves_of(best.fit), "table", "friction torque, at the input"),),
-        held_out=_held_out(best),
+        held_out=HeldOut(
+            "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),
+            samples=len(experiment.torque),
+        ),
         candidates=tuple((each.name, each.error) for each in (best, *others)), fit=best.fit,
     )  # fmt: skip
     if whole.failed or known.knows_better("friction_input", estimates):
@@ -253,10 +258,8 @@ def _unloaded(table: Recording, file: Recognised, gear_set: GearSet) -> Recordin
     return table
 
 
-def _shared(best: FrictionCandidate) -> dict[str, str]:
+def _shared(best: FrictionCandidate, table: FrictionTable) -> dict[str, str]:
     """Return the parameters that a table determines only together with a loss under load, by path, and how."""
-    table = best.fit.experiment
-    assert isinstance(table, FrictionTable)
     if table.load is None or is_loaded(table) or not table.load.any():
         return {}
     held = float(np.abs(table.load).max())
@@ -264,18 +267,7 @@ def _shared(best: FrictionCandidate) -> dict[str, str]:
     return {f"gear.{each.path}": why for each in best.fit.estimates if not each.path.endswith("viscous")}
 
 
-def _held_out(best: FrictionCandidate) -> HeldOut:
-    table = best.fit.experiment
-    assert isinstance(table, FrictionTable)
-    return HeldOut(
-        "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(table.torque)),
-        samples=len(table.torque),
-    )  # fmt: skip
-
-
-def _remarks(recording: Recording, best: FrictionCandidate, start: GearSet) -> Iterator[str]:
-    table = best.fit.experiment
-    assert isinstance(table, FrictionTable)
+def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable, start: GearSet) -> Iterator[str]:
     low, high = float(np.abs(table.speed).min()), float(np.abs(table.speed).max())
     yield f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"
     if best.name == "Coulomb and viscous":

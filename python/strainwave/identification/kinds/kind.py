@@ -52,17 +52,19 @@ class Kind(ABC):
 
     Attributes:
         name: as `KINDS` has it
+        needs: columns by which it is recognised, in words; empty if these are not as simple
         time: whether its files need a time, or use one if they have it
         section: heading of the section of the report that lists files of this kind together; empty if each stands by itself
     """
 
     name: str
+    needs: ClassVar[str] = ""
     time: ClassVar[Literal["needed", "used", "none"]] = "none"
     section: ClassVar[str] = ""
 
     @property
     def title(self) -> str:
-        """What a file of this kind is, in words."""
+        """Title of a file of this kind in reports."""
         return KINDS[self.name].title
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
@@ -78,7 +80,7 @@ class Kind(ABC):
         """Return the channel of each column.
 
         Raises:
-            UndecidedError: the columns are not those of this kind; says which are needed
+            UndecidedError: the columns are not those of this kind; states which are needed
         """
 
     def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
@@ -94,7 +96,7 @@ class Kind(ABC):
         """Return the result of a file, and the gear with it.
 
         Raises:
-            ValueError: nothing can be determined; says why
+            ValueError: nothing can be determined; states why
         """
 
     def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:

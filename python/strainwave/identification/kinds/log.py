@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,11 +11,12 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.motion import fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.fitting.covariance import correlation_length
-from strainwave.identification.kinds.along_motion import fit_log
+from strainwave.identification.kinds.along_motion import fit_along_motion
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.shafts import put_sided
+from strainwave.identification.kinds.warm_up import warmed, with_fall
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
@@ -29,6 +31,7 @@ from strainwave.messages import as_option
 class Log(Kind):
     """Time, a motion, and what drove it: a current, torque, voltage or command."""
 
+    needs = "time, a motion, and a current, torque, voltage or command"
     time = "needed"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
@@ -56,8 +59,22 @@ class Log(Kind):
         return ColumnRoles(self.name, found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-        """Fit friction, inertia and gravity along the motion, and with two encoders what lies between them."""
-        return fit_log(file, known)
+        """Fit friction, inertia and gravity along the motion, with two encoders what lies between them; and warm-up."""
+        if (warm := warmed(file)) is None:
+            return fit_along_motion(file, known)
+        own, found = warm
+        try:
+            result, after = fit_along_motion(file, known)
+        except ValueError as error:
+            remarks = (*file.remarks, f"not used along its motion: {error}")
+            result, after = replace(own, estimates=(), checks=(), remarks=remarks), known
+        after, assumed = with_fall(after, found, own)
+        return replace(
+            result,
+            estimates=(*result.estimates, *own.estimates),
+            remarks=(*own.remarks, *assumed, *result.remarks),
+            checks=(*result.checks, *own.checks),
+        ), after
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error on data held out."""

@@ -70,8 +70,8 @@ def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
     turned = _predicted(_turned(file), gear_set)
     if turned.error > MAX_ERROR_OF_TURNED * found.error:
         return found
-    said = f"the angle is counted in the other sense than {gear_set.name} has it: its sign is turned round"
-    return replace(turned, remarks=(said, *turned.remarks))
+    remark = f"the angle is counted in the other sense than {gear_set.name} has it: its sign is turned round"
+    return replace(turned, remarks=(remark, *turned.remarks))
 
 
 def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
@@ -119,7 +119,7 @@ class _Compared(ComparedByFields):
 
     @property
     def nuisances(self) -> Array:
-        """The unknowns of the measurement as saved; terms of other joints are none of the drive."""
+        """Unknowns of the measurement as saved; terms of other joints are none of the drive."""
         return np.array([self.delay if each.name == "delay" else 0.0 for each in self.log.nuisances])
 
     @cached_property
@@ -129,7 +129,7 @@ class _Compared(ComparedByFields):
 
     @cached_property
     def band(self) -> Motion:
-        """The motion as it shows changes: sliding in the narrowest pass band, as estimates are made; all if there is little."""
+        """Motion in which changes are estimated: sliding in the narrowest pass band; all if there is little."""
         narrowest = bands(self.log, self.drive)[-1].motion
         return narrowest if len(narrowest.rows) >= MIN_SAMPLES else self.log.motion.in_full_band()
 

@@ -35,7 +35,7 @@ class PreparedLog(ComparedByFields):
         recording: with the torque in the sense of the motion
         remarks: what was assumed, put right or left out
         in_current: whether torques are in A, as the torque constant is not known
-        said: numbers of the drive that a person gave with the file, by path
+        given: numbers of the drive that a person gave with the file, by path
         relative: standard deviation of the torque constant over its value, where the torque rests on it; else 0 [1]
         of_resistance: the same of the resistance, where the torque is that of a voltage [1]
         rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2]; 0 where torques are in A
@@ -47,7 +47,7 @@ class PreparedLog(ComparedByFields):
     recording: Recording
     remarks: tuple[str, ...]
     in_current: bool
-    said: Mapping[str, float]
+    given: Mapping[str, float]
     relative: float
     of_resistance: float
     rotor: float
@@ -59,7 +59,7 @@ class PreparedLog(ComparedByFields):
 
 
 def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
-    """A log along its motion, with the torque in the sense of the motion.
+    """Return a log along its motion, with the torque in the sense of the motion.
 
     Raises:
         ValueError: inertia, friction and gravity do not explain it
@@ -92,7 +92,7 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     if spoilt_rows:
         share = 100.0 * spoilt_rows / len(recording)
         remarks.append(f"outliers or clipped samples of {log.effort} are left out: {spoilt_rows}, {share:.2g} % of all")
-    said = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
+    given = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     rests = log.effort in ("current", "voltage") and not in_current  # a torque that was measured rests on no constant
     constant = TorqueConstant.of(file, known.gear_set) if rests else None
     rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
@@ -101,15 +101,15 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     of_resistance = (
         relative_sigma(known.gear_set, "motor.resistance", getattr(drive.motor, "resistance", 0.0)) if by_voltage else 0.0
     )
-    return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, said, relative, of_resistance, rotor)
+    return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, given, relative, of_resistance, rotor)
 
 
 def _with_angle(recording: Recording) -> tuple[Recording, str]:
     """Return a recording of a speed with the angle that it makes, and a remark."""
+    from scipy.integrate import cumulative_trapezoid
+
     side = next(name.removesuffix("_speed") for name in recording.names if name.endswith("_speed"))
-    speed = recording.values(f"{side}_speed", "rad/s")
-    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(recording.time)
-    angle = np.concatenate([[0.0], np.cumsum(steps)])
+    angle = cumulative_trapezoid(recording.values(f"{side}_speed", "rad/s"), recording.time, initial=0)
     remark = f"no angle was recorded: {side}_speed is summed up, from 0 at the first row, and with it an error of its zero"
     return recording.with_column(f"{side}_angle", angle, "rad"), remark
 
@@ -160,10 +160,10 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
 
 
 def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> motor.DC:
-    """The motor of a log that has its voltage alone; what the motor induces as it turns belongs to the voltage.
+    """Return the motor of a log that has its voltage alone; what the motor induces as it turns belongs to the voltage.
 
     Raises:
-        ValueError: resistance or torque constant is neither said nor known of the set
+        ValueError: resistance or torque constant is neither given nor known of the set
     """
     known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
     if missing := [name for name, value in known.items() if value == 0.0]:

@@ -99,13 +99,13 @@ def _remarks(recording: Recording, log: DriveLog, fit: Fit, kept: Influence, kno
     if not {"input_angle", "output_angle"} <= set(log.channels):
         yield "one encoder only: kinematic error and stiffness are not seen"
     if wrong := kept.suspects(known.gear_set.sources):
-        told = [
+        others = [
             f"{each.path} = {each.value:.4g} {each.unit} (about {each.value + kept.shift_if_free[place]:.3g} {each.unit} would "
             f"leave {100.0 * kept.explained_share[place]:.0f} % less of the residuals' power)"
             for place in wrong[:MAX_LISTED]
             for each in [kept.kept[place]]
         ]
-        yield f"the run contradicts what was kept: {' or '.join(told)}. Measure them, or free one"
+        yield f"the run contradicts what was kept: {' or '.join(others)}. Measure them, or free one"
     yield from exceeded(known.initial, _load(log, fit))
 
 

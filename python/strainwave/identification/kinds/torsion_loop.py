@@ -40,6 +40,8 @@ FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a 
 class Torsion(Kind):
     """Twist and torque at the output, or angle and torque of the input with the output locked."""
 
+    needs = "twist and torque, or input_angle and input_torque"
+
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
         """True for a twist beside a torque, or for an angle beside one if it may be a twist: a shaft that turns on is none.
 
@@ -52,7 +54,7 @@ class Torsion(Kind):
         if not angles or not torques:
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
-        if np.ptp(angle) > MAX_TWIST and (column.channel.side == "output" or column.robot or mapping.side == "output"):
+        if np.ptp(angle) > MAX_TWIST and (column.at_joint or mapping.side == "output"):
             raise UndecidedError(
                 f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists: samples of a log whose rate is "
                 "needed, with --constant rate=HZ; or, if it is a torsion loop all the same, --kind torsion"

@@ -19,6 +19,7 @@ from strainwave.orders.two_encoders import TransmissionError, transmission_error
 class TwoEncoders(Kind):
     """Angles of input and output, without torque or current."""
 
+    needs = "two angles"
     time = "used"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:

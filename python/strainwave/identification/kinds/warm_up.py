@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,8 +17,7 @@ from strainwave.identification.candidates.warming import (
 )
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.file_result import FileEstimate, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 
 Array = NDArray[np.float64]
@@ -30,42 +28,8 @@ TEMPERATURE_CLASSES = 24  # in the figure
 MIN_SAMPLES_PER_CLASS = 10
 
 
-@dataclass(frozen=True)
-class Warmed:
-    """What a log tells of friction over the temperature.
-
-    Attributes:
-        found: friction, and how it changes
-        effort: the channel that tells it
-        estimates: its numbers
-        remarks: the same in words
-        picture: means of the friction over the temperature, and the line
-        check: that the line explains the means
-    """
-
-    found: Warming
-    effort: str
-    estimates: tuple[FileEstimate, ...]
-    remarks: tuple[str, ...]
-    picture: Picture
-    check: Check
-
-    def known(self, known: GearSoFar, name: str) -> tuple[GearSoFar, tuple[str, ...]]:
-        """What is known after it, and what was assumed for it."""
-        law: Any = known.gear_set.gear.friction_input
-        fall = self.found.fall
-        if self.estimates[0].why or fall.value <= 0.0 or law.name == "thermal":
-            return known, ()
-        warmer = friction.Thermal(
-            law=law, dry_fall=fall.value, viscous_fall=fall.value, reference_temperature=self.found.reference_temperature
-        )
-        at = _celsius(self.found.reference_temperature)
-        said = f"the friction of the gear is taken to hold at {at}, its dry and viscous part to fall alike"
-        return known.with_law(warmer, {self.estimates[0].path: self.estimates[0].sigma}, name), (said,)
-
-
-def warmed(file: Recognised) -> Warmed | None:
-    """Return friction over the temperature; None if a log has no temperature that changes, or does not determine it."""
+def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
+    """Return friction over the temperature, and how it changes; None if a log does not determine it."""
     recording = file.recording
     effort = next((name for name in EFFORTS if name in recording), None)
     if effort is None or "temperature" not in recording or np.ptp(recording["temperature"]) < MIN_TEMPERATURE_SPAN:
@@ -91,12 +55,29 @@ def warmed(file: Recognised) -> Warmed | None:
         f"with 95 % between {low:.3g} and {high:.3g}",
         "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
-    told = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
+    estimates = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
     curves = _curves(series, effort, found)
     means = curves[f"friction_of_{effort}"]
     left = float(np.linalg.norm(means - curves["modelled"]) / max(float(np.linalg.norm(means)), 1e-300))
     whole = share_left({"friction over the temperature": (left, MAX_SHARE_OF_TORQUE)}, file.path.name)
-    return Warmed(found, effort, only_if_explained(told, whole), remarks, Picture(curves, "means"), whole)
+    return FileResult(
+        file.path.name, file, "friction over the temperature", only_if_explained(estimates, whole), remarks, (whole,),
+        pictures=(Picture(curves, "means"),),
+    ), found  # fmt: skip
+
+
+def with_fall(known: GearSoFar, found: Warming, result: FileResult) -> tuple[GearSoFar, tuple[str, ...]]:
+    """Return the gear with the fall of friction over the temperature, and what was assumed for it."""
+    law: Any = known.gear_set.gear.friction_input
+    (estimate,) = result.estimates
+    if estimate.why or estimate.value <= 0.0 or law.name == "thermal":
+        return known, ()
+    warmer = friction.Thermal(
+        law=law, dry_fall=estimate.value, viscous_fall=estimate.value, reference_temperature=found.reference_temperature
+    )
+    at = _celsius(found.reference_temperature)
+    assumed = f"the friction of the gear is taken to hold at {at}, its dry and viscous part to fall alike"
+    return known.with_law(warmer, {estimate.path: estimate.sigma}, result.name), (assumed,)
 
 
 def _celsius(temperature: float) -> str:
@@ -113,7 +94,7 @@ def _speed(recording: Recording) -> Array | None:
 
 
 def _curves(series: Recording, effort: str, found: Warming) -> Recording:
-    """Means of the effort against the motion, of classes of the temperature."""
+    """Return means of the effort against the motion, of classes of the temperature."""
     speed, temperature = series["speed"], series["temperature"]
     moving = np.abs(speed) > MIN_MOVING_SPEED * np.abs(speed).max()
     temperature, way, force = temperature[moving], np.sign(speed[moving]), series[effort][moving]

@@ -8,7 +8,7 @@ from strainwave.identification.reading.names import UNITS, Quantity, Side
 
 
 class Channel(NamedTuple):
-    """What a channel measures.
+    """A measured quantity of a shaft.
 
     Args:
         quantity: what is measured

@@ -28,7 +28,7 @@ MAX_SHARED_STAMPS = 0.05  # of the rows: if more share the stamp of the row befo
 MAX_TIME = 1e12  # s of a log
 MAX_TICKS = 1e12  # from the first row to the last
 MAX_BEGIN = 1e6  # s: later stamps count from some epoch
-FITS = 5  # at most, of a line to the ticks, until these stay the same
+MAX_FITS = 5  # of a line to the ticks, until these stay the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +122,7 @@ def _regular(stamps: Array, step: float, angle: Array | None) -> Clock | None:
     rows, steps = np.arange(len(stamps)), np.diff(stamps)
     is_coarse, rises = (steps == 0.0).mean() > MAX_SHARED_STAMPS, bool((steps > 0.0).all())
     ticks = rows if is_coarse else np.cumsum([0, *np.round(steps / step).astype(int)])
-    for _ in range(FITS):
+    for _ in range(MAX_FITS):
         begin, period = _line(ticks, stamps)
         better = ticks if is_coarse or period <= 0.0 else np.round((stamps - begin) / period).astype(int)
         if np.array_equal(better, ticks):

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Label, Source
+from strainwave.files.labels import Source
 from strainwave.files.tables import OpenTable
 from strainwave.identification.reading.names import QUANTITY_OF, meaning, words_of
-from strainwave.identification.reading.renamed_table import RenamedTable
 from strainwave.identification.reading.slopes import MIN_CORRELATION, PARTS, correlation
 from strainwave.messages import listed
 
@@ -49,8 +49,10 @@ class Layout:
 
     def named(self, table: OpenTable) -> OpenTable:
         """Return a table with these names of its columns."""
+        opened: Any = table  # a dataclass, whatever the format
         pairs = zip(table.labels, self.names, strict=True)
-        return RenamedTable(table, [Label(label.text, name, label.unit) if name else label for label, name in pairs])
+        renamed: OpenTable = replace(opened, labels=[label._replace(name=name) if name else label for label, name in pairs])
+        return renamed
 
     def question(self, *, is_timed: bool, joint: str | None) -> tuple[str, str]:
         """Return the question which block is the torque or current, and the options that answer it.

@@ -65,7 +65,7 @@ WILD = "*?[."  # a section with one of these in its name is a pattern of file na
 
 @dataclass(frozen=True)
 class FileMapping:
-    """What a person states of a file; the rest is determined from the file, or asked for.
+    """Mapping that a person gives for a file; the rest is determined from the file, or asked for.
 
     Args:
         columns: for each channel the name or the number of its column in the file
@@ -122,7 +122,7 @@ class FileMapping:
 
 @dataclass(frozen=True)
 class MappingFile:
-    """What a person states of several files: of all, and of those whose path fits a pattern."""
+    """Mappings that a person gives for several files: for all, and for those whose path fits a pattern."""
 
     general: FileMapping
     patterns: Mapping[str, FileMapping]

@@ -15,7 +15,7 @@ from strainwave.files.tables import OpenTable
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
-from strainwave.identification.reading.clock import Clock, clock, regular
+from strainwave.identification.reading.clock import clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
@@ -212,15 +212,14 @@ def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
     Raises:
         UndecidedError: several kinds or channels are possible, or none
     """
-    for name in reversed(KINDS) if given.kind is None else (given.kind,):
-        kind = kind_named(name)
-        if given.kind is not None or kind.recognises(columns, given):
-            return kind.roles(columns, given)
-    raise UndecidedError(
-        f"it has {names_of(columns)}, which is no measurement that is known: friction needs speed and torque; torsion twist "
-        "and torque, or input_angle and input_torque; a log time, a motion, and a current, torque, voltage or command; "
-        f"encoders two angles. If it has more, name it, as with {as_option('column', 'torque', 'NAME')}"
-    )
+    if given.kind is not None:
+        return kind_named(given.kind).roles(columns, given)
+    kinds = [kind_named(name) for name in KINDS]
+    if (kind := next((each for each in reversed(kinds) if each.recognises(columns, given)), None)) is not None:
+        return kind.roles(columns, given)
+    needs = "; ".join(f"{each.needs} for {each.name}" for each in kinds if each.needs)
+    unknown = f"it has {names_of(columns)}, which is no measurement that is known: it needs {needs}"
+    raise UndecidedError(f"{unknown}. If it has more, name it, as with {as_option('column', 'torque', 'NAME')}")
 
 
 def _further(source: MeasurementFile, given: FileMapping, undecided: UndecidedError) -> str:
@@ -400,33 +399,42 @@ def _in_time(
     if kind_named(kind).time == "none":
         return series, [], 0.0
     remarks = list[str]()
-    angles = ("input_angle", "reflected_angle", "output_angle") if kind in ("log", "encoders") and "time" in series else ()
-    for name in angles:
+    if "time" not in series and "rate" in given.constants:
+        when = regular(len(next(iter(series.values()))), given.constants["rate"])
+        series, remarks = {"time": when.time, **series}, list(when.remarks)
+    if "time" not in series:
+        if kind_named(kind).time == "needed":
+            raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
+        return series, remarks, 0.0
+    if kind in ("log", "encoders"):
+        series, of_rows = _renewed(series, columns)
+        series, of_jumps = _of_one_recording(series, columns)
+        remarks += [*of_rows, *of_jumps, *_turn_speeds(series, columns, given)]
+    others = {name: values for name, values in series.items() if name != "time"}
+    repeated = np.zeros(len(series["time"]), bool)
+    repeated[1:] = np.all([np.diff(values) == 0.0 for values in others.values()], axis=0)
+    angle = next((values for name, values in others.items() if name in ("input_angle", "output_angle", "angle")), None)
+    when = clock(series["time"], repeated, angle)
+    others = {name: values[when.rows] for name, values in others.items()}
+    return {"time": when.time, **others}, [*remarks, *when.remarks], when.began
+
+
+def _renewed(series: dict[str, Array], columns: Mapping[str, Column]) -> tuple[dict[str, Array], list[str]]:
+    """Return the rows in which an angle was renewed, and a remark if it was held between."""
+    for name in ("input_angle", "reflected_angle", "output_angle"):
         if name in series and (found := renewed_rows(series[name])) is not None:
             rows, held = found
             rate = (len(rows) - 1) / max(float(series["time"][rows[-1]] - series["time"][rows[0]]), 1e-300)
             was = f"{columns[name].name} holds each value for {held} rows: it was sampled at {rate:.3g} Hz"
-            remarks.append(f"{was}, and the {len(rows)} rows are kept")
-            series = {each: values[rows] for each, values in series.items()}
-            break
-    if kind in ("log", "encoders"):
-        series, of_jumps = _of_one_recording(series, columns, given)
-        remarks += [*of_jumps, *_turn_speeds(series, columns, given)]
-    when = _clock(series, given)
-    if when is None and kind_named(kind).time == "needed":
-        raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
-    if when is None:
-        return series, remarks, 0.0
-    others = {name: values[when.rows] for name, values in series.items() if name != "time"}
-    return {"time": when.time, **others}, [*remarks, *when.remarks], when.began
+            remark = f"{was}, and the {len(rows)} rows are kept"
+            return {each: values[rows] for each, values in series.items()}, [remark]
+    return series, []
 
 
-def _of_one_recording(
-    series: dict[str, Array], columns: Mapping[str, Column], given: FileMapping
-) -> tuple[dict[str, Array], list[str]]:
+def _of_one_recording(series: dict[str, Array], columns: Mapping[str, Column]) -> tuple[dict[str, Array], list[str]]:
     """Return the rows of the longest stretch between jumps of an angle, and a remark."""
-    time = _stamps(series, given)
-    for name, column in columns.items() if len(time) else ():
+    time = series["time"]
+    for name, column in columns.items():
         if not name.endswith("_angle"):
             continue
         behind = jumps(series[name], time, series.get(name.replace("angle", "speed")))
@@ -450,24 +458,6 @@ def _turn_speeds(series: dict[str, Array], columns: Mapping[str, Column], given:
         angle = name.replace("speed", "angle")
         if not name.endswith("_speed") or angle not in series or name in given.sign:
             continue
-        time = _stamps(series, given)
-        if len(time) and abs(speed_per_slope(series[angle], series[name], time) + 1.0) < MAX_OFF_SPEED:
+        if abs(speed_per_slope(series[angle], series[name], series["time"]) + 1.0) < MAX_OFF_SPEED:
             series[name] = -series[name]
             yield f"{column.name} is counted against {columns[angle].name}: its sign is turned round"
-
-
-def _stamps(series: Mapping[str, Array], given: FileMapping) -> Array:
-    """Return the stamps of the rows [s], or their time by the rate given; empty if neither is known."""
-    rows = np.arange(len(next(iter(series.values()))), dtype=float)
-    return series["time"] if "time" in series else rows / given.constants["rate"] if "rate" in given.constants else np.zeros(0)
-
-
-def _clock(series: Mapping[str, Array], given: FileMapping) -> Clock | None:
-    """Return the time of the rows, from their stamps or their rate; None if neither is known."""
-    if "time" not in series:
-        count = len(next(iter(series.values())))
-        return regular(count, given.constants["rate"]) if "rate" in given.constants else None
-    repeated = np.zeros(len(series["time"]), bool)
-    repeated[1:] = np.all([np.diff(values) == 0.0 for name, values in series.items() if name != "time"], axis=0)
-    angle = next((values for name, values in series.items() if name in ("input_angle", "output_angle", "angle")), None)
-    return clock(series["time"], repeated, angle)

@@ -26,18 +26,7 @@ from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
 
-SUFFIXES = (
-    "d",
-    "dd",
-    "dot",
-    "ddot",
-    "des",
-    "desired",
-    "cmd",
-    "ref",
-    "meas",
-    "act",
-)  # what may stand behind a quantity in a name
+SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # of a quantity in a name
 MAX_PARTS = 20  # files of one recording
 SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS

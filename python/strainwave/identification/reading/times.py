@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
-from strainwave.files.labels import Label, Source
+from strainwave.files.labels import Content, Label, Source
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import meaning, words_of
-from strainwave.identification.reading.renamed_table import Part, RenamedTable
 
 Array = NDArray[np.float64]
 
@@ -53,8 +53,59 @@ def _with_whole_time(table: OpenTable) -> OpenTable:
         for part, (beside, size) in enumerate(ends) if unit in SECONDS else ():
             if beside == before and size in PARTS and _are_one_time(table, seconds, part, PARTS[size]):
                 labels[seconds] = Label(f"{labels[seconds].text} and {labels[part].text}", "time", "s")
-                return RenamedTable(table, labels, {seconds: Part(part, PARTS[size])})
+                return SummedTime(table, labels, seconds, Source(part, "", "parts of seconds", "1"), PARTS[size])
     return table
+
+
+@dataclass(frozen=True, eq=False)
+class SummedTime:
+    """A table whose time is the sum of whole seconds and their parts, which are no channel of their own.
+
+    Args:
+        table: as it is in the file
+        labels: of the columns
+        seconds: position of the whole seconds
+        parts: the column of their parts
+        size: of one part [s]
+    """
+
+    table: OpenTable
+    labels: Sequence[Label]
+    seconds: int
+    parts: Source
+    size: float
+
+    @property
+    def file(self) -> str:
+        return self.table.file
+
+    @property
+    def title(self) -> str:
+        return self.table.title
+
+    @property
+    def left_out(self) -> Sequence[str]:
+        return self.table.left_out
+
+    @property
+    def contents(self) -> Sequence[Content]:
+        return ["other" if place == self.parts.position else content for place, content in enumerate(self.table.contents)]
+
+    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+        """Return the columns wanted, all of them numbers."""
+        return self._summed(self.table.numbers([*sources, self.parts]), sources)
+
+    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+        """Return the columns wanted, nan in empty cells; and what was left out."""
+        numbers, remarks = self.table.measured([*sources, self.parts])
+        return self._summed(numbers, sources), remarks
+
+    def place(self, row: int) -> str:
+        return self.table.place(row)
+
+    def _summed(self, numbers: Mapping[str, Array], sources: Sequence[Source]) -> dict[str, Array]:
+        parts = {source.name: self.size * numbers[self.parts.name] for source in sources if source.position == self.seconds}
+        return {source.name: numbers[source.name] + parts.get(source.name, 0.0) for source in sources}
 
 
 def _end(label: Label) -> tuple[tuple[str, ...], str]:
