@@ -91,7 +91,7 @@ class Line:
 
     @property
     def amplitude(self) -> float:
-        """The larger one of both directions, in the unit of the series."""
+        """Larger amplitude of both directions, in the unit of the series."""
         return float(np.nanmax([self.forward, self.backward]))
 
     @property
@@ -305,17 +305,13 @@ def refitted(moving: Moving, lines: Sequence[Line], floor: Floor) -> tuple[list[
         if line.kind == "time":
             parts = [parts[0], parts[0]]
         elif len(parts) == 1:
-            parts = [*parts, complex("nan")] if _forward_only(moving, line) else [complex("nan"), *parts]
+            is_forward = _shaft(moving, line).senses(moving.weight) == [1.0]
+            parts = [*parts, complex("nan")] if is_forward else [complex("nan"), *parts]
         done.append(replace(line, wave_forward=parts[0], wave_backward=parts[1], sigma=float(sigma)))
         first = last
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(moving.weight > 0.0, left - (flat @ values) / moving.weight, left)
     return done, left
-
-
-def _forward_only(moving: Moving, line: Line) -> bool:
-    """True if the shaft of a line has enough motion forward alone."""
-    return _shaft(moving, line).senses(moving.weight) == [1.0]
 
 
 def weighed_fit(columns: Array, series: Array, floor: Floor) -> tuple[Array, Array]:

@@ -114,12 +114,12 @@ def _turning(recording: Recording, side: Side | None, rate: float | None) -> tup
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
         remark = f"there is no angle: {name} is summed up over time; its errors widen the lines"
         return recording.with_column("angle", angle, "rad"), "angle", _side(name, known, side), (remark,)
-    raise ValueError(f"orders need an angle, or a speed over time; there are {listed(recording.names)}")
+    raise ValueError(f"orders need an angle, or a speed over time: record one; there are {listed(recording.names)}")
 
 
 def _side(name: str, known: Side | None, given: Side | None) -> Side:
     if given is None and known is None:
         raise ValueError(f"{name} may be that of the motor or that of the joint; give --side input or --side output")
     if given is not None and known is not None and given != known:
-        raise ValueError(f'side = "{given}" is given, but {name} is that of the {known}')
+        raise ValueError(f'side = "{given}" is given, but {name} is that of the {known}; leave one of them out')
     return given or known or "output"

@@ -167,7 +167,7 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
     _check_sampled(turned, highest, angle)
     lines = int(highest * revolutions * (1.0 + MAX_ROUNDING))
     if not lines:
-        raise ValueError(f"highest = {highest:g} is less than the first line at 1/{revolutions}, of {revolutions} revolutions")
+        raise ValueError(f"highest = {highest:g} is less than the first line at 1/{revolutions}; give more, or record longer")
     moving = np.append(True, np.diff(turned) != 0.0)
     path = np.abs(turned[moving] - turned[0])
     count = max(len(path), 4 * lines)
@@ -236,7 +236,7 @@ def _turned(recording: Recording, column: str, angle: str) -> tuple[Array, Array
     check_recording("recording", recording)
     turned, values = recording.values(arguments.text("angle", angle), "rad"), recording[arguments.text("column", column)]
     if (reached := float(np.abs(values).max())) > MAX_VALUE:
-        raise ValueError(f"column {quoted(column)} reaches {reached:g}; values up to {MAX_VALUE:g} are allowed")
+        raise ValueError(f"column {quoted(column)} reaches {reached:g}; values up to {MAX_VALUE:g} are allowed: check its unit")
     steps = np.diff(turned)
     sense = np.sign(steps)
     back = sense * sense[np.argmax(steps != 0.0)] < 0.0 if len(steps) else np.zeros(0, dtype=np.bool_)
@@ -252,7 +252,7 @@ def _revolutions(turned: Array, angle: str) -> int:
     made = float(abs(turned[-1] - turned[0])) / tau
     whole = int(made * (1.0 + MAX_ROUNDING) + MAX_ROUNDING)
     if whole < 1:
-        raise ValueError(f"{angle} makes {made:.3g} revolutions; orders need 1 or more")
+        raise ValueError(f"{angle} makes {made:.3g} revolutions; orders need 1 or more: record longer")
     return whole
 
 
@@ -260,7 +260,7 @@ def _check_separated(wanted: Array, revolutions: int, angle: str) -> None:
     """Raise ValueError for orders that the revolutions do not separate from each other or from the mean."""
     for low, high in pairwise([0.0, *sorted(wanted.tolist())]):
         if isclose(high, low, rel_tol=MAX_ROUNDING):
-            raise ValueError(f"order {high:g} is asked for twice")
+            raise ValueError(f"order {high:g} is asked for twice; leave one out")
         needed = 1.0 / (high - low)
         if needed > revolutions * (1.0 + MAX_ROUNDING):
             two = f"orders {low:g} and {high:g}" if low else f"order {high:g} and the mean"
@@ -278,7 +278,7 @@ def _check_sampled(turned: Array, highest: float, angle: str) -> None:
     if steps[row] >= allowed:
         raise ValueError(
             f"order {highest:g} needs samples less than {allowed:.3g} rad of {angle} apart; rows {row} and {row + 1} are "
-            f"{steps[row]:.3g} rad apart"
+            f"{steps[row]:.3g} rad apart; record faster, or turn slower"
         )
 
 

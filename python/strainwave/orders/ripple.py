@@ -160,9 +160,9 @@ def _moved(
         name: unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in (angle, *others.values())
     }
     if float(np.ptp(turned[angle])) == 0.0:
-        raise ValueError(f"{angle} does not change; orders need a shaft that turns")
+        raise ValueError(f"{angle} does not change; orders need a shaft that turns: give the angle of one, or record a motion")
     if float(np.ptp(record.columns[column])) == 0.0:
-        raise ValueError(f"{column} does not change; there is no ripple in it")
+        raise ValueError(f"{column} does not change; there is no ripple in it: give the column that was measured")
     moved = {joint: turned[name] for joint, name in others.items() if float(np.ptp(turned[name])) > 0.0}
     shaft = moving(turned[angle], record.columns[column], moved)
     return record, replace(shaft, weight=np.where(record.measured, shaft.weight, 0.0))

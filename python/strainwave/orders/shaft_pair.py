@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.orders.comb import RATIOS
 from strainwave.orders.turning import Evenly, direction, reach_of, smooth_speed
 
 Array = NDArray[np.float64]
@@ -22,7 +23,6 @@ MAX_SLOPE = 1.1  # turns of the output per turn of the input
 MAX_ERROR_SHARE = 0.02  # of the angle of the output [1], above which the error is none of a gear
 MAX_RATIO_OFF = 0.02  # relative: a ratio given that is further from the angles is not theirs
 MIN_GRAVITY_SWING = 0.1  # rad of the output, above which gravity is separated from a constant
-STRAIN_WAVE_RATIOS = (30, 400)  # whole ratios of strain wave gears
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,7 @@ class Ratio:
     @property
     def of_strain_wave(self) -> bool:
         """True if a strain wave gear may have the ratio used."""
-        low, high = STRAIN_WAVE_RATIOS
-        return float(self.used).is_integer() and low <= abs(self.used) <= high
+        return abs(self.used) in RATIOS
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ class Pair:
     def __post_init__(self) -> None:
         for name, angle in (("input_angle", self.input), ("output_angle", self.output)):
             if float(np.ptp(angle)) == 0.0:
-                raise ValueError(f"{name} does not change; orders need a shaft that turns")
+                raise ValueError(f"{name} does not change; orders need a shaft that turns: give its angle, or record a motion")
 
     @property
     def speed(self) -> Array:

@@ -49,12 +49,12 @@ class Shaft:
 
     @property
     def revolutions(self) -> float:
-        """From end to end."""
+        """Revolutions from end to end."""
         return float(np.ptp(self.angle)) / tau
 
     @property
     def acceleration(self) -> Array:
-        """Of the shaft [rad per sample squared], shape (n,)."""
+        """Acceleration of the shaft [rad per sample squared], shape (n,)."""
         return smooth_speed(self.speed, reach_of(len(self.speed)))
 
     def reverses(self) -> bool:
@@ -89,7 +89,7 @@ class Moving:
 
     @property
     def own(self) -> Shaft:
-        """The shaft whose gear is examined."""
+        """Shaft whose gear is examined."""
         return self.shafts[0]
 
 

@@ -33,7 +33,6 @@ Complex = NDArray[np.complex128]
 MAX_FREQUENCY = 0.4  # cycles per sample, up to which lines are compared
 FIT_ROUNDS = 4  # of weights and fit
 SCORE_BLOCKS = 200  # of the record, over which scores are summed for the covariance
-TRANSIENT_TERMS = 4  # of the ends of the record
 MIN_STAGE_GAIN = 30.0  # of the logarithm of the likelihood, from which the output stage is worth its two parameters
 STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
 DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
@@ -168,12 +167,9 @@ class _Lines:
             return np.concatenate([self.orders, self.loads], axis=1), self.error
         f, h = stage.gains(self.s)
         x = self.s / stage.frequency
-        ends = np.stack([h, h * x, np.ones_like(x), self.s / np.abs(self.s[-1])], axis=1)[:, :TRANSIENT_TERMS] / np.sqrt(
-            self.count
-        )
-        return np.concatenate(
-            [self.orders * f[:, None], self.loads * h[:, None], ends], axis=1
-        ), self.error - h * x**2 * self.angle
+        ends = np.stack([h, h * x, np.ones_like(x), self.s / np.abs(self.s[-1])], axis=1) / np.sqrt(self.count)
+        series = np.concatenate([self.orders * f[:, None], self.loads * h[:, None], ends], axis=1)
+        return series, self.error - h * x**2 * self.angle
 
     def _missed(self, logarithms: Array, floor: Array) -> Array:
         return self.misses(_stage(logarithms), floor)[1]

@@ -69,7 +69,7 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     if rate is not None:
         rate = arguments.number("rate", rate, "Hz", low=0.0)
     if count < MIN_SAMPLES:
-        raise ValueError(f"the recording has {count} samples; orders need {MIN_SAMPLES} or more")
+        raise ValueError(f"the recording has {count} samples; orders need {MIN_SAMPLES} or more: record longer")
     if "time" not in recording:
         step = 1.0 if rate is None else 1.0 / rate
         return Evenly(columns, np.ones(count, dtype=bool), step, rate is not None, 0.0, ())
@@ -111,7 +111,7 @@ def _placed(columns: dict[str, Array], time: Array) -> Evenly:
     place, time = place[stretch] - place[stretch.start], time[stretch]
     count = int(place[-1]) + 1
     if count < MIN_SAMPLES:
-        raise ValueError(f"between gaps the recording has no more than {count} samples; orders need {MIN_SAMPLES} or more")
+        raise ValueError(f"{count} samples lie between gaps; orders need {MIN_SAMPLES} or more: record without gaps")
     if missing := count - len(place):
         remarks.append(f"{missing} of {count} samples are missing; straight lines stand for them")
     measured = np.zeros(count, dtype=bool)
@@ -141,7 +141,7 @@ def _resampled(columns: dict[str, Array], time: Array, step: float) -> Evenly:
     when = time[stretch]
     grid = np.arange(when[0], when[-1], step)
     if len(grid) < MIN_SAMPLES:
-        raise ValueError(f"between gaps the recording has no more than {len(grid)} samples; orders need {MIN_SAMPLES} or more")
+        raise ValueError(f"{len(grid)} samples lie between gaps; orders need {MIN_SAMPLES} or more: record without gaps")
     after = np.clip(np.searchsorted(when, grid), 1, len(when) - 1)
     measured = when[after] - when[after - 1] < MAX_FILLED_STEPS * step
     found = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}

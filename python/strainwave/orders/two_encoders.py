@@ -102,7 +102,7 @@ class TransmissionError(ComparedByFields):
 
     @property
     def law(self) -> kinematic_error.Fourier:
-        """The significant orders of the input and of the mesh as a law, for the input angle as it was recorded."""
+        """Law of the significant orders of the input and of the mesh, for the input angle as it was recorded."""
         found = [each for each in self.orders if each.significant and each.shaft != "output"]
         found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MAX_HARMONICS], key=lambda each: each.order)
         return kinematic_error.Fourier(
@@ -164,10 +164,11 @@ def transmission_error(
     pair, measured = ratio_of(pair, ratio)
     size = measured.used
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
-    shapes = [wave for order, _ in chosen for wave in _shape(pair, order)]
+    shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
     found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
-    whole = pair.input / size - pair.output
+    whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
+    lost = Measured(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
     frequency, damping = _stage_numbers(found, pair.record, every)
     remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen)]
     if not pair.reverses:
@@ -175,7 +176,7 @@ def transmission_error(
     return TransmissionError(
         ratio=measured,
         orders=tuple(_orders(chosen, found, false_alarm)),
-        lost_motion=_lost_motion(found, len(shapes)) if pair.reverses else None,
+        lost_motion=lost if pair.reverses else None,
         windup=_windup(pair, whole - error, load, recording),
         natural_frequency=frequency,
         damping_ratio=damping,
@@ -228,11 +229,6 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     return found, remarks
 
 
-def _shape(pair: Pair, order: float) -> tuple[Array, Array]:
-    """Return sine and cosine of an order over the input angle, of which that of the output is a fraction."""
-    return np.sin(order * pair.input), np.cos(order * pair.input)
-
-
 def _regressed(
     pair: Pair, ratio: float, shapes: Sequence[Array], loads: Sequence[Array], *, dynamic: bool
 ) -> tuple[Regressed, int]:
@@ -267,7 +263,7 @@ def _averaged(record: Evenly, recording: Recording) -> int:
 
 
 def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: float) -> Iterator[ErrorOrder]:
-    """Return each order with its standard deviations and its significance."""
+    """Yield each order with its standard deviations and its significance."""
     for place, (order, shaft) in enumerate(chosen):
         own = slice(2 * place, 2 * place + 2)
         pair, covariance = found.values[own], found.covariance[own, own]
@@ -281,11 +277,6 @@ def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: fl
         alarm = min(1.0, len(chosen) * single)
         turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
         yield ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
-
-
-def _lost_motion(found: Regressed, place: int) -> Measured:
-    """Return twice the coefficient of the direction, which is at this place."""
-    return Measured(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
 
 
 def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) -> Measured | None:
