@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from math import hypot
 
 from strainwave import arguments
 from strainwave.files.units import check as check_unit
@@ -34,6 +35,11 @@ class Entry:
     def assumed(self) -> bool:
         """Whether the number was neither measured nor published."""
         return self.source.startswith("assumed") or self.source == NOT_GIVEN
+
+    def sigma(self, value: float) -> float | None:
+        """Return the standard deviation of a value from this source; None if it states neither spread nor uncertainty."""
+        stated = self.spread is not None or self.uncertainty is not None
+        return hypot((self.spread or 0.0) * value, self.uncertainty or 0.0) if stated else None
 
     def __post_init__(self) -> None:
         check_line("source", self.source)

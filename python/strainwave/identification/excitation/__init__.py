@@ -1,1 +1,1 @@
-"""What to measure next, to know chosen parameters best."""
+"""Measurements to make next, which determine chosen parameters best."""

@@ -24,16 +24,16 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
-SPEEDS = 40  # of a friction table, from the lowest to the highest
-AMPLITUDES = 12  # of a torsion loop
-MIN_LOOP = 0.02  # of the torque limit: amplitude of the smallest torsion loop
-MIN_STEPS = 20.0  # resolutions of torque and of angle in the amplitude of a loop: in fewer its shape cannot be seen
+SPEED_COUNT = 40  # of a friction table, from the lowest to the highest
+AMPLITUDE_COUNT = 12  # of a torsion loop
+MIN_AMPLITUDE_SHARE = 0.02  # of the torque limit: amplitude of the smallest torsion loop
+MIN_STEPS = 20.0  # resolutions of torque and of angle in the amplitude of a loop: fewer do not show its shape
 TORQUE_RESOLUTION = 2e-3  # of the torque limit; classes of torque sensors are 0.1 to 0.5 % of their rated torque (assumed)
 OUTPUT_ANGLE_RESOLUTION = 1e-5  # rad, 2 arc seconds: a good encoder of an output with its mounting (assumed)
 INPUT_ANGLE_RESOLUTION = 1e-4  # rad, 16 bit a turn: the encoder of a motor (assumed)
 LOOP_SAMPLES = 200
-SHARES = (1.0, 0.5, 0.25, 0.1)  # of a command
-USUAL = ("input_angle", "current")  # columns of a log that nearly every drive records
+COMMAND_SHARES = (1.0, 0.5, 0.25, 0.1)  # of a command
+USUAL_COLUMNS = ("input_angle", "current")  # columns of a log that nearly every drive records
 RELATIVE_NOISE = 0.01  # of the largest value of a channel, if no noise is given (assumed)
 
 
@@ -67,13 +67,13 @@ class Resolution:
 
 
 Noise = Mapping[str, float]
-"""Standard deviation of what is measured: "friction" of the mean torque at one speed, at the input [N.m]; of one sample of a
+"""Standard deviation of a measurement: "friction" of the mean torque at one speed, at the input [N.m]; of one sample of a
 loop "torsion" at the output and "input_torsion" at the input [N.m]; of one sample of a column of a log, by its name."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How fast and how hard a gear may be driven; infinite where there is no limit.
+    """Largest speed and torque of a gear; infinite without a limit.
 
     Args:
         speed: of the input [rad/s]
@@ -92,9 +92,9 @@ class Candidate:
 
     Attributes:
         kind: friction, torsion or motion
-        settings: how it is made, with units in the names
+        settings: numbers of the measurement, with units in their names
         words: the same in words
-        duration: what it takes [s]
+        duration: its time [s]
         information: about the unknown parameters, in their units, shape (p, p)
     """
 
@@ -109,12 +109,12 @@ def friction(
     gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, resolution: Resolution, duration: float
 ) -> Iterator[Candidate]:
     """Yield friction torques at the input at constant speeds, each both ways."""
-    one_way = np.geomspace(limits.lowest_speed, limits.speed, SPEEDS)
+    one_way = np.geomspace(limits.lowest_speed, limits.speed, SPEED_COUNT)
     speed = np.concatenate((one_way, -one_way))
     torque, slopes = _predicted(FrictionTable(speed, speed), gear, paths)
     sigma = _sigma(noise, "friction", float(np.abs(torque).max()), resolution.input_torque)
     for row, each in enumerate(one_way.tolist()):
-        rows = slopes[:, 0, [row, row + SPEEDS]].T / sigma
+        rows = slopes[:, 0, [row, row + SPEED_COUNT]].T / sigma
         words = f"friction torque at ± {each:.4g} rad/s of the input ({each * 30.0 / pi:.4g} rpm)"
         yield Candidate("friction", {"input_speed_rad_s": each}, words, 2.0 * duration, rows.T @ rows)
 
@@ -127,7 +127,7 @@ def torsion(
     Loops that the sensors do not resolve are left out.
     """
     ratio = float(gear.kinematics.ratio)
-    for amplitude in np.geomspace(MIN_LOOP * limits.torque, limits.torque, AMPLITUDES).tolist():
+    for amplitude in np.geomspace(MIN_AMPLITUDE_SHARE * limits.torque, limits.torque, AMPLITUDE_COUNT).tolist():
         largest = float(np.max(gear.twist([0.0, amplitude])))
         for side, at in (("output", None), ("input", ratio)):
             if not resolution.resolves(amplitude, largest, at):
@@ -169,8 +169,8 @@ def motion(
 ) -> Iterator[Candidate]:
     """Yield runs of a drive from rest under commands, and under shares of them; those that keep the limits."""
     known = outputs(drive)
-    channels = [name for name in noise if name in known] or [name for name in USUAL if name in known]
-    tried = [(name, share, command * share) for name, command in commands.items() for share in SHARES]
+    channels = [name for name in noise if name in known] or [name for name in USUAL_COLUMNS if name in known]
+    tried = [(name, share, command * share) for name, command in commands.items() for share in COMMAND_SHARES]
     runs = [(*each, simulate(drive, each[-1], sample=sample)) for each in tried]
     kept = [each for each in runs if _kept(each[-1], limits)]
     if not kept:

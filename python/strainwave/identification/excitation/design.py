@@ -1,7 +1,6 @@
-"""The choice among many possible measurements by their Fisher information.
+"""Choice among many possible measurements by their Fisher information.
 
-Fedorov1972; Atkinson2007, chapters 10
-(criteria) and 12 (exchange).
+Fedorov1972; Atkinson2007, chapters 10 (criteria) and 12 (exchange).
 """
 
 from __future__ import annotations
@@ -15,8 +14,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Criterion = Literal["A", "D"]
 MIN_INFORMATION = 1e-4  # in relative units, a standard deviation of 100 times the value: less counts as not known
+MIN_RELATIVE_INFORMATION = 1e-13  # of the largest eigenvalue: less is rounding
 MIN_GAIN = 1e-9  # of a criterion; a smaller one is rounding
 MAX_PASSES = 50  # of exchanges; a handful is enough
+BUDGET_TOLERANCE = 1e-12  # relative, for rounding
 
 
 def without_nuisances(slopes: Array, of_nuisances: Array) -> Array:
@@ -57,43 +58,48 @@ def best(
         before: what is known before, shape (p, p)
         wanted: places of the parameters that count
     """
-    taken: list[int] = []
+    chosen: list[int] = []
     total, left = before.copy(), budget
-    while (affordable := np.flatnonzero(cost <= left * (1.0 + 1e-12))).size:
+    while (affordable := np.flatnonzero(cost <= left * (1.0 + BUDGET_TOLERANCE))).size:
         gain = score(total, wanted, criterion) - score(total + information[affordable], wanted, criterion)
         place = int(np.argmax(gain / cost[affordable]))
         if gain[place] <= MIN_GAIN:
             break
-        taken.append(int(affordable[place]))
-        total, left = total + information[taken[-1]], left - cost[taken[-1]]
-    return _exchanged(taken, information, cost, left, before, wanted, criterion)
+        chosen.append(int(affordable[place]))
+        total, left = total + information[chosen[-1]], left - cost[chosen[-1]]
+    return _exchanged(chosen, information, cost, left, before, wanted, criterion)
 
 
 def _exchanged(
-    taken: list[int], information: Array, cost: Array, left: float, before: Array, wanted: Sequence[int], criterion: Criterion
+    chosen: list[int], information: Array, cost: Array, left: float, before: Array, wanted: Sequence[int], criterion: Criterion
 ) -> list[int]:
     """Return the places with single measurements replaced by others, as long as that improves the criterion."""
     for _ in range(MAX_PASSES):
         improved = False
-        for place, one in enumerate(taken):
-            rest = before + information[[*taken[:place], *taken[place + 1 :]]].sum(axis=0)
-            possible = np.flatnonzero(cost <= (left + cost[one]) * (1.0 + 1e-12))
+        for place, one in enumerate(chosen):
+            rest = before + information[[*chosen[:place], *chosen[place + 1 :]]].sum(axis=0)
+            possible = np.flatnonzero(cost <= (left + cost[one]) * (1.0 + BUDGET_TOLERANCE))
             scores = score(rest + information[possible], wanted, criterion)
             other = int(possible[np.argmin(scores)])
             if scores.min() < score(rest + information[one], wanted, criterion) - MIN_GAIN:
                 left += float(cost[one] - cost[other])
-                taken[place], improved = other, True
+                chosen[place], improved = other, True
         if not improved:
             break
-    return sorted(taken)
+    return sorted(chosen)
 
 
 def covariance_of(information: Array) -> Array:
     """Return the covariance in relative units, shape (p, p); infinite for parameters of which a combination is not known."""
     values, directions = np.linalg.eigh(information)
-    dead = values < np.maximum(MIN_INFORMATION, 1e-13 * values.max(initial=0.0))
+    dead = undetermined(values)
     root = directions[:, ~dead] / np.sqrt(values[~dead])
     covariance: Array = root @ root.T
     for place in np.flatnonzero((np.abs(directions[:, dead]) > 1e-6).any(axis=1)):
         covariance[place, place] = np.inf
     return covariance
+
+
+def undetermined(eigenvalues: Array) -> NDArray[np.bool_]:
+    """Return True for eigenvalues of an information matrix whose directions count as not known, shape (p,)."""
+    return np.asarray(eigenvalues < max(MIN_INFORMATION, MIN_RELATIVE_INFORMATION * float(eigenvalues.max(initial=0.0))))

@@ -14,7 +14,7 @@ from strainwave import Drive, Gear, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
 from strainwave.identification.excitation.candidates import Candidate, Limits, Noise, Resolution
-from strainwave.identification.excitation.design import Criterion, best, covariance_of
+from strainwave.identification.excitation.design import Criterion, best, covariance_of, undetermined
 from strainwave.identification.fitting.fit import Fit
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
@@ -23,9 +23,9 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
-KINDS = ("friction", "torsion", "motion")
-DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged; of a slow loop (assumed)
-IN_A_LOOP = ("stiffness", "hysteresis", "friction_input")  # what a torsion loop may depend on
+EXPERIMENTS = ("friction", "torsion", "motion")
+USUAL_DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged; of a slow loop (assumed)
+PARTS_IN_A_LOOP = ("stiffness", "hysteresis", "friction_input")  # that a torsion loop may depend on
 MAX_MEASUREMENTS = 5000  # of a plan: beyond, comparing them takes minutes
 MAX_SPEED, MAX_TORQUE = 1e6, 1e9  # rad/s at the input and N.m at the output: no gear reaches them
 MIN_SPEED_SHARE = 1e-3  # of the largest speed: the lowest that is held steady, if it is not given
@@ -42,9 +42,9 @@ class Step:
 
     Attributes:
         kind: friction, torsion or motion
-        words: what to do
+        words: the measurement in words
         settings: the same as numbers and words, with units in the names
-        repeats: how often
+        repeats: count of repeats
         duration: of all repeats [s]
     """
 
@@ -62,8 +62,8 @@ class Expectation:
     Attributes:
         path, unit, value: the parameter in the model
         before, after: standard deviation, in its unit; infinite where it is not known
-        wanted: whether the plan was made for it
-        why: what limits its uncertainty, if it exceeds 10 %; else empty
+        wanted: True if the plan was made for it
+        why: the limit of its uncertainty, if that exceeds 10 %; else empty
     """
 
     path: str
@@ -82,7 +82,7 @@ class ExperimentPlan:
     Attributes:
         steps: the measurements
         expectations: of each parameter that is not known
-        notes: what the numbers rest on
+        notes: assumptions of the numbers
 
     >>> step = Step("friction", "hold 10 rad/s at the input", {"input_speed_rad_s": 10.0}, 3, 60.0)
     >>> plan = ExperimentPlan((step,), (Expectation("gear.damping", "N.m.s/rad", 2.0, np.inf, 0.5, True, ""),), ())
@@ -107,13 +107,13 @@ class ExperimentPlan:
         raise KeyError(f"{path} is none of {listed(each.path for each in self.expectations)}")
 
     def summary(self) -> str:
-        """The plan in words and numbers, to print."""
-        lines = (
-            [f"measure for {self.duration / 60.0:.3g} min:"]
+        """Return the plan in words and numbers, to print."""
+        head = (
+            f"measure for {self.duration / 60.0:.3g} min:"
             if self.steps
-            else ["no measurement within the limits adds information"]
+            else "no measurement within the limits adds information"
         )
-        lines += [f"  {step.repeats} x {step.words}" for step in self.steps]
+        lines = [head, *(f"  {step.repeats} x {step.words}" for step in self.steps)]
         lines.append(f"{'parameter':40} {'value':>12} {'sigma before':>13} {'and after':>12}  unit")
         for each in self.expectations:
             before = "not known" if np.isinf(each.before) else f"{each.before:.3g}"
@@ -164,7 +164,7 @@ def plan_experiments(
         torque_limit: at the output [N.m]; with ratings of a set the smaller counts
         noise: standard deviations: "friction" of the torque at one speed, at the input [N.m]; "torsion" and "input_torsion" of
             a sample of a loop at the output and at the input [N.m]; of a sample of each column of a log by its name, which
-            also says which columns are recorded, "input_angle" and "current" if none. If not given, 1 % of the largest value,
+            also names the columns recorded, "input_angle" and "current" if none. If not given, 1 % of the largest value,
             and no less than the resolution
         resolution: smallest differences that the sensors resolve: "torque" [N.m] and "angle" [rad] at the output,
             "input_torque" [N.m] and "input_angle" [rad] at the input. Loops whose amplitude is less than 20 of them are not
@@ -187,7 +187,7 @@ def plan_experiments(
     >>> f"{plan['friction_input.viscous'].after:.3g}"  # 1e-3 N.m / 99 rad/s
     '1.01e-05'
     """
-    kinds = [arguments.one_of("experiments", each, KINDS) for each in arguments.names("experiments", experiments)]
+    kinds = [arguments.one_of("experiments", each, EXPERIMENTS) for each in arguments.names("experiments", experiments)]
     arguments.one_of("criterion", criterion, ("A", "D"))
     whole = _whole(model, "motion" in kinds)
     budget = arguments.seconds("time", time)
@@ -209,7 +209,7 @@ def plan_experiments(
     before = _information_before(model, known, unknowns, scale)
     asked = {each.path for each in _named("wanted", whole, wanted)}
     everything = before + information.sum(axis=0)
-    reach = np.isfinite(np.diag(covariance_of(everything)))  # what cannot be told at all must not stop the rest
+    reach = np.isfinite(np.diag(covariance_of(everything)))  # a parameter that nothing determines must not stop the rest
     places = [place for place, each in enumerate(unknowns) if each.path in asked and reach[place]]
     cost = np.array([each.duration for each in found])
     if budget > MAX_MEASUREMENTS * cost.min():
@@ -217,14 +217,14 @@ def plan_experiments(
             f"time = {budget:g} s is enough for more than {MAX_MEASUREMENTS} measurements of {cost.min():g} s; give less time, "
             "or longer durations"
         )
-    taken = best(information, cost, budget, before, places, criterion) if places else []
-    after = before + information[taken].sum(axis=0)
+    chosen_places = best(information, cost, budget, before, places, criterion) if places else []
+    after = before + information[chosen_places].sum(axis=0)
     expectations = _expectations(unknowns, scale, before, after, everything, asked, kinds)
-    return ExperimentPlan(_steps(found, taken), expectations, _notes(kinds, limits, noise, sensors, resolution or {}))
+    return ExperimentPlan(_steps(found, chosen_places), expectations, _notes(kinds, limits, noise, sensors, resolution or {}))
 
 
 def _whole(model: object, moves: bool) -> Any:
-    """The drive of a set that has one, or must have one; else its gear as a drive's, so that paths begin as in its sources."""
+    """Return the drive of a set that has or needs one; else its gear in a drive, so that paths begin as in its sources."""
     if isinstance(model, GearSet):
         return model.drive if moves or (model.motor is not None and model.load is not None) else Drive(gear=model.gear)
     if isinstance(model, Drive | Gear):
@@ -238,9 +238,9 @@ def _unknowns(whole: Any, wanted: Sequence[str], unknown: Sequence[str] | None, 
         raise ValueError("wanted must name at least one parameter")
     if unknown is None:
         gear = "gear." if isinstance(whole, Drive) else ""
-        beside = [f"{gear}{part}." for part in IN_A_LOOP] if "torsion" in kinds else []
+        in_loop = [f"{gear}{part}." for part in PARTS_IN_A_LOOP] if "torsion" in kinds else []
         inside = {each.path.rpartition(".")[0] + "." for each in named if "." in each.path.removeprefix(gear)}
-        others = {path for path in every(whole) if path.startswith((*inside, *beside))}
+        others = {path for path in every(whole) if path.startswith((*inside, *in_loop))}
     else:
         others = {each.path for each in _named("unknown", whole, unknown)}
     paths = others | {each.path for each in named}
@@ -248,7 +248,7 @@ def _unknowns(whole: Any, wanted: Sequence[str], unknown: Sequence[str] | None, 
 
 
 def _named(name: str, whole: Any, paths: Sequence[str]) -> list[Parameter]:
-    """The parameters that an argument names by themselves, by their sequence or by the part that they stand in."""
+    """Return the parameters that an argument names by themselves, by their sequence or by their part."""
     wanted: list[str] = []
     for path in arguments.names(name, paths):
         inside = [each for each in every(whole) if each.startswith(f"{path}.")]
@@ -257,7 +257,7 @@ def _named(name: str, whole: Any, paths: Sequence[str]) -> list[Parameter]:
 
 
 def _noise(noise: Mapping[str, float], whole: Any) -> dict[str, float]:
-    """Standard deviations that are given, by names that are known."""
+    """Return the standard deviations that are given, by names that are known."""
     arguments.mapping("noise", noise, '{"friction": 1e-3}')
     known = ["friction", "torsion", "input_torsion", *(outputs(whole) if isinstance(whole, Drive) else ())]
     for name in noise:
@@ -278,7 +278,7 @@ def _resolution(given: Mapping[str, float], whole: Any, limits: Limits) -> Resol
 
 
 def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: float | None, torque: float | None) -> Limits:
-    """The limits that are given, or those of the ratings where they are smaller."""
+    """Return the limits that are given, or those of the ratings if they are smaller."""
     ratings = model.ratings if isinstance(model, GearSet) else {}
     speeds = [] if speed is None else [arguments.number("speed_limit", speed, "rad/s", "(]", 0.0, MAX_SPEED)]
     torques = [] if torque is None else [arguments.number("torque_limit", torque, "N.m", "(]", 0.0, MAX_TORQUE)]
@@ -291,12 +291,9 @@ def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: fl
     if "torsion" in kinds and not torques:
         raise ValueError("torque_limit is needed for torsion: the model has no rating of the torque")
     highest = min(speeds, default=np.inf)
-    slowest = (
-        MIN_SPEED_SHARE * highest
-        if lowest is None
-        else arguments.number("lowest_speed", lowest, "rad/s", low=0.0, high=highest)
-    )
-    return Limits(highest, min(torques, default=np.inf), slowest)
+    if lowest is not None:
+        lowest = arguments.number("lowest_speed", lowest, "rad/s", low=0.0, high=highest)
+    return Limits(highest, min(torques, default=np.inf), MIN_SPEED_SHARE * highest if lowest is None else lowest)
 
 
 def _candidates(
@@ -310,7 +307,8 @@ def _candidates(
     commands: Mapping[str, Scenario] | None,
     sample: float,
 ) -> list[Candidate]:
-    lasting = {kind: arguments.seconds(f"durations: {kind}", durations.get(kind, usual)) for kind, usual in DURATIONS.items()}
+    asked = {kind: durations.get(kind, usual) for kind, usual in USUAL_DURATIONS.items()}
+    lasting = {kind: arguments.seconds(f"durations: {kind}", duration) for kind, duration in asked.items()}
     gear = whole.gear if isinstance(whole, Drive) else whole
     of_gear = [path.removeprefix("gear.") if isinstance(whole, Drive) else path for path in paths]
     found: list[Candidate] = []
@@ -338,7 +336,8 @@ def _information_before(model: object, known: Known | None, unknowns: Sequence[P
                 raise ValueError(f"known: {path} is none of the unknown parameters, {listed(paths)}")
     for place, each in enumerate(unknowns):
         if isinstance(source, GearSet):
-            sigma = _sigma_of(source, _in_gear(each.path), each.value)
+            entry = source.sources.get(_in_gear(each.path))
+            sigma = None if entry is None else entry.sigma(each.value)
         else:
             sigma = (source or {}).get(each.path)
         if sigma is not None and sigma != 0.0:
@@ -347,22 +346,15 @@ def _information_before(model: object, known: Known | None, unknowns: Sequence[P
 
 
 def _in_gear(path: str) -> str:
-    """The path of a number in a set: that of a gear alone begins inside the gear."""
+    """Return the path of a number in a set: that of a gear alone begins inside the gear."""
     return path if path.split(".")[0] in ("gear", "motor", "load", "control", "sensors", "thermal", "meter") else f"gear.{path}"
-
-
-def _sigma_of(gear_set: GearSet, path: str, value: float) -> float | None:
-    entry = gear_set.sources.get(path)
-    if entry is None:
-        return None
-    return entry.uncertainty if entry.uncertainty is not None else None if entry.spread is None else entry.spread * abs(value)
 
 
 def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
     """Return the information of a fit, with its correlations; what it did not determine is not known."""
     before = np.zeros((len(unknowns), len(unknowns)))
-    told = {_in_gear(each.path): row for row, each in enumerate(fit.estimates) if np.isfinite(each.sigma) and each.sigma > 0.0}
-    pairs = [(place, told[_in_gear(each.path)]) for place, each in enumerate(unknowns) if _in_gear(each.path) in told]
+    rows = {_in_gear(each.path): row for row, each in enumerate(fit.estimates) if np.isfinite(each.sigma) and each.sigma > 0.0}
+    pairs = [(place, rows[_in_gear(each.path)]) for place, each in enumerate(unknowns) if _in_gear(each.path) in rows]
     if pairs:
         here, there = (np.array(side) for side in zip(*pairs, strict=True))
         covariance = fit.covariance[np.ix_(there, there)] / np.outer(scale[here], scale[here])
@@ -370,9 +362,8 @@ def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
     return before
 
 
-def _steps(found: Sequence[Candidate], taken: Sequence[int]) -> tuple[Step, ...]:
-    counted = Counter(taken)
-    steps = [(found[place], often) for place, often in sorted(counted.items())]
+def _steps(found: Sequence[Candidate], places: Sequence[int]) -> tuple[Step, ...]:
+    steps = [(found[place], often) for place, often in sorted(Counter(places).items())]
     return tuple(Step(each.kind, each.words, each.settings, often, often * each.duration) for each, often in steps)
 
 
@@ -415,7 +406,7 @@ def _reasons(paths: Sequence[str], covariance: Array, everything: Array, kinds: 
         if everything[place, place] == 0.0:
             reasons.append(f"nothing that {listed(kinds)} measures depends on it; it needs another kind of experiment")
         elif np.isinf(reach[place]):
-            dead = np.abs(directions[place]) * (values < 1e-13 * values.max() + 1e-4)
+            dead = np.abs(directions[place]) * undetermined(values)
             direction = np.abs(directions[:, int(np.argmax(dead))])
             beside = [paths[other] for other in others if direction[other] > 1e-3]
             reasons.append(
