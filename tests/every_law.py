@@ -189,7 +189,7 @@ def cases() -> dict[str, Case]:
             found[f"{part}: {name}"] = partial(fixed, built(law), [f"{path}.{each}" for each in free])
     found["damping"] = partial(fixed, base(), ["gear.damping", "gear.stiffness.k"])
     found["motor"] = partial(fixed, base(), ["motor.resistance", "motor.torque_constant", "motor.inertia"])
-    for kind in ("linear", "cubic", "piecewise", "three_segment", "backlash_linear"):
+    for kind in ("linear spring", "cubic spring", "piecewise spring", "three-segment spring", "linear spring behind play"):
         found[f"spring: {kind}"] = partial(of_spring, kind)
     for beside, law in [*BESIDE[1:], *WHOLE]:
         found[f"hysteresis: {type(beside).__name__}{getattr(beside, 'branches', '')}"] = partial(of_memory, law)

@@ -29,7 +29,7 @@ from strainwave.identification.candidates.torsion.memories import (
     Regimes,
     Without,
 )
-from strainwave.identification.candidates.torsion.springs import KINDS, Kind, Negligible
+from strainwave.identification.candidates.torsion.springs import PLAIN, Backlash, Kind, Negligible
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 from strainwave.parameters import every
@@ -48,20 +48,23 @@ def path() -> Array:
     return np.interp(np.linspace(0.0, travelled[-1], SAMPLES), travelled, ends)
 
 
-def spring(name: str, draw: Draw) -> Any:
+KINDS: tuple[Kind, ...] = (*PLAIN, *(Backlash(kind) for kind in PLAIN))
+
+
+def spring(words: str, draw: Draw) -> Any:
     """A spring of that kind, of some 20 to 40 N.m at the end of the path."""
     k = TORQUE / HALF * draw.uniform(0.5, 1.0)
     st = sw.stiffness
-    if name.startswith("backlash_"):
-        law = spring(name.removeprefix("backlash_"), draw)
+    if words.endswith(" behind play"):
+        law = spring(words.removesuffix(" behind play"), draw)
         return st.Backlash(law=law, clearance=HALF * draw.uniform(0.1, 0.5))
-    if name == "linear":
+    if words == "linear spring":
         return st.Linear(k=k)
-    if name == "cubic":
+    if words == "cubic spring":
         return st.Cubic(a1=0.6 * k, a3=draw.uniform(0.2, 0.8) * k / HALF**2)
-    if name == "piecewise":
+    if words == "piecewise spring":
         return st.Piecewise(k1=0.6 * k, k2=draw.uniform(0.4, 1.2) * k, knee=HALF * draw.uniform(0.25, 0.6))
-    if name == "three_segment":
+    if words == "three-segment spring":
         k1, k2, k3 = 0.5 * k, draw.uniform(0.8, 1.0) * k, draw.uniform(1.3, 1.8) * k
         first, second = HALF * draw.uniform(0.15, 0.3), HALF * draw.uniform(0.5, 0.65)
         return st.ThreeSegment(k1=k1, k2=k2, k3=k3, t1=k1 * first, t2=k1 * first + k2 * (second - first))
@@ -139,7 +142,7 @@ WHOLE: list[tuple[Beside, Callable[[Draw], object]]] = [(Regimes(), regimes), (F
 
 def distances(kind: Kind, beside: Beside, law: Callable[[Draw], object], draw: Draw) -> dict[str, float] | None:
     """How many standard deviations each number of a fit lies off the truth; none where the fit is of fewer numbers."""
-    elastic = sw.stiffness.Linear(k=1e-3) if isinstance(kind, Negligible) else spring(kind.name, draw)
+    elastic = sw.stiffness.Linear(k=1e-3) if isinstance(kind, Negligible) else spring(kind.words, draw)
     truth = sw.Gear(stiffness=elastic, hysteresis=law(draw))  # type: ignore[arg-type]
     twist = path()
     torque = truth.trace(twist)
@@ -150,7 +153,7 @@ def distances(kind: Kind, beside: Beside, law: Callable[[Draw], object], draw: D
     known = [path for path in fitted if "." in path]
     if len(true_of(truth, kind, beside)) != len(known):
         return None
-    in_series = "multi_compliance" in kind.name
+    in_series = "multi-compliance" in kind.words
     told = [path for path in known if not (in_series and path.startswith("stiffness."))]
     of_numbers = {path: (fitted[path].value - true[path].value) / fitted[path].sigma for path in told}
     return of_numbers | (curve_distances(found, truth) if in_series else {})
@@ -187,7 +190,7 @@ def main() -> int:
     pairs = [(kind, *beside) for kind in KINDS for beside in BESIDE] + [(Negligible(), *beside) for beside in WHOLE]
     failed = 0
     for kind, beside, law in pairs:
-        name = f"{kind.name} {type(beside).__name__}{getattr(beside, 'branches', '')}"
+        name = f"{kind.words} {type(beside).__name__}{getattr(beside, 'branches', '')}"
         if wanted.only not in name:
             continue
         found = [distances(kind, beside, law, np.random.default_rng(seed)) for seed in range(wanted.truths)]

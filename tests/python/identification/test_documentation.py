@@ -26,7 +26,8 @@ def percent(share: float) -> str:
         f"kept parameters that move it by more than {percent(identifiability.MIN_SHIFT_LISTED)}",
         f"it would move by more than {percent(identifiability.MAX_SHIFT_BY_WRONG)} were a parameter",
         f"standard deviation exceeds half the value (of a phase: {identifiability.MAX_SIGMA_OF_PHASE:g} rad)",
-        f"else {percent(influence.STATED_NOWHERE)}, and {percent(influence.ASSUMED)} where its source begins with",
+        f"else {percent(influence.SIGMA_IF_NOT_STATED)}, and "
+        f"{percent(influence.SIGMA_IF_ASSUMED)} where its source begins with",
         f"differ by more than {NUMBERS[int(combined_parameter.MAX_DISTANCE)]} standard deviations",
         f"more is left than {percent(unexplained.MAX_SHARE_OF_MOTION)} of an angle, a speed or a loop, "
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "

@@ -160,7 +160,7 @@ def test_milliamperes_called_amperes_fail_a_check(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (friction(SPEED[:6], TORQUE[:6]), "it holds one direction only: a zero error of the torque"),
+        (friction(SPEED[:6], TORQUE[:6]), "it has one direction only: a zero error of the torque"),
     ],
 )
 def test_what_a_table_cannot_tell_is_said(tmp_path: Path, make: Make, told: str) -> None:

@@ -1,9 +1,9 @@
-"""What a log of both encoders tells of the gear between them: spring, hysteresis, damping and kinematic error.
+"""Spring, hysteresis, damping and kinematic error of a gear by a log of the encoders at both of its sides.
 
-The input is moved as it was measured, and the output that a model then has is compared with the output measured (`DrivenLog`).
-So neither motor nor friction take part. Of the output stage only ratios are told: were its inertia, gravity, stiffness, damping
-and hysteresis all twice as large, it would move in the same way. One torque must be known otherwise; the log along its motion
-tells it, as gravity or inertia of the load (`candidates.motion`).
+The input is moved as it was measured, and the output of a model is compared with the measured one (`DrivenLog`). So neither
+motor nor friction take part. The log determines ratios of the output stage: if inertia, gravity, stiffness, damping and
+hysteresis were all twice as large, it would move in the same way. One torque must be known otherwise; the log along its motion
+determines it, as gravity or inertia of the load (`candidates.motion`).
 """
 
 from __future__ import annotations
@@ -22,32 +22,30 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
-from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, needed_torque
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.covariance import covariance_of
-from strainwave.identification.fitting.fit import Fit, Part, problem_of
-from strainwave.identification.fitting.loss import LOSSES
+from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 
 Array = NDArray[np.float64]
 
-BLOCKS = 10  # of a log, every second of which is held out while models are compared
-STRETCH = 10.0  # s, of a log on which models are compared
-LONGEST = 40.0  # s, of a log that numbers are told from
-STEP = 1e-3  # s, of the simulation, at most
-OF_RADIAN = 0.25  # of the time in which the vibration of the output goes on by 1 rad: steps change its period by 3e-5 (RK4)
-SEEN = 3.0  # standard deviations, beyond which the twist under load is seen
-PRESLIDING = 0.5  # of the stiffness: an element of the hysteresis from which fits start (assumed)
-DAMPING = 0.05  # of critical damping: from where fits start (assumed)
-SPLIT = 0.7  # of the stiffness of an element, which the first of two takes over (assumed)
+TIME_BLOCKS = 10  # of a log, every second of which is held out while models are compared
+COMPARED_TIME = 10.0  # s, of the part of a log on which models are compared
+MAX_TIME = 40.0  # s, of a log to which the chosen model is fitted
+MAX_STEP = 1e-3  # s, of the simulation
+MAX_PHASE_STEP = 0.25  # rad, of the vibration of the output in a step, which changes its period by 3e-5 (RK4)
+MIN_TWIST_SIGMA = 3.0  # standard deviations of the twist under load
+START_ELEMENT_SHARE = 0.5  # of the stiffness: initial stiffness of an element of the hysteresis (assumed)
+START_DAMPING_RATIO = 0.05  # initial, of critical damping (assumed)
+FIRST_ELEMENT_SHARE = 0.7  # of the stiffness of an element, for the first of the two that it becomes (assumed)
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
-TRIALS = 15  # steps of a fit
-SQUARED = LOSSES["linear"]
-PLACE_OF_SPEED = 2  # among the columns of what moves the angle between the shafts
-OUTER = 0.75  # of the largest torque: where a third segment is taken to begin, from which fits start (assumed)
-FAR = 10.0  # times the largest torque: a knee there does nothing
+MAX_TRIALS = 15  # steps of a fit
+PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
+THIRD_SEGMENT_SHARE = 0.75  # of the largest torque: initial beginning of a third segment (assumed)
+UNREACHED_KNEE = 10.0  # times the largest torque: a knee there does nothing
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
@@ -60,10 +58,10 @@ class ElasticCandidate(ComparedByFields):
     Attributes:
         name: of spring and hysteresis
         fit: to the whole log
-        sigmas: standard deviation of each estimate, with what is taken as known held exact: by the fit, or by how blocks of
-            the log differ; with how far models lie apart that predict as well
-        error: rms of the output's angle on data held out [rad]
-        twist: rms of what load and kinematic error turn the output by [rad]
+        sigmas: standard deviation of each estimate if the known torque is exact: by the fit, or by leaving out blocks of the
+            log; with the distance to models that predict as well
+        error: rms error of the output's angle on data held out [rad]
+        twist: rms of the angle by which load and kinematic error turn the output [rad]
         reach: the largest torque that the gear transmits [N.m]
     """
 
@@ -76,7 +74,7 @@ class ElasticCandidate(ComparedByFields):
 
     @property
     def drive(self) -> Drive:
-        """The drive that was found."""
+        """Fitted drive."""
         model: Drive = self.fit.model
         return model
 
@@ -84,17 +82,17 @@ class ElasticCandidate(ComparedByFields):
 def fit_elastic(
     recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier
 ) -> ElasticCandidate:
-    """Spring, hysteresis, damping and kinematic error between two encoders, by the simplest model that predicts as well as any.
+    """Fit spring, hysteresis, damping and kinematic error between two encoders; return the simplest model of the best ones.
 
     Args:
         recording: `input_angle` and `output_angle`, which counts in the sense of the drive's ratio
         log: the same along its motion
-        drive: with the load that the log along its motion has told, and the gear to start from
-        scale: the path of what of that load is taken as known, `load.gravity_torque` or `load.inertia`
-        law: the kinematic error to start from, whose orders are looked for
+        drive: with the load by the log along its motion, and the gear to start from
+        scale: path of the number of that load that is taken as known, `load.gravity_torque` or `load.inertia`
+        law: initial kinematic error, whose orders are fitted
 
     Raises:
-        ValueError: noise hides the twist that the load makes, or the output does not move as any model does
+        ValueError: noise hides the twist under load, or no model moves as the output does
         FloatingPointError: no model could be simulated
     """
     found = _fitted(recording, log, drive, scale, law, delayed=True)
@@ -108,14 +106,13 @@ def _fitted(
     recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier, *, delayed: bool
 ) -> ElasticCandidate:
     """Return the simplest model that predicts as well as any; `delayed`: a delay of the output angle is an unknown."""
-    stiff, reach = _seen(recording, log, drive, law)
+    stiff, reach = _stiffness(recording, log, drive, law)
     start = _start(drive, stiff, reach, law)
-    best, rivals = _chosen(
-        _compared(_stretch(recording, log, drive, STRETCH), start, delayed=delayed), start, drive.gear.stiffness, scale, reach
-    )
-    whole = _compared(_stretch(recording, log, drive, LONGEST), best.drive, delayed=delayed)
+    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), start, delayed=delayed)
+    best, rivals = _chosen(compared, start, drive.gear.stiffness, scale, reach)
+    whole = _compared(_stretch(recording, log, drive, MAX_TIME), best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
-    found = _fit_of(problem, x)
+    found = fit_of(problem, x, problem.weights(x))
     sigmas = sigma_by_blocks(problem, x, found.estimates)
     apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in found.estimates])
     twist = float(np.std(whole.measured[0] - whole.angle / drive.gear.kinematics.ratio))
@@ -123,13 +120,13 @@ def _fitted(
     return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
 
 
-def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
-    """About how stiff the gear is [N.m/rad], and the largest torque along the rigid motion [N.m].
+def _stiffness(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
+    """Return the approximate stiffness of the gear [N.m/rad], and the largest torque along the rigid motion [N.m].
 
-    The angle between the shafts is regressed on that torque, beside orders, direction and speed, in the pass band of the log.
+    The angle between the shafts is regressed on that torque, with orders, direction and speed, in the pass band of the log.
 
     Raises:
-        ValueError: the twist that the torque makes is not seen
+        ValueError: noise hides the twist
     """
     motion, ratio = log.motion, drive.gear.kinematics.ratio
     torque = transmitted_torque(log, drive)
@@ -145,12 +142,12 @@ def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_err
     covariance, _ = covariance_of(columns / size, left[np.newaxis])
     softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
     reach = float(np.abs(torque[motion.compared]).max())
-    if not softness > SEEN * sigma:
+    if not softness > MIN_TWIST_SIGMA * sigma:
         late = 1e3 * ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
-            f"what else moves them leave {float(np.std(left)):.2g} rad unexplained, beside {late:.3g} ms by which output_angle "
-            "comes behind input_angle: load it more, or measure the angles better"
+            f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {late:.3g} ms behind: "
+            "load it more, or measure the angles better"
         )
     return float(1.0 / softness), reach
 
@@ -159,7 +156,7 @@ def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
     """Return the torque that a rigid gear transmits to the output, on the grid of the motion [N.m]."""
     ratio = drive.gear.kinematics.ratio
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
-    still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=1e-12))
+    still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=MIN_INERTIA))
     return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
@@ -167,13 +164,13 @@ def _compared(recording: Recording, drive: Drive, *, delayed: bool) -> DrivenLog
     """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates."""
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
-    step = min(STEP, OF_RADIAN * float(np.sqrt(inertia_of(drive) / stiff)))
+    step = min(MAX_STEP, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
     compared = DrivenLog.of(recording, drive, ["output_angle"], step)
     return compared.with_delays("output_angle") if delayed else compared
 
 
 def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) -> Recording:
-    """The part of a log, of this length [s] if it is much longer, in which the torque varies most."""
+    """Return the part of a log, of this length [s] if the log is much longer, in which the torque varies most."""
     time = recording.time - recording.time[0]
     if time[-1] <= 1.5 * length:
         return recording
@@ -192,7 +189,7 @@ def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) 
 
 @dataclass(frozen=True, eq=False)
 class _Tried(ComparedByFields):
-    """A model on the stretch: its name, what is free of it, the drive found, and the error held out [rad]."""
+    """A model fitted to a part of the log: its name, free paths, drive, and error on data held out [rad]."""
 
     name: str
     free: tuple[str, ...]
@@ -201,22 +198,22 @@ class _Tried(ComparedByFields):
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """The numbers that are free."""
+        """Fitted numbers by path."""
         return {path: value for path, value, *_ in _core.parameters(self.drive) if path in self.free}
 
     @property
     def elements(self) -> int:
-        """Of the hysteresis."""
+        """Count of the elements of hysteresis."""
         return sum(path.startswith(f"{MEMORY}breakaway") for path in self.free)
 
 
 def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourier) -> Drive:
-    """The drive with a linear spring, one element of hysteresis, and no friction but that of the output."""
+    """Return the drive with a linear spring, one element of hysteresis, and no friction but that of the output."""
     inertia = inertia_of(drive)
     gear = drive.gear.replace(
-        stiffness=stiffness.Linear(k=stiff / (1.0 + PRESLIDING)),
-        hysteresis=hysteresis.MaxwellSlip(stiffness=[PRESLIDING * stiff], breakaway=[0.05 * reach]),
-        damping=2.0 * DAMPING * float(np.sqrt(stiff * inertia)),
+        stiffness=stiffness.Linear(k=stiff / (1.0 + START_ELEMENT_SHARE)),
+        hysteresis=hysteresis.MaxwellSlip(stiffness=[START_ELEMENT_SHARE * stiff], breakaway=[0.05 * reach]),
+        damping=2.0 * START_DAMPING_RATIO * float(np.sqrt(stiff * inertia)),
         friction_input=FRICTIONLESS,
         friction_mesh=FRICTIONLESS,
         kinematic_error=law,
@@ -225,10 +222,10 @@ def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourie
 
 
 def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) -> tuple[_Tried, list[_Tried]]:
-    """The model to which no further part adds, and those that predict as well.
+    """Return the model that no further part improves, and those that predict as well.
 
-    Of parts that may be added, that which predicts best comes next: a bend of the spring and a further element of the
-    hysteresis can stand for each other, so that neither may come first.
+    The part that predicts best is added next: a bend of the spring and a further element of hysteresis can imitate each other,
+    so that neither comes first.
     """
     best, left = _tried(log, start, scale, reach), [_bent, _with_element, _bent_twice]
     every = [best]
@@ -244,9 +241,9 @@ def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) ->
 
 
 def _apart(path: str, one: _Tried, other: _Tried) -> float:
-    """How far a number of the gear lies apart in two models that predict alike; 0 where the other has no such number.
+    """Return the distance of a number of the gear in two models that predict alike; 0 if the other model lacks it.
 
-    Elements of hysteresis are compared where there are as many.
+    Elements of hysteresis are compared if both models have as many.
     """
     if path.startswith(MEMORY) and one.elements != other.elements:
         return 0.0
@@ -258,7 +255,7 @@ def _apart(path: str, one: _Tried, other: _Tried) -> float:
 def _with(
     more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _Tried, law: Any, scale: str, reach: float
 ) -> _Tried | None:
-    """A model with one part more, from where it ended without; None where that makes none."""
+    """Return the model with one part more, from its fit without; None if the part does not apply."""
     if (grown := more(best.drive, law, reach)) is None:
         return None
     try:
@@ -276,8 +273,8 @@ def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _Tried:
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
-    """Every second of some blocks of time, over instants [s], shape (n,)."""
-    block = np.minimum((BLOCKS * (time - time[0]) / (time[-1] - time[0])).astype(int), BLOCKS - 1)
+    """Return True for instants [s] in every second block of time, shape (n,)."""
+    block = np.minimum((TIME_BLOCKS * (time - time[0]) / (time[-1] - time[0])).astype(int), TIME_BLOCKS - 1)
     training: NDArray[np.bool_] = block % 2 == 0
     return training
 
@@ -285,21 +282,13 @@ def _training_blocks(time: Array) -> NDArray[np.bool_]:
 def _solved(
     log: DrivenLog, drive: Drive, free: Sequence[str], training: NDArray[np.bool_] | None, tolerance: float
 ) -> tuple[Problem, Array]:
-    """The least squares of a log of one channel, whose weight then changes nothing, and the unknowns near their least."""
-    problem = problem_of(plan(drive, [""], free), [""], [drive], [log], [training])
-    return problem, problem.solve(problem.start(), problem.first_weights(), SQUARED, tolerance, trials=TRIALS)
-
-
-def _fit_of(problem: Problem, x: Array) -> Fit:
-    record = problem.records[0]
-    ((predicted, _),) = problem.predict(x)
-    estimates, covariance = problem.estimates(x, problem.weights(x, problem.first_weights(), SQUARED), SQUARED)
-    part = Part("", record.model(x), record.experiment, predicted, record.training)
-    return Fit(part.model, estimates, covariance, (part,), problem.plan, "linear", problem.evaluations)
+    """Return the least squares of a log of one channel, whose weight changes nothing, and the unknowns that solve it."""
+    problem = problem_of(plan(drive, [""], free), drive, [log], [training])
+    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_TRIALS)
 
 
 def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
-    """Return the paths of what is not known of the output stage; nothing is known beyond the largest torque."""
+    """Yield the paths of the unknown numbers of the output stage; those beyond the largest torque are not determined."""
     spring = drive.gear.stiffness
     beyond = ("k3", "t2") if isinstance(spring, stiffness.ThreeSegment) and spring.t2 > reach else ()
     kept = {f"{SPRING}{name}" for name in beyond} | {scale}
@@ -309,11 +298,11 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
 
 
 def _bent(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """With the law of the gear to start from, as stiff; of two segments where that is linear, or has three."""
+    """Return the drive with the law of the initial gear, as stiff; with two segments if that is linear, or has three."""
     stiff = drive.gear.stiffness.tangent(0.0)
     if isinstance(law, stiffness.Linear | stiffness.ThreeSegment):
         knee = min(getattr(law, "t1", np.inf), 0.5 * reach)
-        bent: Any = stiffness.ThreeSegment(k1=0.8 * stiff, k2=1.2 * stiff, k3=1.2 * stiff, t1=knee, t2=FAR * reach)
+        bent: Any = stiffness.ThreeSegment(k1=0.8 * stiff, k2=1.2 * stiff, k3=1.2 * stiff, t1=knee, t2=UNREACHED_KNEE * reach)
         return drive.replace(gear=drive.gear.replace(stiffness=bent))
     softer = stiff / law.tangent(0.0) if law.tangent(0.0) > 0.0 else 1.0
     numbers = {
@@ -323,27 +312,26 @@ def _bent(drive: Drive, law: Any, reach: float) -> Drive | None:
 
 
 def _with_element(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """With the last element of hysteresis split in two, of which one slides later."""
+    """Return the drive with the last element of hysteresis split in two, of which one slides later."""
     elements: Any = drive.gear.hysteresis
     *stiffs, stiff = elements.stiffness
     *limits, limit = elements.breakaway
-    more = hysteresis.MaxwellSlip(
-        stiffness=[*stiffs, SPLIT * stiff, (1.0 - SPLIT) * stiff], breakaway=[*limits, 0.5 * limit, 0.5 * limit]
-    )
+    split = [FIRST_ELEMENT_SHARE * stiff, (1.0 - FIRST_ELEMENT_SHARE) * stiff]
+    more = hysteresis.MaxwellSlip(stiffness=[*stiffs, *split], breakaway=[*limits, 0.5 * limit, 0.5 * limit])
     return drive.replace(gear=drive.gear.replace(hysteresis=more))
 
 
 def _bent_twice(drive: Drive, law: Any, reach: float) -> Drive | None:
     """Return the drive with a third segment, if the second is determined and the torque goes far beyond its beginning."""
     spring: Any = drive.gear.stiffness
-    knee = OUTER * reach
+    knee = THIRD_SEGMENT_SHARE * reach
     if not isinstance(spring, stiffness.ThreeSegment) or spring.t1 > knee:
         return None
     return drive.replace(gear=drive.gear.replace(stiffness=spring.replace(t2=knee, k3=1.1 * spring.k2)))
 
 
 def _name(drive: Drive) -> str:
-    """What the model of the gear is, in words."""
+    """Return the model of the gear in words."""
     gear: Any = drive.gear
     spring, count = gear.stiffness, len(gear.hysteresis.stiffness)
     return f"{spring.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"

@@ -18,33 +18,30 @@ from strainwave.identification.candidates.steady_shapes import (
     QUADRANTS,
     Shape,
     alike,
-    beside_speed,
     is_loaded,
     over_speed,
     under_load,
+    with_conditions,
 )
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.identification.fitting.loss import NORMAL_MAD
+from strainwave.identification.fitting.noise import chance_of_gain
 
 Array = NDArray[np.float64]
 
 MAX_FOLDS = 10  # parts of a table, each predicted from the others
 TIMED_STEPS = 2_000  # of a law
-OUTLIER_SIGMA = 6.0  # noise does not reach so far
+MIN_OUTLIER_SIGMA = 6.0  # robust standard deviations off, beyond noise
 MIN_ROWS_FOR_OUTLIERS = 12
 MAX_OUTLIER_SHARE = 0.1  # of the rows
 MAX_ERROR_LEFT = 0.5  # of the error, without the outliers
 MAX_PASSES = 3  # as outliers hide behind larger ones
-ROUNDING = 1e-7  # of the largest torque: smaller errors are those of rounding and of where a fit ends
+MAX_ROUNDING = 1e-7  # of the largest torque: smaller errors are those of rounding and of the end of a fit
 MAX_CHANCE = 0.01  # probability that chance explains as much as more numbers do
 MAX_RELATIVE_SIGMA = 0.5  # of a number that a law determines
-STEADY_NUMBERS = (
-    "coulomb",
-    "breakaway",
-    "stribeck_speed",
-    "viscous",
-)  # what bristles have in common with a law of steady friction
+STEADY_NUMBERS = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # mean the same in every law
 
 Plain = (
     friction.Viscous
@@ -55,7 +52,7 @@ Plain = (
     | friction.CurvedViscous
     | friction.MixedLubrication
     | friction.AngleSpeedMap
-)  # what a table of torque over speed determines
+)  # laws that a table of torque over speed determines
 Modulated = friction.Asymmetric | friction.Thermal | friction.Cyclic
 
 
@@ -69,10 +66,8 @@ class FrictionCandidate(ComparedByFields):
         held_out: torque at each speed as predicted without the measurements near it [N.m], shape (n,)
         error: rms of measured less `held_out` [N.m]
         error_sigma: standard error of `error` [N.m]
-        whiteness: probability that residuals in the order of the speed are as alike as these by chance (LjungBox1978)
         information: Akaike's criterion, corrected for few samples (HurvichTsai1989) [1]; the least is best
         ties: numbers that follow a fitted one, and its path
-        chance: probability that the first candidate's residuals shrink as much by chance (F test); of the first, 1
     """
 
     name: str
@@ -80,24 +75,22 @@ class FrictionCandidate(ComparedByFields):
     held_out: Array
     error: float
     error_sigma: float
-    whiteness: float
     information: float
     ties: Mapping[str, str] = field(default_factory=dict)
-    chance: float = 1.0
 
     @property
     def law(self) -> Any:
-        """The law found, as it stands at the input of the gear."""
+        """Fitted law of friction at the input of the gear."""
         return self.fit.gear.friction_input
 
     @property
     def parameters(self) -> int:
-        """How many numbers were fitted; those that follow another one are not counted."""
+        """Count of the fitted numbers, without those that follow another one."""
         return len(self.fit.plan.unknowns)
 
     @property
     def coulomb(self) -> float:
-        """Coulomb torque found [N.m]; of a map the mean of its slowest speed."""
+        """Fitted Coulomb torque [N.m]; of a map the mean of its slowest speed."""
         law = innermost(self.law)
         if isinstance(law, friction.AngleSpeedMap):
             return float(np.mean(law.level[: len(law.level) // len(law.speed)]))
@@ -105,7 +98,7 @@ class FrictionCandidate(ComparedByFields):
 
     @property
     def viscous(self) -> float:
-        """Viscous friction found [N.m.s/rad]; of a curved one, its chord to the reference speed; a map has none by itself."""
+        """Fitted viscous coefficient [N.m.s/rad]; of a curved one, its chord to the reference speed; of a map 0."""
         if isinstance(innermost(self.law), friction.AngleSpeedMap):
             return 0.0
         if isinstance(innermost(self.law), friction.CurvedViscous):
@@ -113,39 +106,12 @@ class FrictionCandidate(ComparedByFields):
         return self._found("viscous")
 
     def estimate(self, other: Estimate) -> Estimate | None:
-        """Its number of the same name as one of another law; none where it has none."""
+        """Return its estimate of the same name as one of another law; None without."""
         name = other.path.rpartition(".")[2]
         return next((each for each in self.fit.estimates if each.path.rpartition(".")[2] == name), None)
 
     def _found(self, name: str) -> float:
         return next(each.value for each in self.fit.estimates if each.path.rpartition(".")[2] == name)
-
-
-@dataclass(frozen=True)
-class Rank:
-    """A line of the ranking of laws.
-
-    Attributes:
-        name: what the law describes
-        law: its name in gear files, from the outside in
-        parameters: how many numbers were fitted
-        error: rms error of predictions from the rest of the table [N.m]
-        error_sigma: its standard error [N.m]
-        whiteness: probability that chance leaves residuals as alike as these
-        information: Akaike's criterion, corrected for few samples
-        chance: probability that chance alone explains more than Coulomb's law does (F test)
-        cost: time of one step of the law on this machine [µs]
-    """
-
-    name: str
-    law: str
-    parameters: int
-    error: float
-    error_sigma: float
-    whiteness: float
-    information: float
-    chance: float
-    cost: float
 
 
 def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
@@ -183,28 +149,18 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
         )
     speeds = len(np.unique(table.speed))
     if speeds < 4:
-        raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
+        raise ValueError(
+            f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}: record more, both ways"
+        )
     tried, trusted = _without_outliers(table, gear)
     _, best = _chosen(tried)
-    simplest = tried[0][1]
     others = sorted((candidate for _, candidate in tried if candidate is not best), key=lambda candidate: candidate.error)
-    found = [replace(each, chance=_chance(simplest, each)) for each in (best, *others)]
+    found = [best, *others]
     if not trusted.all():
         _warn(table, trusted, best)
         found = [_on_all(each, table, trusted) for each in found]
     found[0] = _widened_by_choice(*found)
     return [replace(each, fit=_written(each, gear, known)) for each in found]
-
-
-def ranking(candidates: Sequence[FrictionCandidate]) -> list[Rank]:
-    """Return the candidates as lines of a table, in their order, each with the time of a step of its law."""
-    return [
-        Rank(
-            each.name, _called(each.law), each.parameters, each.error, each.error_sigma, each.whiteness, each.information,
-            each.chance, cost_of(each.law),
-        )
-        for each in candidates
-    ]  # fmt: skip
 
 
 def innermost(law: Any) -> Any:
@@ -239,10 +195,6 @@ def _known(law: Any, table: FrictionTable) -> Any:
     return _known(law.law, table) if shown else law
 
 
-def _called(law: Any) -> str:
-    return f"{law.name} of {_called(law.law)}" if isinstance(law, Modulated) else str(law.name)
-
-
 def outliers(off: Array) -> NDArray[np.bool_]:
     """Return which of the errors of predictions are outliers: few, and more standard deviations off than noise reaches.
 
@@ -250,8 +202,8 @@ def outliers(off: Array) -> NDArray[np.bool_]:
     [6]
     """
     size = np.abs(off)
-    sigma = float(np.median(size)) / 0.6745  # of a normal distribution
-    far = size > OUTLIER_SIGMA * sigma
+    sigma = float(np.median(size)) / NORMAL_MAD
+    far = size > MIN_OUTLIER_SIGMA * sigma
     return (
         far
         if len(off) >= MIN_ROWS_FOR_OUTLIERS and sigma > 0.0 and far.mean() <= MAX_OUTLIER_SHARE
@@ -260,13 +212,13 @@ def outliers(off: Array) -> NDArray[np.bool_]:
 
 
 def _tried(table: FrictionTable, gear: Gear) -> list[tuple[Shape, FrictionCandidate]]:
-    """Return every law that the table may determine, those over the speed first, the simplest of all at the beginning."""
+    """Return every law that the table may determine, those over the speed first."""
     shapes = [*over_speed(table), *(under_load(table, gear.kinematics.ratio) if is_loaded(table) else ())]
     tried = [(shape, found) for shape in shapes if _falls(found := _candidate(shape, table, gear))]
     shape, best = _chosen(tried)
     mesh = shape.mesh and best.fit.gear.friction_mesh
-    beside = beside_speed(table, replace(shape, law=best.law, mesh=mesh), best.fit.residuals[0])
-    return [*tried, *((more, _candidate(more, table, gear)) for more in beside)]
+    wider = with_conditions(table, replace(shape, law=best.law, mesh=mesh), best.fit.residuals[0])
+    return [*tried, *((more, _candidate(more, table, gear)) for more in wider)]
 
 
 def _without_outliers(table: FrictionTable, gear: Gear) -> tuple[list[tuple[Shape, FrictionCandidate]], NDArray[np.bool_]]:
@@ -305,7 +257,7 @@ def _warn(table: FrictionTable, trusted: NDArray[np.bool_], best: FrictionCandid
     named = "; ".join(f"row {row}, {table.torque[row]:.4g} N·m at {table.speed[row]:.4g} rad/s" for row in rows[:5])
     more = f"; and {len(rows) - 5} more" if len(rows) > 5 else ""
     warnings.warn(
-        f"{len(rows)} of {len(trusted)} rows of the friction table lie more than {OUTLIER_SIGMA:g} standard deviations off "
+        f"{len(rows)} of {len(trusted)} rows of the friction table lie more than {MIN_OUTLIER_SIGMA:g} standard deviations off "
         f"what the others predict, and were left out: {named}{more}. Without them the error of predictions is "
         f"{best.error:.3g} N·m. Measure them again, or take them out of the table",
         RuntimeWarning,
@@ -325,7 +277,7 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
     Also one that chance may have made worse than the best (F test): of many laws tried some look better than they are.
     """
     best = min((candidate for _, candidate in tried), key=lambda candidate: candidate.error)
-    squares, rounding = _squares(best), (ROUNDING * float(np.abs(best.fit.experiment.measured).max())) ** 2
+    squares, rounding = _squares(best), (MAX_ROUNDING * float(np.abs(best.fit.experiment.measured).max())) ** 2
 
     def as_good(candidate: FrictionCandidate) -> bool:
         worse = _squares(candidate) - squares
@@ -371,12 +323,7 @@ def _chance(simplest: FrictionCandidate, candidate: FrictionCandidate) -> float:
 
 def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
     """Return the probability that `more` unknowns shrink white residuals as much by chance (F test), of `unknowns` in all."""
-    from scipy.stats import f as fisher
-
-    freedom, rest, gain = len(left) - unknowns, float(np.sum(left**2)), float(np.sum(before**2) - np.sum(left**2))
-    if freedom <= 0:
-        return 1.0
-    return float(fisher.sf(max(gain, 0.0) / more * freedom / rest, more, freedom)) if rest > 0.0 else 0.0
+    return chance_of_gain(float(np.sum(before**2)), float(np.sum(left**2)), more, len(left) - unknowns)
 
 
 def _written(candidate: FrictionCandidate, gear: Gear, known: Plain) -> Fit:
@@ -419,28 +366,10 @@ def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandid
     squares = (table.torque - held_out) ** 2
     error = float(np.sqrt(np.mean(squares)))
     spread = float(np.std(squares, ddof=1) / np.sqrt(len(squares)))
-    residual = whole.residuals[0]
     return FrictionCandidate(
         shape.name, whole, held_out, error, 0.5 * spread / error if error > 0.0 else 0.0,
-        whiteness(residual[np.argsort(table.speed, kind="stable")]), information(residual, len(shape.paths)), shape.followers,
+        information(whole.residuals[0], len(shape.paths)), shape.followers,
     )  # fmt: skip
-
-
-def whiteness(residual: Array) -> float:
-    """Return the probability that white noise has autocorrelations as large as these (LjungBox1978), over up to ten lags.
-
-    >>> whiteness(np.random.default_rng(1).normal(size=200)) > 0.01, whiteness(np.sin(np.arange(200.0) / 9.0)) < 1e-9
-    (True, True)
-    """
-    from scipy.stats import chi2
-
-    n, lags = len(residual), min(10, len(residual) // 5)
-    centred = residual - residual.mean()
-    power = float(np.sum(centred**2))
-    if lags == 0 or power == 0.0:
-        return 1.0
-    correlation = np.array([np.sum(centred[lag:] * centred[:-lag]) for lag in range(1, lags + 1)]) / power
-    return float(chi2.sf(n * (n + 2) * np.sum(correlation**2 / (n - np.arange(1, lags + 1))), lags))
 
 
 def information(residual: Array, parameters: int) -> float:

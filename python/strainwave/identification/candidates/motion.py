@@ -44,7 +44,7 @@ from strainwave.identification.candidates.plain import (
     stretches,
 )
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
-from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, per_torque
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
@@ -56,7 +56,6 @@ MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
-NO_INERTIA = 1e-12  # kg.m2: a load must have some
 MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
 
 
@@ -226,7 +225,7 @@ def _without_inertia(best: MotionCandidate) -> MotionModel | None:
     model = best.model
     if not _is_small(best, "load.inertia", best.log.motion.acceleration / model.drive.gear.kinematics.ratio**2):
         return None
-    drive = model.drive.replace({"load.inertia": NO_INERTIA})
+    drive = model.drive.replace({"load.inertia": MIN_INERTIA})
     return replace(model, name=f"{model.name}, no inertia", drive=drive, free=without(model.free, "inertia"))
 
 

@@ -17,7 +17,6 @@ from strainwave.identification.candidates.plain import MAX_RELATIVE_ERROR, movin
 from strainwave.identification.dynamics.log import ORDERS
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
-from strainwave.identification.fitting.loss import LOSSES as COSTS
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 
@@ -28,7 +27,6 @@ MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves mor
 MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
 MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
-SQUARED = COSTS["linear"]
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_STEPS = 8  # of a fit while models are compared
 MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
@@ -186,8 +184,8 @@ def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[s
     """Fit a model as nearly as comparisons need, from where it starts."""
     known = {path: prior for path, prior in priors.items() if path in model.free}
     asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
-    problem = problem_of(asked, [""], [model.drive], [model.log], [None])
-    x = problem.solve(problem.start(), problem.first_weights(), SQUARED, MAX_RELATIVE_COST, trials=MAX_STEPS)
+    problem = problem_of(asked, model.drive, [model.log], [None])
+    x = problem.solve(problem.start(), problem.first_weights(), MAX_RELATIVE_COST, trials=MAX_STEPS)
     (record,) = problem.records
     ((predicted, _),) = problem.predict(x)
     ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))

@@ -1,4 +1,4 @@
-"""Document P's procedure: friction over the motor's angle, an average that bends over many turns and what repeats with each.
+"""Document P's procedure: friction over the motor's angle, a parabola over many turns and harmonics of each turn.
 
 Friction of sliding at constant speed is f = s1 q^2 + s2 q + s3 + b |v| + sum_k (a_k cos k q + b_k sin k q), k up to 10
 (document P, equations of f_aver, f_peri and f_visc). P prints neither a_k and b_k nor B; a constant a_0 / 2 or B is the same
@@ -24,10 +24,10 @@ from strainwave.identification.fitting.estimate import Estimate
 
 Array = NDArray[np.float64]
 
-TURN = 2.0 * np.pi
-ORDERS = 10  # of document P, and of the law
-FEWEST = 4  # samples for each period of the highest order
-APART = 3.0  # standard deviations, beyond which two numbers contradict each other
+TURN = 2.0 * np.pi  # rad
+ORDERS = 10  # count of harmonics of document P, and of the law
+MIN_SAMPLES_PER_PERIOD = 4  # of the highest order
+CONTRADICTION_SIGMA = 3.0  # standard deviations: two numbers further apart contradict each other
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,12 +35,12 @@ class PositionFit(ComparedByFields):
     """Friction over the angle, as document P describes it.
 
     Attributes:
-        law: the friction found, valid over the angles measured
+        law: fitted friction, valid over the angles measured
         estimates: its numbers, as `quadratic` and `cosine[0]`, by least squares over all samples
         residual: measured less fitted friction [N.m], shape (n,)
         angle: of the samples of all runs, one after the other [rad], shape (n,)
-        friction: their friction, positive where it holds the motion back [N.m], shape (n,)
-        integrated: the same law by P's integrals over whole turns, None where fewer than three whole turns were measured
+        friction: their friction, positive if it opposes the motion [N.m], shape (n,)
+        integrated: the same law by P's integrals over whole turns; None for fewer than three whole turns
     """
 
     law: PositionDependent
@@ -57,12 +57,12 @@ class Reading:
 
     Attributes:
         name: total friction, or its viscous part, of speeds of the motor or of the output
-        coulomb: its torque at speed 0 [N.m]: of the viscous part, what it adds to Coulomb's
+        coulomb: its torque at speed 0 [N.m]: of the viscous part, that on top of Coulomb's
         viscous: its rise with the speed of the motor [N.m.s/rad]
-        total: what the drive's friction would be with it at each speed of the table [N.m], where the law's average is least
-        contradicts: what it excludes, in words; empty if it fits
-        part: true if the table is the viscous part, which comes on top of Coulomb's
-        remark: what the offset of a viscous part adds to the law, in words; empty if there is none
+        total: friction of the drive with it at each speed of the table [N.m], where the law's average is least
+        contradicts: contradictions to the law, in words; empty if it fits
+        part: True if the table is the viscous part, which comes on top of Coulomb's
+        remark: meaning of the offset of a viscous part, in words; empty if there is none
     """
 
     name: str
@@ -74,46 +74,36 @@ class Reading:
     remark: str
 
 
-def fit_position(recordings: Recording | Sequence[Recording], orders: int = ORDERS) -> PositionFit:
-    """Friction over the angle from runs at constant speed.
+def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
+    """Fit friction over the angle to runs at constant speed.
 
-    Least squares over all samples, so that turns need not be whole; and, where three whole turns of a run were measured, P's
-    own way beside it: the means of whole turns give the parabola, the integrals of what it leaves give a_k and b_k. The mean of
-    a parabola over a turn exceeds its middle by s1 pi^2 / 3, which is taken off.
+    Least squares over all samples, so that turns need not be whole; and P's own way if a run has three whole turns: the means
+    of whole turns give the parabola, the integrals of the rest give a_k and b_k. The mean of a parabola over a turn exceeds its
+    middle by s1 pi^2 / 3, which is taken off.
 
     Args:
-        recordings: runs at constant speed with columns angle and torque of the motor, and speed where there are several
-            speeds; a motion towards negative angles may be among them
-        orders: harmonics of the turn, up to 10
+        recordings: runs at constant speed with columns angle and torque of the motor, and speed if there are several speeds;
+            motions towards negative angles are allowed
 
     Raises:
         ValueError: less than a turn, or too few samples for the orders
     """
-    orders = arguments.whole("orders", orders, low=0, high=ORDERS)
     runs = [_run(each) for each in ([recordings] if isinstance(recordings, Recording) else recordings)]
     if not runs:
-        raise ValueError("recordings must hold at least one run at constant speed")
+        raise ValueError("recordings is empty; give at least one run at constant speed")
     angle, level, speed = map(np.concatenate, zip(*runs, strict=True))
     start, end = float(angle.min()), float(angle.max())
     if end - start < TURN:
-        raise ValueError(f"the runs cover {(end - start) / TURN:.2f} turns; friction over the turn needs at least a whole one")
-    if len(angle) < max(FEWEST * orders * (end - start) / TURN, 2 * orders + 5):
+        raise ValueError(f"the runs cover {(end - start) / TURN:.2f} turns; record a whole turn or more")
+    if len(angle) < max(MIN_SAMPLES_PER_PERIOD * ORDERS * (end - start) / TURN, 2 * ORDERS + 5):
         raise ValueError(
-            f"{len(angle)} samples over {(end - start) / TURN:.1f} turns do not separate {orders} orders; record more, or ask "
-            "for fewer"
+            f"{len(angle)} samples over {(end - start) / TURN:.1f} turns do not separate {ORDERS} orders; record more"
         )
     several = len(np.unique(np.round(speed / max(float(speed.max()), 1e-300), 2))) > 1
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
-    u, k = (angle - middle) / half, np.arange(1, orders + 1)
-    columns = [
-        u**2,
-        u,
-        np.ones_like(u),
-        *np.cos(np.outer(k, angle)),
-        *np.sin(np.outer(k, angle)),
-        *([speed] if several else []),
-    ]
-    jacobian = np.stack(columns, axis=1)
+    u, k = (angle - middle) / half, np.arange(1, ORDERS + 1)
+    waves = (*np.cos(np.outer(k, angle)), *np.sin(np.outer(k, angle)))
+    jacobian = np.stack([u**2, u, np.ones_like(u), *waves, *([speed] if several else [])], axis=1)
     found = np.linalg.lstsq(jacobian, level, rcond=None)[0]
     residual = level - jacobian @ found
     covariance, freedom = covariance_of(jacobian, residual[np.newaxis])
@@ -124,28 +114,28 @@ def fit_position(recordings: Recording | Sequence[Recording], orders: int = ORDE
         [(middle / half) ** 2, -middle / half, 1.0],
     ]
     numbers, sigma = back @ found, np.sqrt(np.diag(back @ covariance @ back.T))
-    names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(orders))]
-    units = ["N.m/rad2", "N.m/rad", *(2 * orders + 1) * ["N.m"]]
+    names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(ORDERS))]
+    units = ["N.m/rad2", "N.m/rad", *(2 * ORDERS + 1) * ["N.m"]]
     if several:
         names, units = [*names, "viscous"], [*units, "N.m.s/rad"]
     estimates = tuple(
         Estimate(name, unit, 0.0, float(value), float(off), False, freedom)
         for name, unit, value, off in zip(names, units, numbers, sigma, strict=True)
     )
-    law = _law(numbers, orders, start, end, viscous=float(numbers[-1]) if several else 0.0)
-    whole = [integrated for run in runs if (integrated := _integrated(run[0], run[1], orders)) is not None]
-    beside = _law(np.mean(whole, axis=0), orders, start, end) if whole and not several else None
+    law = _law(numbers, start, end, viscous=float(numbers[-1]) if several else 0.0)
+    whole = [integrated for run in runs if (integrated := _integrated(run[0], run[1])) is not None]
+    beside = _law(np.mean(whole, axis=0), start, end) if whole and not several else None
     return PositionFit(law, estimates, residual, angle, level, beside)
 
 
-def _law(numbers: Array, orders: int, start: float, end: float, viscous: float = 0.0) -> PositionDependent:
+def _law(numbers: Array, start: float, end: float, viscous: float = 0.0) -> PositionDependent:
     quadratic, linear, constant, *waves = numbers.tolist()
     return PositionDependent(
         quadratic=quadratic,
         linear=linear,
         constant=constant,
-        cosine=waves[:orders],
-        sine=waves[orders : 2 * orders],
+        cosine=waves[:ORDERS],
+        sine=waves[ORDERS : 2 * ORDERS],
         viscous=max(viscous, 0.0),
         domain_start=start,
         domain_end=end,
@@ -153,21 +143,21 @@ def _law(numbers: Array, orders: int, start: float, end: float, viscous: float =
 
 
 def _run(recording: Recording) -> tuple[Array, Array, Array]:
-    """Angle, size of the friction and size of the speed of a run one way."""
+    """Return angle, size of the friction and size of the speed of a run one way."""
     check_recording("recordings", recording)
     angle, torque = sensible(recording, "angle", "rad"), sensible(recording, "torque", "N.m")
-    if np.any(np.abs(np.diff(angle)) > np.pi):  # an encoder that begins anew with every turn
+    if np.any(np.abs(np.diff(angle)) > np.pi):  # an encoder that wraps
         angle = np.unwrap(angle)
     way = float(np.sign(angle[-1] - angle[0]))
     if way == 0.0:
-        raise ValueError("the angle ends where it began: friction over the angle needs a run one way, at constant speed")
+        raise ValueError("the angle ends where it began; give each run one way, at constant speed, by itself")
     speed = np.abs(recording.values("speed", "rad/s")) if "speed" in recording.names else np.zeros_like(angle)
     level = way * torque if np.mean(torque) * way > 0.0 or np.any(torque < 0.0) else torque
     return angle, level, speed
 
 
-def _integrated(angle: Array, level: Array, orders: int) -> Array | None:
-    """P's integrals over the whole turns of a run: s1, s2, s3, a_k, b_k."""
+def _integrated(angle: Array, level: Array) -> Array | None:
+    """Return P's integrals over the whole turns of a run: s1, s2, s3, a_k, b_k; None for fewer than three turns."""
     order = np.argsort(angle, kind="stable")
     angle, level = angle[order], level[order]
     first, turns = float(angle[0]), int((angle[-1] - angle[0]) // TURN)
@@ -182,13 +172,13 @@ def _integrated(angle: Array, level: Array, orders: int) -> Array | None:
     constant -= quadratic * np.pi**2 / 3.0
     q, f = _between(angle, level, first, first + turns * TURN)
     left = f - np.polyval([quadratic, linear, constant], q)
-    k = np.arange(1, orders + 1)[:, np.newaxis]
+    k = np.arange(1, ORDERS + 1)[:, np.newaxis]
     waves = np.concatenate([np.cos(k * q), np.sin(k * q)])
     return np.concatenate([[quadratic, linear, constant], 2.0 / (turns * TURN) * np.trapezoid(left * waves, q, axis=1)])
 
 
 def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Array, Array]:
-    """The samples of a stretch, and both its ends."""
+    """Return the samples of a stretch, and both its ends."""
     inside = (angle > start) & (angle < end)
     ends = np.interp([start, end], angle, level)
     return np.concatenate([[start], angle[inside], [end]]), np.concatenate([ends[:1], level[inside], ends[1:]])
@@ -197,9 +187,8 @@ def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Arra
 def readings(table: FrictionTable, law: PositionDependent, reduction: float | None = None) -> tuple[Reading, ...]:
     """Return the readings of a table of friction over speed beside a law over the angle, as document P's Table 2.
 
-    Its title says viscous friction: then the table is the part b v + B, which is added to Coulomb's. Its columns say friction:
-    then it is all of it. Both are fitted by a line, and each states what it contradicts in the law (E-P6, E-P7, E-P11).
-    Nothing is averaged.
+    By its title it is viscous friction: the part b v + B, which is added to Coulomb's. By its columns it is the whole friction.
+    Both are fitted by a line, each with its contradictions to the law (E-P6, E-P7, E-P11). Nothing is averaged.
 
     Args:
         table: friction over speed
@@ -233,13 +222,13 @@ def readings(table: FrictionTable, law: PositionDependent, reduction: float | No
     )
     slowest = int(np.argmin(speed))
     of_level: tuple[str, ...] = ()
-    if torque[slowest] < least - APART * sigma[0]:
+    if torque[slowest] < least - CONTRADICTION_SIGMA * sigma[0]:
         of_level = (
             f"its {torque[slowest]:.3g} N·m in all at {speed[slowest]:.3g} rad/s are less than the {least:.3g} N·m that the "
             "law has at every angle",
         )
     remark = ""
-    if offset.value > APART * offset.sigma:
+    if offset.value > CONTRADICTION_SIGMA * offset.sigma:
         remark = (
             f"its offset of {offset.value:.3g} N·m is no viscous friction: one that reverses is Coulomb friction, and adds to "
             f"the law's {law.constant:.3g} N·m"
@@ -258,7 +247,7 @@ def readings(table: FrictionTable, law: PositionDependent, reduction: float | No
 
 def _against_slope(slope: Estimate, law: PositionDependent) -> tuple[str, ...]:
     """Return the contradiction of a slope to the law, in words; empty if it fits."""
-    if abs(slope.value - law.viscous) <= APART * slope.sigma:
+    if abs(slope.value - law.viscous) <= CONTRADICTION_SIGMA * slope.sigma:
         return ()
-    times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "stands against"
+    times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "contradicts"
     return (f"its slope of {slope.value:.3g} N·m·s/rad {times} the law's {law.viscous:g}",)

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 MAX_ELEMENTS = 4  # Maxwell
 GRID_SIZE = 24  # reaches of elements that a start is chosen from
 MAX_SHARE_LEFT = 0.98  # of the error: an element more that leaves more of it is the last tried
-PARTS = 4  # of the branches, each predicted from the others
+FOLDS = 4  # of the branches, each predicted from the others
 WHOLE_TRIALS, PART_TRIALS = 40, 10  # steps of a fit to the whole loop, and of one that starts from there
 MIN_RATES = 3  # different ramps, that determine how breakaway depends on the rate
 
@@ -34,10 +34,10 @@ class PreslidingCandidate(ComparedByFields):
     """One model of friction before it slides, fitted to a loop.
 
     Attributes:
-        name: what it is
+        name: of the model
         estimates: its numbers; of Maxwell elements their stiffness and the torque at which each slips
         zero: zero of the torque [N.m]
-        predicted: torque along the loop [N.m], shape (n,); of what comes before the first reversal, not compared, too
+        predicted: torque along the loop [N.m], shape (n,); also before the first reversal, where nothing is compared
         held_out: the same, each part predicted from the others
         error: rms of measured less `held_out` [N.m]
         reach: greatest motion since a reversal over that at which its last element slips [1]; below 1 the loop never slid, and
@@ -89,9 +89,9 @@ class BreakawayTorque:
     """Breakaway torque from ramps, in both directions.
 
     Attributes:
-        forward: torque that breaks away towards positive angles [N.m], None where no ramp went there
+        forward: torque that breaks away towards positive angles [N.m], None if no ramp went there
         reverse: the same towards negative angles, as a positive torque
-        slope: change of the torque for each decade of the ramp's rate [N.m], None where the rates are too few
+        slope: change of the torque for each decade of the ramp's rate [N.m], None if the rates are too few
     """
 
     forward: Estimate | None
@@ -103,15 +103,15 @@ def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[P
     """Fit a bristle (LuGre, Dahl) and up to four Maxwell elements to a loop of slow motion.
 
     The bristle follows its law in the limit of slowness, T = s F + (T0 - s F) exp(-k |x - x0| / F) since the last reversal; an
-    element clips at its level. What comes before the first reversal is not compared, for nothing is known of the friction's
-    state then; the zero of the torque is an unknown.
+    element clips at its level. Samples before the first reversal are not compared, as the state of the friction is not known
+    there; the zero of the torque is an unknown.
 
     Intervals count the noise of the torque. That of the angle makes reversals look longer and the stiffness smaller: an encoder
     whose step is a tenth of the reach F / k lowers it by three percent.
 
     Args:
         loop: torque over angle
-        elements: Maxwell elements tried, at most
+        elements: largest count of Maxwell elements tried
 
     Returns:
         candidates, best first: the one with fewest numbers whose error of branches left out lies within one standard error of
@@ -155,7 +155,7 @@ def breakaway_torque(ramps: Sequence[Breakaway]) -> BreakawayTorque:
         ValueError: no ramp
     """
     if not ramps:
-        raise ValueError("a breakaway torque needs at least one ramp that broke the shaft away")
+        raise ValueError("there is no ramp; give at least one that broke the shaft away")
     size = np.array([abs(ramp.torque) for ramp in ramps])
     way, rate = np.sign([ramp.torque for ramp in ramps]), np.log10([ramp.rate for ramp in ramps])
     forward, reverse = (way > 0.0).astype(float), (way < 0.0).astype(float)
@@ -176,12 +176,12 @@ def breakaway_torque(ramps: Sequence[Breakaway]) -> BreakawayTorque:
         sigma = student(ONE_SIGMA, freedom) * np.sqrt(variance * np.diag(np.linalg.inv(jacobian.T @ jacobian)))
     else:
         sigma = np.full(len(found), np.inf)
-    told = {
+    estimates = {
         name: Estimate(name, "N.m", float(value), float(value), float(off), False, float(max(freedom, 1)))
         for name, value, off in zip(names, found, sigma, strict=True)
     }
     return BreakawayTorque(
-        *(told.get(name) for name in ("breakaway forward", "breakaway reverse", "breakaway per decade of the rate"))
+        *(estimates.get(name) for name in ("breakaway forward", "breakaway reverse", "breakaway per decade of the rate"))
     )
 
 
@@ -252,13 +252,13 @@ def _candidate(
 ) -> PreslidingCandidate:
     count = len(start) - (2 if name == "bristle" else 1)
     found = _solved(predict, start, loop.torque, begun, count, WHOLE_TRIALS)
-    held_out = predict(found)
-    parts, again = branch % PARTS, branch > branch[begun].min()  # the first branch tells how it began, and is never left out
+    predicted = predict(found)
+    held_out = predicted.copy()
+    parts, again = branch % FOLDS, branch > branch[begun].min()  # the first branch determines the beginning
     for part in np.unique(parts[again]):
         left_out = again & (parts == part)
         if (begun & ~left_out).sum() > len(found):
             held_out[left_out] = predict(_solved(predict, found, loop.torque, begun & ~left_out, count, PART_TRIALS))[left_out]
-    predicted = predict(found)
     residual = (loop.torque - predicted)[begun]
     covariance, freedom = covariance_of(_slopes(predict, found)[begun], residual[np.newaxis])
     sigma = np.sqrt(np.diag(covariance))
@@ -270,9 +270,8 @@ def _candidate(
     stiffness, level = found[:count].reshape(2, -1)
     zero = float(found[count])
     way = float(np.max(np.abs(np.diff(loop.angle[[0, *loop.turns, -1]]))))
-    slips = (
-        (3.0 if name == "bristle" else 1.0) * 2.0 * float(np.max(level / stiffness))
-    )  # a bristle slides within three reaches
+    reaches = 3.0 if name == "bristle" else 1.0  # within which it slides
+    slips = 2.0 * reaches * float(np.max(level / stiffness))
     error = float(np.sqrt(np.mean((loop.torque - held_out)[begun] ** 2)))
     return PreslidingCandidate(name, estimates, zero, predicted, held_out, error, way / slips)
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.identification.experiments.friction_table import FrictionTable, varies
+from strainwave.identification.fitting.noise import chance_of_gain
 
 Array = NDArray[np.float64]
 
@@ -126,7 +127,7 @@ def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
     )
 
 
-def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterator[Shape]:
+def with_conditions(table: FrictionTable, shape: Shape, residual: Array) -> Iterator[Shape]:
     """Yield variations of a shape over the other quantities that a table has.
 
     Args:
@@ -198,10 +199,10 @@ def under_load(table: FrictionTable, ratio: float) -> Iterator[Shape]:
         "losses of driving and back-driving": {name: alike(name, measured) for name in measured},
         "losses of each quadrant": {name: name for name in measured},
     }
-    seen = list[dict[str, str]]()
+    before = list[dict[str, str]]()
     for name, leads in tried.items():
-        if leads not in seen:
-            seen.append(leads)
+        if leads not in before:
+            before.append(leads)
             ties = {each: lead for each, lead in leads.items() if each != lead}
             for shape in over_speed(alone):
                 losses = tuple(dict.fromkeys(leads.values()))
@@ -246,29 +247,26 @@ def _map(table: FrictionTable, angle: Array) -> Iterator[Shape]:
 def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, float, float]]:
     """Return orders, amplitudes relative to the mean, and phases [rad] of friction over the turn that chance does not explain.
 
-    Whole orders are taken one by one, each time the one that explains most of what those before it leave, as long as chance
-    would not (F test, its probability times the number looked for).
+    Whole orders are added one by one, each time the one that explains most of the rest, until chance explains as much (F test,
+    its probability times the count of orders).
     """
-    from scipy.stats import f as fisher
-
     assert table.angle is not None
     mean = table.torque - residual
     pairs = {
         n: mean[:, np.newaxis] * np.stack([np.sin(n * table.angle), np.cos(n * table.angle)], 1)
         for n in range(1, MAX_ORDER + 1)
     }
-    taken: list[int] = []
+    orders: list[int] = []
     waves, left = np.zeros(0), float(np.sum(residual**2))
-    while len(taken) < MAX_WAVES:
-        tried = {n: _explained(residual, [pairs[each] for each in (*taken, n)]) for n in pairs if n not in taken}
+    while len(orders) < MAX_WAVES:
+        tried = {n: _explained(residual, [pairs[each] for each in (*orders, n)]) for n in pairs if n not in orders}
         order, (found, still) = min(tried.items(), key=lambda item: item[1][1])
-        freedom = len(residual) - len(found)
-        if freedom < 1 or MAX_ORDER * fisher.sf(0.5 * (left - still) * freedom / max(still, 1e-300), 2, freedom) > MAX_CHANCE:
+        if MAX_ORDER * chance_of_gain(left, still, 2, len(residual) - len(found)) > MAX_CHANCE:
             break
-        taken, waves, left = [*taken, order], found, still
+        orders, waves, left = [*orders, order], found, still
     sine, cosine = waves.reshape(-1, 2).T
     size, phase = np.hypot(sine, cosine).tolist(), np.arctan2(cosine, sine).tolist()
-    return sorted(zip(map(float, taken), size, phase, strict=True))
+    return sorted(zip(map(float, orders), size, phase, strict=True))
 
 
 def _explained(residual: Array, pairs: list[Array]) -> tuple[Array, float]:

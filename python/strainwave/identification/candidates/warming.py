@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.files.recording import Recording, check_recording
+from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
 from strainwave.identification.experiments.experiment import sensible
+from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
 
 Array = NDArray[np.float64]
 
-MIN_MOVING_SPEED = 0.05  # of the largest speed; a slower axis may stick
 BLOCK_LENGTHS = (10, 30, 100)  # samples that may err together
 MIN_BLOCKS = 10  # for a variance
-MIN_TEMPERATURE_SPAN = 2.0  # K
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Warming:
         slope: how it changes with the temperature F' [unit of the effort per K]
         fall: its relative fall with the temperature -F' / F0 [1/K], as `friction.Thermal.dry_fall`
         reference_temperature: T0, mean of the samples in motion [K]
-        samples: how many were in motion
+        samples: count of those in motion
         together: length of the blocks of samples that the intervals rest on
     """
 
@@ -46,7 +46,7 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     """Return the part of an effort that reverses with the motion, and its change while the axis warms up.
 
     Least squares of the effort by a constant and its drift with the temperature (weight, offset), by sgn(v) and sgn(v) times
-    T - T0. What else moves the axis, as its inertia, counts as noise. Such noise hangs together over a movement and longer: the
+    T - T0. Other torques, as that of the inertia, count as noise. Such noise correlates over a movement and longer: the
     variance is that of sums over blocks of neighbouring samples (LiangZeger1986), the largest of several lengths of block.
 
     A log of one warm-up does not separate temperature from other changes in the same time, as wear-in or another task.
@@ -93,7 +93,10 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     wider = student(ONE_SIGMA, freedom)
     level, slope = float(found[2]), float(found[3])
     if level == 0.0:
-        raise ValueError(f"no part of {effort} turns round with the motion: it shows no friction")
+        raise ValueError(
+            f"no part of {effort} turns round with the motion: it shows no friction; give the current or torque of "
+            "the motor that moves the axis"
+        )
     of_fall = np.array([slope / level**2, -1.0 / level])
     sigmas = [np.sqrt(covariance[2, 2]), np.sqrt(covariance[3, 3]), np.sqrt(of_fall @ covariance[2:, 2:] @ of_fall)]
     numbers: Sequence[tuple[str, str, float]] = (

@@ -27,11 +27,11 @@ from strainwave.messages import listed
 AGREEMENT = "agreement of files"  # name of the check of two files
 GRAVITY = "load.gravity_torque"
 OF_LOAD = ("load.inertia", GRAVITY)
-CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit by chance: that of three standard deviations
+MAX_CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
-EDGES, SPEEDS = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
+SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
 MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
-# Of a part from run to run, in logarithms.
+# Standard deviation of a part from run to run, in logarithms.
 REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
 REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
 
@@ -73,7 +73,7 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     if not compared:
         return
     squares = sum((each.off / each.sigma) ** 2 for each in compared)
-    limit = float(chi2.isf(CHANCE, len(compared)))
+    limit = float(chi2.isf(MAX_CHANCE, len(compared)))
     apart = sorted(compared, key=lambda each: -abs(each.off / each.sigma))
     more = f", and {len(apart) - MAX_LISTED} more" if len(apart) > MAX_LISTED else ""
     yield Check(
@@ -84,17 +84,17 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
 
 
 def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[_Compared]:
-    seen = set[str]()
+    compared = set[str]()
     for each in parameters:
         estimate = each.estimate
         found = _in_set(start, estimate)
-        if found is None or found[0] in seen:
+        if found is None or found[0] in compared:
             continue
         path, before = found
         entry = start.sources.get(path)
         if entry is None or entry.assumed or before <= 0.0 or estimate.value <= 0.0:
             continue
-        seen.add(path)
+        compared.add(path)
         spread = uncertainty(before, entry) / before
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
         sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
@@ -186,12 +186,13 @@ def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, File
     units = {each.is_in_current for each in (one, other)}
     if min(map(len, speeds)) == 0 or len(units) > 1:
         return None
-    low, high = (chosen(np.quantile(each, share) for each in speeds) for chosen, share in ((max, EDGES[0]), (min, EDGES[1])))
+    slowest, fastest = zip(*(np.quantile(each, SPEED_QUANTILES) for each in speeds), strict=True)
+    low, high = max(slowest), min(fastest)
     if low > high:
         return None
     without_loss = [each for each in (one, other) if not has_loss(each)]
     load = max(map(mean_load, without_loss)) if len(without_loss) == 1 else 0.0
-    speeds_of_both = np.geomspace(low, high, SPEEDS).tolist()
+    speeds_of_both = np.geomspace(low, high, SPEED_COUNT).tolist()
     pairs = [(friction_of(one, speed, load), friction_of(other, speed, load)) for speed in speeds_of_both]
     return max(pairs, key=lambda pair: _contradiction(*pair).apart)
 

@@ -28,7 +28,7 @@ MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
 OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
 MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
-BLOCKS = 10  # of a record, over which what is left of the voltage scatters
+RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
 
 
 def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ()) -> Iterator[Check]:
@@ -111,8 +111,8 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
         return
     found = np.linalg.lstsq(columns / size, recording["voltage"], rcond=1e-8)[0]
     left = recording["voltage"] - columns / size @ found
-    blocks = [float(np.mean(each)) for each in np.array_split(left * columns[:, 1] / size[1], BLOCKS)]
-    sigma = float(np.std(blocks, ddof=1)) * len(left) / np.sqrt(BLOCKS) / size[1]
+    blocks = [float(np.mean(each)) for each in np.array_split(left * columns[:, 1] / size[1], RECORD_BLOCKS)]
+    sigma = float(np.std(blocks, ddof=1)) * len(left) / np.sqrt(RECORD_BLOCKS) / size[1]
     induced = float(found[1] / size[1])
     if not sigma < MAX_CONSTANT_SIGMA * abs(induced):
         return

@@ -18,6 +18,7 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
 
 Array = NDArray[np.float64]
@@ -35,7 +36,6 @@ MIN_ROWS_PER_BLOCK = 5
 MIN_PENDULUM_LENGTH, MAX_PENDULUM_LENGTH = 0.02, 200.0  # m
 MIN_LENGTH_SIGMA = 3.0  # standard deviations of its logarithm
 MAX_NEGATIVE_PART = 1.0  # of the held-out error of plain least squares: a larger part of the effort is there, with its sign
-MAX_RELATIVE_SIGMA = 0.5  # of an estimate that a half of the motion determines
 
 
 def checks_of_motion(
@@ -103,11 +103,8 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     With both encoders their ratio is measured; an angle of the output needs none.
     """
     log, delay = best.log, _delay(best)
-    if (
-        "output_angle" in recording
-        or "input_angle" not in recording
-        or len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK
-    ):
+    few = len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK
+    if few or "output_angle" in recording or "input_angle" not in recording:
         return
     scale = _best_scale(best, drive)
     off = float(np.log(scale))
@@ -162,12 +159,8 @@ def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array
     motion = log.motion
     speed, angle = motion.speed, factor * motion.angle / drive.gear.kinematics.ratio
     sign = np.sign(speed)
-    series = np.stack(
-        [
-            motion.acceleration, speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)),
-            np.sin(angle), np.cos(angle),
-        ]
-    )  # fmt: skip
+    friction = (speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)))
+    series = np.stack([motion.acceleration, *friction, np.sin(angle), np.cos(angle)])
     columns = motion.filtered(motion.late(series, delay)[0] if delay else series).T
     size = np.linalg.norm(columns, axis=0)
     size[size == 0.0] = 1.0
@@ -262,5 +255,5 @@ def _determined(best: MotionCandidate, rows: NDArray[np.bool_]) -> Mapping[str, 
         each.path: each
         for each in found.estimates
         if each.path not in nuisances and each.path not in best.model.ties and not each.path.endswith("_phase")
-        and each.sigma < MAX_RELATIVE_SIGMA * abs(each.value)
+        and not is_uncertain(each.value, each.sigma)
     }  # fmt: skip

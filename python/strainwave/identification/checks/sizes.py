@@ -1,4 +1,4 @@
-"""Checks of one file: its sizes against the start set and against what gears can do."""
+"""Checks of one file: its sizes against the start set and against the limits of gears."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ MAX_FRICTION_SHARE = 0.8  # of the torque at the ends of a loop: a twisted gear 
 MAX_CLIPPED_SHARE = 0.05  # of the range of the angle, over which a torque stays at the end of its range
 MIN_CLIPPED_SAMPLES = 5
 MAX_SHARE_OF_ONE_SIZE = 0.9  # of the torques of a table
-EQUAL_LEVELS = 1e-6  # relative: torques of one size
-EQUAL = 1e-9  # relative: torques that are one
+SIZE_TOLERANCE = 1e-6  # relative: torques that differ by less have one size
+END_TOLERANCE = 1e-9  # relative: torques that differ by less are at the end of the range
 REST_SPEED = 0.01  # rad/s of the input, at which friction is that of a shaft about to slide
 MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
 
@@ -189,7 +189,7 @@ def friction_of_log(
 
 
 def _other_side(factor: float, effort: str, ratio: float, column: str) -> str:
-    """Return what to give if friction is of the size of the start set with the torque counted at the other side; else empty."""
+    """Return the option to give if friction has the size of the start set with the torque counted at the other side."""
     other, there = {"joint_torque": ("input", factor * ratio), "input_torque": ("joint", factor / ratio)}.get(effort, ("", 0.0))
     if not other or 1.0 / MAX_FACTOR < factor < MAX_FACTOR or abs(np.log(max(there, 1e-300))) >= abs(np.log(factor)):
         return ""
@@ -199,7 +199,7 @@ def _other_side(factor: float, effort: str, ratio: float, column: str) -> str:
 
 
 def _acceleration(recording: Recording, found: Fit, ratio: float, source: str) -> Check:
-    """Return the check that what steady friction leaves unexplained does not follow the change of speed from row to row.
+    """Return the check that the residuals of steady friction do not follow the change of speed from row to row.
 
     `ratio` is the speed of the input over the one recorded.
     """
@@ -229,7 +229,7 @@ def clipping(recording: Recording, source: str) -> Check:
     path, values, unit = recording[angle], recording[torque], recording.unit(torque)
     share, message = 0.0, ""
     for end in (values.max(), values.min()):
-        at_end = np.concatenate([[False], np.abs(values - end) <= EQUAL * abs(end), [False]])
+        at_end = np.concatenate([[False], np.abs(values - end) <= END_TOLERANCE * abs(end), [False]])
         for first, last in np.flatnonzero(np.diff(at_end.astype(int))).reshape(-1, 2):
             moved = float(np.ptp(path[first:last]) / max(np.ptp(path), 1e-300))
             if last - first >= MIN_CLIPPED_SAMPLES and moved > share:
@@ -305,7 +305,7 @@ def hint_of_ratio(found: Fit, start: Gear) -> Iterator[str]:
 def levels_of_table(table: Recording, source: str) -> Check:
     """Return the check that the torques of a friction table differ, as measured ones do, if only by their noise."""
     torque = np.abs(table["torque"])
-    share = float(np.mean(torque >= (1.0 - EQUAL_LEVELS) * torque.max()))
+    share = float(np.mean(torque >= (1.0 - SIZE_TOLERANCE) * torque.max()))
     return Check(
         "torques of one size", source, share, MAX_SHARE_OF_ONE_SIZE, "1", share > MAX_SHARE_OF_ONE_SIZE,
         f"{100.0 * share:.0f} % of its torques have the size {torque.max():.4g} N·m: a limit or a set value is no measurement",
@@ -314,7 +314,7 @@ def levels_of_table(table: Recording, source: str) -> Check:
 
 
 def hints_of_levels(table: Recording) -> Iterator[str]:
-    """Yield what the speeds of a friction table leave open."""
+    """Yield the limits of a friction table by its speeds."""
     speed = table["speed"]
     if (speed > 0.0).all() or (speed < 0.0).all():
-        yield "it holds one direction only: a zero error of the torque is counted as Coulomb friction; measure both"
+        yield "it has one direction only: a zero error of the torque is counted as Coulomb friction; measure both"

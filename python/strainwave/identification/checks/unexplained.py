@@ -1,4 +1,4 @@
-"""The check that a fit explains its measurement; and if it does not, which likely mistake in the recording would."""
+"""Check that a fit explains its measurement; if it does not, the likely mistakes in the recording that would."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from strainwave.kinematics import StrainWave
 
 Array = NDArray[np.float64]
 
-# Share of the variation of a channel that a fit may leave unexplained beside noise. Less of an angle, which is the sum of all
-# that happened before, than of a torque or a current, which show every effect that a model leaves out.
+# Share of the variation of a channel that a fit may leave unexplained beside noise. It is less of an angle, which sums up the
+# motion before, than of a torque or a current, which contain every effect that a model lacks.
 MAX_SHARE_OF_MOTION = 0.1
 MAX_SHARE_OF_LOOP = 0.1
 MAX_SHARE_OF_TORQUE = 0.3
@@ -33,13 +33,13 @@ MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by mor
 
 @dataclass(frozen=True)
 class Cause:
-    """A likely mistake in a recording, or in what is known of its drive.
+    """A likely mistake in a recording, or in the known numbers of its drive.
 
     Attributes:
-        what: what may be wrong
-        remedy: what to do about it
-        recording: as it would be without the mistake
-        drive: as it would be
+        what: the mistake in words
+        remedy: to do about it
+        recording: without the mistake
+        drive: likewise
     """
 
     what: str

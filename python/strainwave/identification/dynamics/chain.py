@@ -22,7 +22,7 @@ Sum = tuple[tuple[int, int], ...]  # places of joints in the chain, each with th
 ACROSS, RELATIONS = 0, (0, 1, -1)  # axes at right angles; besides, parallel ones of the same and of opposite sense
 MAX_BEAM_WIDTH = 6  # parts of the chain of each length that are made longer
 MAX_SUMS = 30  # of a part of the chain
-COST_OF_SUM = 0.02  # relative, of the error: by that each sum of angles must make it smaller (assumed)
+MIN_GAIN_PER_SUM = 0.02  # relative decrease of the error by each sum of angles (assumed)
 MAX_ROWS = 1500  # of the motion, by which parts are compared
 FOLD_COUNT = 3  # stretches of the motion, each predicted by the others
 MIN_SINGULAR = 1e-4  # singular values below this share of the largest are taken as zero
@@ -102,7 +102,7 @@ def best_chain(torque: Array, base: Array, wave: Callable[[Sum], Array], joint: 
         if sums not in costs:
             waves.update({each: wave(each)[every] for each in sums if each not in waves})
             error = _error(torque, np.column_stack([base, *(waves[each] for each in sums)]))
-            costs[sums] = error * (1.0 + COST_OF_SUM) ** len(sums)
+            costs[sums] = error * (1.0 + MIN_GAIN_PER_SUM) ** len(sums)
         return costs[sums]
 
     longest = [Chain(joint, joint)]

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 TIME_BLOCKS = 10  # of the motion before the last stretch: terms are chosen by the even ones, and checked by the odd ones
-SHARE_OF_JOINT = 0.5  # what a term counts for each other joint in it, where terms are selected
+SHARE_OF_JOINT = 0.5  # weight of a term in the selection for each other joint in it
 SLOW_SHARES = (0.1, 0.5)  # of the usual speed, at which friction may fall
 END_OF_RIGID, END_OF_FRICTION = 3, 9  # of the columns of a joint by itself: inertia and gravity, offset and friction
 PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that gravity is found beside: inertia, offset, Coulomb, viscous
@@ -100,11 +100,11 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
     lossy = np.column_stack([base, _loss(torque, base, known) * np.sign(own.speed[own.rows])])
     begin, end = log.time[known][[0, -1]]
     block = np.clip(TIME_BLOCKS * (log.time - begin) / (end - begin), 0.0, TIME_BLOCKS - 1.0).astype(int)
-    plain = np.array([term.plain(arm.joint) for term in terms])
+    weights = np.array([term.weight(arm.joint) for term in terms])
     even, odd = known & (block % 2 == 0), known & (block % 2 == 1)
     if not (even.any() and odd.any()):
         return
-    for places in dict.fromkeys(tuple(Selection(torque, each, plain, even, odd).best(columns)) for each in (lossy, base)):
+    for places in dict.fromkeys(tuple(Selection(torque, each, weights, even, odd).best(columns)) for each in (lossy, base)):
         selected = {terms[place].name: terms[place].torque(arm) for place in places}
         if selected:
             yield _with_regressors(log, selected)
@@ -121,16 +121,14 @@ def _with_regressors(log: MotionLog, series: Mapping[str, Array]) -> MotionLog:
 
 
 def _alone(joint: Motion) -> Array:
-    """Return inertia, gravity, an offset, and friction of any shape over the speed, for which else terms of other joints would
-    make up, shape (columns, n)."""
+    """Return inertia, gravity, an offset, and friction of any shape over the speed, shape (columns, n).
+
+    Terms of other joints would imitate a friction that is missing.
+    """
     angle, speed = joint.angle, joint.speed
     way, usual = np.sign(speed), float(np.median(np.abs(speed[joint.rows])))
-    friction = [
-        way,
-        speed,
-        way * np.sqrt(np.abs(speed)),
-        *(way * np.exp(-np.abs(speed) / (part * usual)) for part in SLOW_SHARES),
-    ]
+    falling = (way * np.exp(-np.abs(speed) / (part * usual)) for part in SLOW_SHARES)
+    friction = [way, speed, way * np.sqrt(np.abs(speed)), *falling]
     return np.stack([joint.acceleration, np.sin(angle), np.cos(angle), np.ones_like(angle), *friction])
 
 
@@ -147,7 +145,7 @@ class _Arm:
         return in_order(self.moving)
 
     def behind(self, name: str, other: str) -> list[str]:
-        """The joints behind the first of two, on whose angles alone their inertia depends; all where no order is known."""
+        """Return the joints behind the first of two, on which alone their inertia depends; all if no order is known."""
         if not are_numbers(self.moving):
             return sorted(self.moving)
         return in_order(each for each in self.moving if int(each) > min(int(name), int(other)))
@@ -191,15 +189,15 @@ class _Term:
 
     @property
     def name(self) -> str:
-        """As `dq1 dq2 cos(2q2-q3)`."""
+        """Name as `dq1 dq2 cos(2q2-q3)`."""
         inner = "".join(
             f"{'-' if times < 0 else '+'}{abs(times) if abs(times) > 1 else ''}q{name}" for name, times in self.sum_of
         )
         wave = f"{'sin' if self.is_sine else 'cos'}({inner.removeprefix('+')})" if self.sum_of else ""
         return " ".join([*(f"dq{name}" for name in self.speeds), *([wave] if wave else [])])
 
-    def plain(self, joint: str) -> float:
-        """Return its weight in the choice: joints move in like periods, so that terms of many of them explain anything."""
+    def weight(self, joint: str) -> float:
+        """Return its weight in the selection: joints move in like periods, so that terms of many of them explain anything."""
         others = {*self.speeds, *dict(self.sum_of)} - {joint}
         return float(SHARE_OF_JOINT ** len(others))
 
@@ -222,7 +220,7 @@ class _Term:
 
 
 def _columns(motion: Motion, arm: _Arm, terms: Sequence[_Term]) -> Array:
-    """The terms in the pass band, a column each."""
+    """Return the terms in the pass band, a column each, shape (rows, terms)."""
     found = np.empty((len(motion.rows), len(terms)))
     for begin in range(0, len(terms), TERMS_AT_ONCE):
         some = terms[begin : begin + TERMS_AT_ONCE]

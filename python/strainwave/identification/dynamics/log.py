@@ -13,17 +13,18 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, friction, kinematic_error
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
+from strainwave.identification.candidates.friction import innermost
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
-QUICK = 40_000  # steps; of a longer log the beginning is fitted first, which leaves little to do for the whole
-ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque
-FOLLOWED = 1e-3  # of it, as near as it need come
-HALVINGS = 12  # of a friction that no command overcomes
-STEEPEST = 0.1  # slope of each harmonic over that of the rigid motion: no gear's is as large (assumed)
+MAX_STEPS_AT_FIRST = 40_000  # of the simulation; the beginning of a longer log is fitted first, which saves time
+MAX_ROUNDS = 4  # of fits, in which breakaway follows Coulomb's torque
+BREAKAWAY_TOLERANCE = 1e-3  # relative, between breakaway and the torque that it follows
+MAX_HALVINGS = 12  # of a friction that the command does not overcome
+MAX_SLOPE = 0.1  # of each harmonic over that of the rigid motion: no gear has a larger one (assumed)
 ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
 
 
@@ -41,7 +42,7 @@ class LogFit(ComparedByFields):
 
 
 def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
-    """Fits what a drive log can tell of a gear, by simulating the drive through the log's command.
+    """Fit parameters of a gear to a drive log, by simulating the drive under the command of the log.
 
     Args:
         log: command and measured outputs, starting at rest
@@ -55,12 +56,12 @@ def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
         ValueError: the log is too short for the parameters
     """
     training = log.time <= TRAINING_SHARE * log.time[-1]
-    is_long = log.time[-1] > QUICK * log.dt
-    near = fit(drive, log.beginning(QUICK / 2 * log.dt), free).model if is_long else drive
+    is_long = log.time[-1] > MAX_STEPS_AT_FIRST * log.dt
+    near = fit(drive, log.beginning(MAX_STEPS_AT_FIRST / 2 * log.dt), free).model if is_long else drive
     found = fit(near, log, free, training=training)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         law, wanted = found.gear.friction_input, _breakaway(found.gear, drive.gear)
-        if wanted is None or abs(innermost(law).breakaway - wanted) <= FOLLOWED * wanted:
+        if wanted is None or abs(innermost(law).breakaway - wanted) <= BREAKAWAY_TOLERANCE * wanted:
             break
         follows = _changed(law, methodcaller("replace", breakaway=wanted))
         model = found.model.replace(gear=found.gear.replace(friction_input=follows))
@@ -72,7 +73,7 @@ def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
 
 
 def _within_a_turn(found: Fit) -> Fit:
-    """The fit with phases of the kinematic error from -pi to pi."""
+    """Return the fit with phases of the kinematic error from -pi to pi."""
     error = found.gear.kinematic_error
     if not isinstance(error, kinematic_error.Fourier):
         return found
@@ -83,18 +84,13 @@ def _within_a_turn(found: Fit) -> Fit:
     return replace(found, model=model, estimates=estimates)
 
 
-def innermost(law: Any) -> Any:
-    """The law of friction that others modulate, or the law itself."""
-    return innermost(law.law) if hasattr(law, "law") else law
-
-
 def _changed(law: Any, change: Callable[[Any], Any]) -> Any:
-    """The law with its innermost one changed."""
+    """Return the law with its innermost one changed."""
     return law.replace(law=_changed(law.law, change)) if hasattr(law, "law") else change(law)
 
 
 def _breakaway(gear: Gear, start: Gear) -> float | None:
-    """What breakaway follows from Coulomb's torque: its ratio of before in Coulomb's law, no less in others; None without."""
+    """Return the breakaway that follows from Coulomb's torque: by its ratio before in Coulomb's law, no less in others."""
     law, before = innermost(gear.friction_input), innermost(start.friction_input)
     if not hasattr(law, "breakaway"):
         return None
@@ -104,10 +100,10 @@ def _breakaway(gear: Gear, start: Gear) -> float | None:
 
 
 def free_parameters(log: DriveLog, drive: Drive, *, friction_known: bool, torsion_known: bool) -> list[str]:
-    """What a log can tell that no better measurement was given for.
+    """Return the paths that a log determines and no better measurement does.
 
-    Friction at the input from any log, that of a law within `Cyclic` or `Thermal` too; the first stiffness and the kinematic
-    error only where both shafts have encoders.
+    Friction at the input from any log, also that of a law within `Cyclic` or `Thermal`; the first stiffness and the kinematic
+    error only if both shafts have encoders.
     """
     paths = [path for path, *_ in _core.parameters(drive) if path.startswith("gear.friction_input.")]
     free = [] if friction_known else [path for path in paths if path.rpartition(".")[2] in ("coulomb", "viscous")]
@@ -128,9 +124,9 @@ def prepared(log: DriveLog, drive: Drive, *, friction_known: bool) -> Drive:
 
 
 def _set_in_motion(log: DriveLog, drive: Drive) -> Drive:
-    """The drive with so little dry friction that it moves under the command of the log; as it is, if it never does."""
+    """Return the drive with so little dry friction that it moves under the command of the log; the same if it never does."""
     tried = drive
-    for _ in range(HALVINGS):
+    for _ in range(MAX_HALVINGS):
         if _moves(log, tried):
             return tried
         tried = tried.replace(gear=tried.gear.replace(friction_input=_changed(tried.gear.friction_input, _halved)))
@@ -138,23 +134,23 @@ def _set_in_motion(log: DriveLog, drive: Drive) -> Drive:
 
 
 def _moves(log: DriveLog, drive: Drive) -> bool:
-    """Whether a drive moves under the command of the log."""
+    """True if a drive moves under the command of the log."""
     zeros = np.array([nuisance.start for nuisance in log.nuisances])
     return not log.stands_still(log.predict(drive, [], zeros)[0])
 
 
 def _halved(law: Any) -> Any:
-    """A law of friction with half its dry torque."""
+    """Return a law of friction with half its dry torque."""
     return law.replace(**{name: 0.5 * getattr(law, name) for name in ("coulomb", "breakaway") if hasattr(law, name)})
 
 
 def _with_coulomb(law: Any) -> Any:
-    """Coulomb's law in place of a purely viscous one."""
+    """Return Coulomb's law in place of a purely viscous one."""
     return friction.Coulomb(coulomb=1e-3, viscous=law.viscous) if isinstance(law, friction.Viscous) else law
 
 
 def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
-    """Harmonics of the measured transmission error over the input angle, by linear least squares."""
+    """Return harmonics of the measured transmission error over the input angle, by linear least squares."""
     input_angle = log.measured[log.channels.index("input_angle")]
     output_angle = log.measured[log.channels.index("output_angle")]
     angle = input_angle - input_angle[0]
@@ -163,6 +159,6 @@ def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
     columns = np.column_stack((np.ones_like(angle), angle, *waves))
     weights = np.linalg.lstsq(columns, error, rcond=None)[0][2:].reshape(-1, 2)
     amplitude, phase = np.hypot(*weights.T), np.arctan2(weights[:, 1], weights[:, 0])
-    largest = STEEPEST / (abs(ratio) * np.array(ORDERS))
+    largest = MAX_SLOPE / (abs(ratio) * np.array(ORDERS))
     amplitude = np.where(amplitude < largest, amplitude, 1e-3 * largest)  # no error of a gear: something else is wrong
     return kinematic_error.Fourier(order=ORDERS, amplitude=amplitude.tolist(), phase=phase.tolist())

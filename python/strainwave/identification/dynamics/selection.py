@@ -21,41 +21,41 @@ class Selection:
 
     Attributes:
         torque: shape (n,)
-        plain: what a term counts for beside others that explain as much, shape (t,)
-        base: columns of what every joint has, shape (n, b)
+        base: columns that every joint has, shape (n, b)
+        weights: of terms that explain as much, shape (t,)
         train, check: rows that terms are chosen by, and those that check them, shape (n,)
     """
 
     torque: Array
     base: Array
-    plain: Array
+    weights: Array
     train: NDArray[np.bool_]
     check: NDArray[np.bool_]
 
     def best(self, columns: Array) -> list[int]:
-        """The columns to take, in the order of what they explain."""
-        taken: list[int] = []
-        errors = [self.error(columns[:, taken])]
+        """Return the places of the columns to add, in the order in which they explain."""
+        chosen: list[int] = []
+        errors = [self.error(columns[:, chosen])]
         left = columns[self.train] / np.maximum(np.linalg.norm(columns[self.train], axis=0), 1e-300)
         orthogonal, _ = np.linalg.qr(self.base[self.train])
         left -= orthogonal @ (orthogonal.T @ left)
         rest = self.torque[self.train] - orthogonal @ (orthogonal.T @ self.torque[self.train])
-        while len(taken) < min(MAX_TERMS, columns.shape[1]):
+        while len(chosen) < min(MAX_TERMS, columns.shape[1]):
             squares = np.einsum("ij,ij->j", left, left)
             explained = (rest @ left) ** 2 / np.maximum(squares, 1e-300)
-            scores = np.where(squares > MIN_INDEPENDENT**2, self.plain * explained, 0.0)
+            scores = np.where(squares > MIN_INDEPENDENT**2, self.weights * explained, 0.0)
             place = int(np.argmax(scores))
             if scores[place] == 0.0:
                 break
             direction = left[:, place] / np.sqrt(squares[place])
             left -= np.outer(direction, direction @ left)
             rest -= direction * (direction @ rest)
-            taken.append(place)
-            errors.append(self.error(columns[:, taken]))
+            chosen.append(place)
+            errors.append(self.error(columns[:, chosen]))
             if min(errors[-MAX_IDLE_TERMS:]) > MAX_STEP_ERROR * min(errors[:-MAX_IDLE_TERMS] or [np.inf]):
                 break
         least = min(errors)
-        return taken[: next(count for count, error in enumerate(errors) if error <= least / MAX_STEP_ERROR)]
+        return chosen[: next(count for count, error in enumerate(errors) if error <= least / MAX_STEP_ERROR)]
 
     def error(self, columns: Array) -> float:
         """Return the error of the rows that check, by the shares of the others, over how much the torque varies."""

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import Nuisance, sensible
-from strainwave.messages import listed, quoted
+from strainwave.files.recording import Recording
+from strainwave.identification.experiments.experiment import Nuisance, check_columns, sensible
+from strainwave.messages import quoted
 from strainwave.simulation import scenario
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.resolution import fine_enough
@@ -22,23 +22,22 @@ from strainwave.simulation.signals import command_unit, controls_position, outpu
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
-HANGING = 0.02  # rad: where gravity is nothing beside friction
-RESTING = 0.02  # of the largest speed: a log that starts faster does not start at rest
-STILL = 1e-3  # of the range measured: what moves less stands still
-COMPARED = 20_000  # samples of a log, at most: of a longer one every so many, the command in full
-STEP = 2e-4  # s, of the simulation; what was recorded more often is compared every so many rows
-SHORTEST = 1e-5  # s, of a step that a fit takes without being asked to
-SHORTER = 0.25  # of the step that a drive needs at the start of a fit: one on the way that needs less is not taken
-STRAIGHT = 1e-6  # of the range of a command, a resolution of 20 bits: what deviates less from a line is one
-STEPS = 100_000  # of a log, at most: of a longer one the beginning is taken
+MAX_HANGING_ANGLE = 0.02  # rad: gravity is small there beside friction
+MAX_REST_SPEED = 0.02  # of the largest speed: a log that starts faster does not start at rest
+MAX_STILL_SHARE = 1e-3  # of the range measured: a prediction that moves less stands still
+MAX_COMPARED = 20_000  # samples of a log; of a longer one every so many, the command in full
+MAX_STEP = 2e-4  # s, of the simulation; of a faster log every so many rows are compared
+MIN_STEP = 1e-5  # s, of a simulation whose step is not given
+MIN_STEP_SHARE = 0.25  # of the step at the start of a fit: a drive that needs a shorter one is refused
+MAX_COMMAND_ERROR = 1e-6  # of the range of a command, a resolution of 20 bits: the command may deviate so far from its lines
+MAX_STEPS = 100_000  # of a log; of a longer one the beginning is taken
 
 
 @dataclass(frozen=True, eq=False)
 class DriveLog(ComparedByFields):
-    """What a drive did under a known command, starting at rest.
+    """Run of a drive under a known command, from rest.
 
-    Where the encoders have their zeros is not known, so these are unknowns of the measurement; a commanded angle counts from
-    where it starts.
+    The zeros of the encoders are unknowns of the measurement; a commanded angle counts from its first value.
 
     Args:
         command: in the unit that the drive's control takes
@@ -46,8 +45,8 @@ class DriveLog(ComparedByFields):
         channels: names of the columns to compare, as `simulate` names them
         measured: their values in the units of a simulation, shape (channels, n)
         dt: largest step of the simulation [s]; down to a quarter of it for a model that needs that
-        samples: how many were measured; of more than are compared, every so many is
-        initial: what is known of its beginning; at rest if not given
+        samples: count of those measured; if more than are compared, every so many is
+        initial: initial values that are known; at rest if not given
     """
 
     command: Scenario
@@ -68,17 +67,14 @@ class DriveLog(ComparedByFields):
         dt: float | None = None,
         initial: Mapping[str, float] | None = None,
     ) -> DriveLog:
-        """From columns time, command and outputs; all that a simulation has too, unless `channels` names some.
+        """Return the experiment of columns time, command and outputs: those of `channels`, or all that a simulation has.
 
         Steps of 0.2 ms, or the sample interval if that is a little shorter, or as short as the drive needs, down to 0.01 ms. Of
         a long log the first 100 000 steps are taken, 20 s; of one that was recorded more often than every 0.2 ms, every so many
         rows are compared. The command is taken in full, but for rows on the line between their neighbours.
         """
-        check_recording("recording", recording)
+        check_columns(recording, ("time", "command"), "a drive log")
         arguments.drive(drive)
-        for name in ("time", "command"):
-            if name not in recording:
-                raise ValueError(f"a drive log needs a column {quoted(name)}; this one has {listed(recording.names)}")
         known = {name: each.unit for name, each in outputs(drive).items() if name != "command"}
         wanted = [name for name in recording.names if name in known] if channels is None else channels
         chosen = tuple(arguments.names("channels", wanted))
@@ -96,13 +92,13 @@ class DriveLog(ComparedByFields):
         measured = np.stack([sensible(recording, name, known[name]) for name in chosen])
         if initial is None:
             _check_rest(time, dict(zip(chosen, measured, strict=True)))
-        step = fine_enough(drive, STEP, SHORTEST) if dt is None else arguments.seconds("dt", dt)
+        step = fine_enough(drive, MAX_STEP, MIN_STEP) if dt is None else arguments.seconds("dt", dt)
         interval = float(np.min(np.diff(time)))
-        end = int(np.searchsorted(time, STEPS * step, "right"))
-        knots = _knots(time[:end], command[:end], max(1, int(min(step, STEP) / interval)))
-        rows = slice(None, end, max(1, int(STEP / interval)))
+        end = int(np.searchsorted(time, MAX_STEPS * step, "right"))
+        knots = _knots(time[:end], command[:end], max(1, int(min(step, MAX_STEP) / interval)))
+        rows = slice(None, end, max(1, int(MAX_STEP / interval)))
         time_compared, measured = time[rows], measured[:, rows]
-        every = -(-len(time_compared) // COMPARED)
+        every = -(-len(time_compared) // MAX_COMPARED)
         return cls(
             scenario.table(time[knots], command[knots]),
             time_compared[::every],
@@ -116,7 +112,7 @@ class DriveLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """The zeros of encoders, unless the beginning determines where they count from."""
+        """Zeros of the encoders; none if `initial` determines them."""
         if self.initial is not None:
             return ()
         return tuple(
@@ -126,29 +122,29 @@ class DriveLog(ComparedByFields):
         )
 
     def beginning(self, duration: float) -> DriveLog:
-        """The log up to a time [s]."""
-        taken = self.time <= duration
-        end = float(self.time[taken][-1])
+        """Return the log up to a time [s]."""
+        within = self.time <= duration
+        end = float(self.time[within][-1])
         early = self.command.start < end
         pieces = {name: getattr(self.command, name)[early] for name in ("start", "level", "slope")}
         command = replace(self.command, duration=end, **pieces)
-        return replace(self, command=command, time=self.time[taken], measured=self.measured[:, taken])
+        return replace(self, command=command, time=self.time[within], measured=self.measured[:, within])
 
     @property
     def interval(self) -> float:
-        """The shortest time between two instants compared [s]."""
+        """Shortest time between two instants compared [s]."""
         return float(np.min(np.diff(self.time)))
 
     def step(self, model: Drive) -> float:
-        """The largest step of a simulation of a model [s]."""
+        """Return the largest step of a simulation of a model [s]."""
         arguments.drive(model)
-        return fine_enough(model, self.dt, SHORTER * self.dt)
+        return fine_enough(model, self.dt, MIN_STEP_SHARE * self.dt)
 
     def stands_still(self, predicted: Array) -> bool:
-        """Whether a prediction, shape (channels, n), has no motion where the measurement has some."""
+        """True if a prediction, shape (channels, n), stands still while the measurement moves."""
         moving = [row for row, name in enumerate(self.channels) if name.endswith(("_angle", "_speed"))]
         spans = [(float(np.ptp(predicted[row])), float(np.ptp(self.measured[row]))) for row in moving]
-        return bool(spans) and all(model < STILL * measured for model, measured in spans)
+        return bool(spans) and all(model < MAX_STILL_SHARE * measured for model, measured in spans)
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         names = list(outputs(model))
@@ -163,10 +159,10 @@ class DriveLog(ComparedByFields):
 
 
 def _knots(time: Array, command: Array, every: int) -> NDArray[np.intp]:
-    """Rows between which a command runs straight: every so many, and where it bends between those half as many, down to all."""
+    """Return rows between which a command is straight: every so many, and more of them where it bends."""
     rows = np.arange(len(time))
     knots = np.union1d(rows[::every], rows[-1:])
-    while (bent := np.abs(command - np.interp(time, time[knots], command[knots])) > STRAIGHT * np.ptp(command)).any():
+    while (bent := np.abs(command - np.interp(time, time[knots], command[knots])) > MAX_COMMAND_ERROR * np.ptp(command)).any():
         every = max(1, every // 2)
         stretch = np.searchsorted(knots, rows, "right")
         within = rows[::every][np.isin(stretch[::every], stretch[bent])]
@@ -175,13 +171,13 @@ def _knots(time: Array, command: Array, every: int) -> NDArray[np.intp]:
 
 
 def _check_hanging(recording: Recording, drive: Drive, channels: Sequence[str]) -> None:
-    """A run starts at output angle 0; under gravity, so must the log."""
+    """Raise ValueError for a log under gravity that does not start at output angle 0, as a simulation does."""
     if not isinstance(drive.load, loads.Pendulum) or drive.load.gravity_torque == 0.0:
         return
     for name in (name for name in channels if name in ENCODERS):
         per_output = drive.gear.kinematics.ratio if name == "input_angle" else 1.0
         reading = float(recording.values(name, "rad")[0])
-        if abs(reading / per_output) > HANGING:
+        if abs(reading / per_output) > MAX_HANGING_ANGLE:
             raise ValueError(
                 f"a log under gravity must start with the arm hanging, at output angle 0; by {name} it starts at "
                 f"{reading / per_output:.3g} rad of the output. If it hangs there, and only the encoder counts from elsewhere, "
@@ -190,7 +186,7 @@ def _check_hanging(recording: Recording, drive: Drive, channels: Sequence[str]) 
 
 
 def _check_rest(time: Array, columns: Mapping[str, Array]) -> None:
-    """A run starts at rest; so must the log."""
+    """Raise ValueError for a log that does not start at rest, as a simulation does."""
     for name, values in columns.items():
         if name.endswith("_angle"):
             speed = np.diff(values) / np.diff(time)
@@ -199,7 +195,7 @@ def _check_rest(time: Array, columns: Mapping[str, Array]) -> None:
         else:
             continue
         first, largest = abs(float(speed[0])), float(np.abs(speed).max())
-        if first > RESTING * largest + float(np.abs(np.diff(speed)).max(initial=0.0)):  # more than it gains in a sample
+        if first > MAX_REST_SPEED * largest + float(np.abs(np.diff(speed)).max(initial=0.0)):  # more than it gains in a sample
             raise ValueError(
                 f"the drive log must start at rest: {name} starts at {first:.3g} rad/s, {100 * first / largest:.0f} % of its "
                 "largest speed; cut it to begin where the drive stands still, or record anew from rest"

@@ -1,4 +1,4 @@
-"""A log of a drive whose input is moved as it was measured, and whose other channels are predicted, as an experiment."""
+"""A log of a drive along the measured motion of its input, whose other channels are predicted, as an experiment."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, control, motor
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import Nuisance, sensible
+from strainwave.files.recording import Recording
+from strainwave.identification.experiments.drive_log import MAX_COMPARED, MAX_REST_SPEED, MAX_STEPS, MIN_STEP, MIN_STEP_SHARE
+from strainwave.identification.experiments.experiment import RELATIVE_STEP, Nuisance, check_columns, sensible, with_step
 from strainwave.identification.experiments.motion import motion_of
-from strainwave.identification.experiments.motion_log import DIFFERENCE, EFFORTS, per_torque
+from strainwave.identification.experiments.motion_log import EFFORTS, per_torque
 from strainwave.messages import listed, quoted
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.motion import Motion
@@ -23,48 +24,37 @@ from strainwave.simulation.scenario import Scenario, table
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
-OF_GEAR = {
-    "output_angle": "rad",
-    "output_speed": "rad/s",
-    "transmission_error": "rad",
-    "torque": "N.m",
-}  # as `simulate` names it
-CHANNELS = OF_GEAR | EFFORTS
-DT = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
-SHORTEST = 1e-5  # s, of a step that a fit takes without being asked to
-STEPS = 100_000  # of a log, at most: of a longer one the beginning is taken
-COMPARED = 20_000  # samples, at most: of more every so many
-RESTING = 0.02  # of the largest speed: what starts slower starts at rest
-FADED = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
-HIGHEST_CUTOFF = 0.24  # of the sampling rate: bristles and the order of teeth are fast, and above a quarter noise is measured
-SPOILT = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
+CHANNELS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_error": "rad", "torque": "N.m"} | EFFORTS
+MAX_STEP = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
+VIBRATION_TIME = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
+MAX_CUTOFF_SHARE = 0.24  # of the sample rate: bristles and the order of teeth are fast, and above a quarter noise is measured
+END_PERIODS = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
 
 
 @dataclass(frozen=True, eq=False)
 class DrivenLog(ComparedByFields):
-    """What a drive did while its input moved as it was measured: gear, load and friction are simulated, the motor is not.
+    """Log of a drive along the measured motion of its input: gear, load and friction are simulated, the motor is not.
 
-    Neither command nor controller need be known, and an error does not grow: whatever the gear does, the input is where it was
-    measured. So a long log is one run. What the output does tells stiffness, damping, hysteresis and kinematic error; what
-    torque the motor needs tells inertia and friction besides. The motor's torque is told by `current`, `input_torque`,
-    `joint_torque` (the motor's, counted at the output) or `voltage`, that of the gear by `torque` (a sensor at the output).
+    Neither command nor controller need be known, and an error does not grow, as the input is always where it was measured. So
+    a long log is one run. The motion of the output determines stiffness, damping, hysteresis and kinematic error; the torque of
+    the motor determines inertia and friction, too. The torque of the motor is in `current`, `input_torque`, `joint_torque` (the
+    motor's, counted at the output) or `voltage`, that of the gear in `torque` (a sensor at the output).
 
-    Gravity acts by the input angle over the ratio. Where the arm does not hang at its zero, `load.gravity_phase` is an unknown.
+    Gravity acts by the input angle over the ratio. If the arm does not hang at its zero, `load.gravity_phase` is an unknown.
 
-    Channels that pass other electronics than the input angle may be late. Their delay is an unknown with `with_delays`. What it
-    looks like: of `output_angle`, viscous friction at the output, for both add to the transmission error in proportion to the
-    speed; of torque and current, softer bristles, for both let friction turn over later behind a reversal. A fit tells which by
-    the motion being fast and slow, and says how sure it is.
+    Channels that pass other electronics than the input angle may be late. Their delay is an unknown with `with_delays`. The
+    delay of `output_angle` is like viscous friction at the output: both add to the transmission error in proportion to the
+    speed. That of torque and current is like softer bristles: friction turns over later behind a reversal. A fast and slow
+    motion separates them.
 
     Args:
         motion: of the input, smoothed
         angle, speed: of the input at the instants compared [rad, rad/s], shape (n,)
         time: instants to compare at [s], shape (n,)
         channels: names of the columns to compare
-        zeros: about where those of them have their zero whose zero is not known, by name
+        zeros: initial values of the zeros that are not known, by name
         measured: their values, shape (channels, n)
         dt: largest step of the simulation [s]
-        samples: how many were measured
         held_back: torque of other bodies that holds the output back [N.m]
         delayed: names of the channels whose delay behind the input angle is an unknown
     """
@@ -77,7 +67,6 @@ class DrivenLog(ComparedByFields):
     zeros: Mapping[str, float]
     measured: Array
     dt: float
-    samples: int
     held_back: Scenario | float = 0.0
     delayed: tuple[str, ...] = ()
 
@@ -89,31 +78,23 @@ class DrivenLog(ComparedByFields):
         channels: Sequence[str] | None = None,
         dt: float | None = None,
         initial: Mapping[str, float] | None = None,
-        *,
-        cutoff: float | None = None,
     ) -> DrivenLog:
-        """From columns time, input_angle and what is to be compared; all that can be, unless `channels` names some.
+        """Return the experiment of columns time, input_angle and those to compare: `channels`, or all that can be.
 
         A column `rigid_torque` [N.m at the output] is known torque of other bodies that holds the output back.
 
         Args:
-            recording: what was measured
-            drive: what is to be identified
+            recording: the measurement
+            drive: to be identified
             channels: columns to compare
             dt: largest step of the simulation [s]; 0.5 ms, or as short as the drive needs, if not given
-            initial: what else is known of its beginning than the motion of the input, as for `simulate`
-            cutoff: up to which the motion of the input is followed [Hz]; as `motion_of` if not given
+            initial: initial values beside the motion of the input, as for `simulate`
 
         Raises:
-            ValueError: a column is missing, nothing can be compared, or the motion cannot be told from the angle
+            ValueError: a column is missing, nothing can be compared, or the angle does not determine the motion
         """
-        check_recording("recording", recording)
+        check_columns(recording, ("time", "input_angle"), "a log along the motion of its input")
         arguments.drive(drive)
-        for name in ("time", "input_angle"):
-            if name not in recording:
-                raise ValueError(
-                    f"a log along the motion of its input needs a column {quoted(name)}; it has {listed(recording.names)}"
-                )
         present = [name for name in recording.names if name in CHANNELS]
         chosen = tuple(present if channels is None else arguments.names("channels", channels))
         if unknown := [name for name in chosen if name not in present]:
@@ -123,17 +104,18 @@ class DrivenLog(ComparedByFields):
                 f"the log contains how the input moved, and nothing to compare: record one of {listed(CHANNELS)} besides; "
                 f"it has {listed(recording.names)}"
             )
-        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), cutoff, highest=HIGHEST_CUTOFF)
+        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), highest=MAX_CUTOFF_SHARE)
         time = recording.time - recording.time[0]
         grid = smoothed.time - smoothed.time[0]
-        step = fine_enough(driven(drive), DT, SHORTEST) if dt is None else arguments.seconds("dt", dt)
-        steps = np.searchsorted(grid, min(STEPS * step, float(time[-1])), "right")
-        moving = abs(float(smoothed.speed[0])) > RESTING * float(np.abs(smoothed.speed).max())
+        step = fine_enough(driven(drive), MAX_STEP, MIN_STEP) if dt is None else arguments.seconds("dt", dt)
+        steps = np.searchsorted(grid, min(MAX_STEPS * step, float(time[-1])), "right")
+        moving = abs(float(smoothed.speed[0])) > MAX_REST_SPEED * float(np.abs(smoothed.speed).max())
         moved = Motion.through(grid[:steps], smoothed.angle[:steps], from_rest=not moving)
         moved = replace(moved, initial={**moved.initial, **(initial or {})})
-        begin, end = FADED if moving and initial is None else 0.0, moved.command.duration - SPOILT / smoothed.cutoff
+        begin = VIBRATION_TIME if moving and initial is None else 0.0
+        end = moved.command.duration - END_PERIODS / smoothed.cutoff
         rows = np.flatnonzero((time >= begin) & (time <= end))
-        rows = rows[:: max(1, -(-len(rows) // COMPARED))]
+        rows = rows[:: max(1, -(-len(rows) // MAX_COMPARED))]
         measured = np.stack([sensible(recording, name, CHANNELS[name])[rows] for name in chosen])
         held_back: Scenario | float = 0.0
         if "rigid_torque" in recording:
@@ -148,7 +130,6 @@ class DrivenLog(ComparedByFields):
             _zeros(chosen, measured, float(angle[0]) / drive.gear.kinematics.ratio),
             measured,
             step,
-            len(recording),
             held_back,
         )
 
@@ -158,12 +139,12 @@ class DrivenLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """Zeros of encoders at the output, as the rigid drive has them, and of the motor's effort; then delays."""
+        """Zeros of encoders at the output and of the motor's effort; then delays."""
         zeros = (Nuisance(f"{name}_zero", CHANNELS[name], zero) for name, zero in self.zeros.items())
         return (*zeros, *(Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed))
 
     def with_delays(self, *channels: str) -> DrivenLog:
-        """The same, with the delay of these channels behind the input angle as unknowns.
+        """Return the same, with the delay of these channels behind the input angle as unknowns.
 
         Raises:
             ValueError: a channel is not compared
@@ -173,8 +154,8 @@ class DrivenLog(ComparedByFields):
         return replace(self, delayed=channels)
 
     def step(self, model: Drive) -> float:
-        """The largest step of a simulation of a model [s]."""
-        return fine_enough(driven(model), self.dt, 0.25 * self.dt)
+        """Return the largest step of a simulation of a model [s]."""
+        return fine_enough(driven(model), self.dt, MIN_STEP_SHARE * self.dt)
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         moved = driven(model)
@@ -183,14 +164,14 @@ class DrivenLog(ComparedByFields):
         known = [number for number in numbers if described[number][0] in places]
         names = list(outputs(moved))
         run, slopes, first = self._run(moved, [places[described[number][0]] for number in known])
-        predicted = np.stack([self._shown(model, name, run[_told_by(name)][first:]) for name in self.channels])
+        predicted = np.stack([self._shown(model, name, run[_measured_by(name)][first:]) for name in self.channels])
         found = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
         of_known = dict(zip(known, slopes, strict=True))
         torque = run["motor_torque"][first:]
         for row, name in enumerate(self.channels):
             for unknown, number in enumerate(numbers):
                 if number in of_known:
-                    rate = of_known[number][names.index(_told_by(name)), first:]
+                    rate = of_known[number][names.index(_measured_by(name)), first:]
                     found[unknown, row] = rate * self._scale(model, name)
                 elif name in EFFORTS:
                     found[unknown, row] = self._by_motor(model, number, name, torque)
@@ -205,20 +186,20 @@ class DrivenLog(ComparedByFields):
         return predicted, found
 
     def gear_torque(self, model: Drive) -> Array:
-        """Torque that the gear transmits at the instants compared [N.m], shape (n,)."""
+        """Return the torque that the gear transmits at the instants compared [N.m], shape (n,)."""
         run, _, first = self._run(driven(model), [])
         torque: Array = run["torque"][first:]
         return torque
 
     def _run(self, moved: Drive, numbers: Sequence[int]) -> tuple[Recording, Array, int]:
-        """A run along the motion, its derivatives by numbers of the drive, and the place of the first instant compared."""
+        """Return a run along the motion, its derivatives by numbers of the drive, and the first row compared."""
         samples = self.time if self.time[0] == 0.0 else np.append(0.0, self.time)
         acting = Excitation(self.motion.command, self.held_back)
         run, slopes = differentiate(moved, acting, numbers, self.step(moved), samples, self.motion.initial)
         return run, slopes, len(samples) - len(self.time)
 
     def _late(self, series: Array, delay: float) -> Array:
-        """Series as they come after a delay [s], shape (k, n), and the rate of the first of them, shape (1, n)."""
+        """Return series after a delay [s], shape (k, n), and the rate of the first of them, shape (1, n)."""
         from scipy.interpolate import CubicSpline
 
         then = np.clip(self.time - delay, self.time[0], self.time[-1])
@@ -227,7 +208,7 @@ class DrivenLog(ComparedByFields):
         return np.concatenate([late, rate[np.newaxis]])
 
     def _scale(self, model: Drive, name: str) -> float:
-        """Return what a channel shows of the output that it measures."""
+        """Return a channel over the output that it measures."""
         return per_torque(model, name) if name in EFFORTS else 1.0
 
     def _shown(self, model: Drive, name: str, values: Array) -> Array:
@@ -236,29 +217,26 @@ class DrivenLog(ComparedByFields):
         return shown
 
     def _by_motor(self, model: Drive, number: int, name: str, torque: Array) -> Array:
-        """By a number of the motor that was measured: no motion changes with it, and torque is smooth in it."""
-        described = _core.parameters(model)
-        values = [each[1] for each in described]
-        step = DIFFERENCE * max(abs(values[number]), 1e-3)
-        other = _core.with_numbers(model, [*values[:number], values[number] + step, *values[number + 1 :]])
-        return (self._shown(other, name, torque) - self._shown(model, name, torque)) / step
+        """Return the derivative of an effort by a number of the motor: motion does not depend on it, torque is smooth in it."""
+        other, change = with_step(model, number, RELATIVE_STEP * max(abs(_core.parameters(model)[number][1]), 1e-3))
+        return (self._shown(other, name, torque) - self._shown(model, name, torque)) / change
 
 
 def driven(drive: Drive) -> Drive:
-    """The drive with its input moved from outside in place of motor and controller."""
+    """Return the drive with its input moved from outside in place of motor and controller."""
     return drive.replace(
         motor=motor.AccelerationSource(inertia=drive.motor.inertia), control=control.OpenLoop(), sensors=type(drive.sensors)()
     )
 
 
 def _zeros(channels: Sequence[str], measured: Array, rigid: float) -> dict[str, float]:
-    """About where channels have their zero, where a rigid output stands at an angle [rad] when the comparison begins."""
+    """Return initial values of the zeros of channels, of a rigid output at an angle [rad] when the comparison begins."""
     begins = {"output_angle": rigid, "transmission_error": 0.0}
     first = dict(zip(channels, measured[:, 0], strict=True))
     angles = {name: float(first[name]) - begins[name] for name in channels if name in begins}
     return angles | {name: 0.0 for name in channels if name in EFFORTS}
 
 
-def _told_by(name: str) -> str:
+def _measured_by(name: str) -> str:
     """Return the output of a simulation that a channel measures."""
     return "motor_torque" if name in EFFORTS else name

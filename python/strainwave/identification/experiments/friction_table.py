@@ -20,7 +20,7 @@ from strainwave.identification.experiments.experiment import Nuisance, sensible
 Array = NDArray[np.float64]
 MAX_SPEEDS = 1_000  # of either sign in a table; a longer table is thinned
 ROOM_TEMPERATURE = 293.15  # K, if no temperature was measured
-BESIDE = {"angle": "rad", "load": "N.m", "temperature": "K"}  # other quantities that friction may depend on, and their units
+CONDITIONS = {"angle": "rad", "load": "N.m", "temperature": "K"}  # that friction may depend on beside the speed
 FRICTIONLESS = Viscous()
 MAX_LOSS = 1.0  # of the torque transmitted: a gear that loses more cannot be turned from its output
 EQUAL_LOADS = 1e-3  # relative: loads of one size
@@ -34,7 +34,7 @@ class FrictionTable(ComparedByFields):
     Args:
         speed: input speed [rad/s], shape (n,)
         torque: friction torque [N.m], of the sign of the speed, shape (n,)
-        samples: how many were measured; more than are left in `speed` where each is the mean of several neighbours
+        samples: count of those measured; more than are left in `speed` if each is the mean of several neighbours
         angle: input angle [rad], shape (n,), if it was measured
         load: torque that the input transmits [N.m], shape (n,), if it was measured: the output's over the ratio; load times
             speed is the power that flows to the output
@@ -67,16 +67,16 @@ class FrictionTable(ComparedByFields):
             torque = np.sign(speed) * torque
         if np.sum(speed * torque) <= 0.0:
             raise ValueError("the torque drives the motion instead of opposing it; give it the sign of the speed")
-        beside = {name: recording.values(name, unit) for name, unit in BESIDE.items() if name in recording.names}
-        whole = cls(speed, torque, len(recording), **beside)
+        conditions = {name: recording.values(name, unit) for name, unit in CONDITIONS.items() if name in recording.names}
+        whole = cls(speed, torque, len(recording), **conditions)
         return whole if len(speed) <= MAX_SPEEDS else whole._thinned()
 
     def _thinned(self) -> FrictionTable:
-        columns = {name: values for name in ("speed", "torque", *BESIDE) if (values := getattr(self, name)) is not None}
+        columns = {name: values for name in ("speed", "torque", *CONDITIONS) if (values := getattr(self, name)) is not None}
         if "angle" in columns:  # the mean of two angles is none
             rows = np.arange(0, len(self.speed), -(-len(self.speed) // (2 * MAX_SPEEDS)))
-            taken: dict[str, Any] = {name: values[rows] for name, values in columns.items()}
-            return replace(self, **taken)
+            chosen: dict[str, Any] = {name: values[rows] for name, values in columns.items()}
+            return replace(self, **chosen)
         sides = [np.flatnonzero(side) for side in (self.speed < 0.0, self.speed > 0.0)]
         ordered = [side[np.argsort(self.speed[side], kind="stable")] for side in sides if len(side)]
         means = [thinned(*(values[side] for values in columns.values()), samples=MAX_SPEEDS) for side in ordered]
@@ -89,7 +89,9 @@ class FrictionTable(ComparedByFields):
         """Return a table of columns of the output, referred to the input by the ratio."""
         check_recording("recording", recording)
         ratio = abs(arguments.gear(gear).kinematics.ratio)
-        units = {"speed": "rad/s", "torque": "N.m"} | {name: unit for name, unit in BESIDE.items() if name in recording.names}
+        units = {"speed": "rad/s", "torque": "N.m"} | {
+            name: unit for name, unit in CONDITIONS.items() if name in recording.names
+        }
         factor = {"speed": ratio, "angle": ratio, "torque": 1.0 / ratio, "load": 1.0 / ratio, "temperature": 1.0}
         return cls.of(Recording({name: factor[name] * recording.values(name, unit) for name, unit in units.items()}, units))
 

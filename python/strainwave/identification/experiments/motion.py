@@ -1,7 +1,7 @@
-"""The motion of a drive from its measured angle: smoothed, differentiated, and where it rests.
+"""The motion of a drive from its measured angle: smoothed, differentiated, with its rests.
 
-Torque and all that is compared with it then pass one and the same filter without phase shift. A filter common to both sides of
-an equation that is linear does not bias it (Gautier, "Dynamic identification of robots with power model", ICRA 1997; Janot,
+Torque and all that is compared with it pass the same filter without phase shift. A filter common to both sides of a linear
+equation does not bias it (Gautier, "Dynamic identification of robots with power model", ICRA 1997; Janot,
 Vandanjon & Gautier, IEEE Trans. Control Syst. Technol. 22 (2014) 132-145).
 """
 
@@ -17,32 +17,32 @@ from strainwave.equality import ComparedByFields
 
 Array = NDArray[np.float64]
 
-REST = 3.0  # standard deviations; positions that differ by less are equal
-NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
-HIGHEST_CUTOFF = 0.1  # of the sampling rate
-PASS_BAND = 0.4  # of the cut-off: 2/5, the literature's rule
-WIDER = 4.0  # cut-off of the speed over that of the acceleration: when it reverses must be known to milliseconds
-REACH = 20  # samples compared, each side: there the response of the filter is below 1e-9 of its peak
-EDGE = 5  # samples of the decimated series that the ends of the filters spoil, each side
-GAP = 2.5  # intervals: a longer one is a gap, over which nothing is known
+REST_SIGMA = 3.0  # standard deviations; positions that differ by less are equal
+MAX_NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
+MAX_CUTOFF_SHARE = 0.1  # of the sample rate
+PASS_BAND_SHARE = 0.4  # of the cut-off: 2/5, the literature's rule
+SPEED_CUTOFF_FACTOR = 4.0  # over the cut-off of the acceleration: reversals must be known to milliseconds
+FILTER_SAMPLES = 20  # samples compared, each side: there the response of the filter is below 1e-9 of its peak
+END_SAMPLES = 5  # samples of the decimated series that the ends of the filters spoil, each side
+MAX_GAP_STEPS = 2.5  # steps: a longer time without a row is a gap
 CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
-SLOW = 0.5  # of the power of the acceleration: of a motion that is slower than vibrations (assumed)
+MIN_SLOW_SHARE = 0.5  # of the power of the acceleration, that lies below a vibration (assumed)
 MAX_FULL_BAND_ROWS = 8_000  # that a fit in the full band compares
-FEWEST = 200  # samples that a motion is worked out from
+MIN_SAMPLES = 200  # of a log of a motion
 
 
 @dataclass(frozen=True, eq=False)
 class Motion(ComparedByFields):
-    """How a shaft moved, on a regular grid.
+    """Motion of a shaft, on a regular grid.
 
     Attributes:
         time: of the grid [s], shape (n,)
         angle, speed, acceleration: of the shaft, smoothed [rad, rad/s, rad/s2], shape (n,)
-        known: where it moves, and is known: not at rest, in a gap or at the ends, shape (n,)
-        turning: so near to a reversal that friction turns over, shape (n,)
-        resting: where it does not move beyond the noise of the angle, shape (n,)
+        known: False at rest, in a gap and at the ends, shape (n,)
+        turning: True so near to a reversal that friction turns over, shape (n,)
+        resting: True if it does not move beyond the noise of the angle, shape (n,)
         every: one of so many samples of the grid is compared
-        cutoff: of the filter on the angle [Hz]; what is compared is compared up to 0.4 of it; infinite for the full band
+        cutoff: of the filter on the angle [Hz]; the pass band ends at 0.4 of it; infinite for the full band
     """
 
     time: Array
@@ -57,12 +57,12 @@ class Motion(ComparedByFields):
 
     @property
     def step(self) -> float:
-        """Of the grid [s]."""
+        """Step of the grid [s]."""
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
 
     @cached_property
     def rows(self) -> NDArray[np.intp]:
-        """The samples of the grid that are compared."""
+        """Samples of the grid that are compared."""
         rows: NDArray[np.intp] = np.arange(0, len(self.time), self.every)
         return rows[self.compared[rows]]
 
@@ -80,21 +80,19 @@ class Motion(ComparedByFields):
 
     @cached_property
     def _response(self) -> Array:
-        """What a sample adds to those compared around it: by its place between two of them, and by their distance."""
-        from scipy import signal
-
-        half = (REACH + 1) * self.every
+        """Response of the filter by the place of a sample between two compared ones, and by their distance."""
+        half = (FILTER_SAMPLES + 1) * self.every
         impulse = np.zeros(2 * half + 1)
         impulse[half] = 1.0
-        response = signal.sosfiltfilt(signal.butter(4, PASS_BAND * self.cutoff, fs=1.0 / self.step, output="sos"), impulse)
-        distance = self.every * np.arange(-REACH, REACH + 1)[:, np.newaxis] - np.arange(self.every)
+        response = _low_passed(impulse, PASS_BAND_SHARE * self.cutoff, self.step)
+        distance = self.every * np.arange(-FILTER_SAMPLES, FILTER_SAMPLES + 1)[:, np.newaxis] - np.arange(self.every)
         return np.ascontiguousarray(response[half + distance])
 
     def below(self, frequency: float) -> Motion:
-        """The same, compared far below a vibration of this frequency [Hz], and not for one period of it behind a reversal.
+        """Return the same, compared far below a vibration of this frequency [Hz], and not for one period behind a reversal.
 
-        Friction that turns over makes a load ring on its spring. That ring averages out over time, but not over what is left of
-        it where the reversal itself takes no part.
+        Friction that turns over makes a load ring on its spring. That ring averages out over time, but not over the rest of it
+        if the reversal itself takes no part.
 
         Raises:
             ValueError: too little of the motion is as slow as that
@@ -104,21 +102,18 @@ class Motion(ComparedByFields):
         cutoff = min(self.cutoff, frequency)
         every = max(self.every, _every(cutoff, self.step))
         known = self.known & (self.time - last > 1.0 / frequency)
-        known[: EDGE * every] = known[-EDGE * every :] = False
+        known[: END_SAMPLES * every] = known[-END_SAMPLES * every :] = False
         left = replace(self, known=known, every=every, cutoff=cutoff)
-        rows = len(left.rows)
-        if not rows or np.mean(left.filtered(self.acceleration) ** 2) < SLOW * np.mean(self.acceleration[left.compared] ** 2):
-            raise ValueError(f"the shaft itself moves about as fast as a vibration of {frequency:.3g} Hz")
+        slow, whole = left.filtered(self.acceleration), self.acceleration[left.compared]
+        if not len(slow) or np.mean(slow**2) < MIN_SLOW_SHARE * np.mean(whole**2):
+            raise ValueError(f"the shaft moves about as fast as a vibration of {frequency:.3g} Hz; record a slower motion")
         return left
 
     def at_speed(self, speed: Array) -> Motion:
         """Return the same with a speed that was measured, and its rate as acceleration, shape (n,)."""
-        from scipy import signal
-
-        rate = 1.0 / self.step
         smooth, quick = (
-            signal.sosfiltfilt(signal.butter(4, min(cutoff, 0.4 * rate), fs=rate, output="sos"), speed)
-            for cutoff in (self.cutoff, WIDER * self.cutoff)
+            _low_passed(speed, min(cutoff, 0.4 / self.step), self.step)
+            for cutoff in (self.cutoff, SPEED_CUTOFF_FACTOR * self.cutoff)
         )
         return replace(self, speed=quick, acceleration=_rate(smooth, self.step))
 
@@ -128,10 +123,10 @@ class Motion(ComparedByFields):
         return replace(self, turning=np.zeros_like(self.turning), every=every, cutoff=np.inf)
 
     def filtered(self, series: Array) -> Array:
-        """Series on the grid in the pass band, at the samples compared: shape (…, n) becomes (…, rows).
+        """Return series on the grid in the pass band, at the samples compared: shape (…, n) becomes (…, rows).
 
-        A filter of Butterworth, fourth order, forward and backward. Only one of `every` samples is wanted, so that its response
-        is summed up to where it has died down, in place of the recursion over all samples. In the full band all passes.
+        A filter of Butterworth, fourth order, forward and backward. One of `every` samples is wanted: its response is summed
+        until it has decayed, in place of the recursion over all samples. In the full band all passes.
         """
         if np.isinf(self.cutoff):
             return np.asarray(series[..., self.rows])
@@ -139,13 +134,13 @@ class Motion(ComparedByFields):
         padded = np.zeros((*series.shape[:-1], blocks * self.every))
         padded[..., : len(self.time)] = np.where(self.compared, series, 0.0)
         shares = (self._response @ padded.reshape(-1, self.every).T).reshape(len(self._response), *series.shape[:-1], blocks)
-        smooth = np.zeros((*series.shape[:-1], blocks + 2 * REACH))
+        smooth = np.zeros((*series.shape[:-1], blocks + 2 * FILTER_SAMPLES))
         for distance, share in enumerate(shares):
             smooth[..., distance : distance + blocks] += share
-        return smooth[..., REACH + self.rows // self.every]
+        return smooth[..., FILTER_SAMPLES + self.rows // self.every]
 
     def late(self, series: Array, delay: float) -> tuple[Array, Array]:
-        """Series on the grid as they come after a delay [s], and how the first of them changes with it, shapes (k, n), (n,).
+        """Return series on the grid after a delay [s], and the derivative of the first by the delay, shapes (k, n), (n,).
 
         Interpolated by the cubic of Catmull and Rom (1974), whose slope has no steps: a fit of the delay then ends.
         """
@@ -163,9 +158,9 @@ class Motion(ComparedByFields):
 
 
 def motion_of(
-    time: Array, angle: Array, cutoff: float | None = None, slid: float = 0.0, highest: float = HIGHEST_CUTOFF
+    time: Array, angle: Array, cutoff: float | None = None, slid: float = 0.0, highest: float = MAX_CUTOFF_SHARE
 ) -> Motion:
-    """The motion of a shaft from its angle at instants that rise, with gaps and no other order in them.
+    """Return the motion of a shaft from its angle at instants that rise, with gaps and no other order in them.
 
     Args:
         time: [s], shape (n,), rising
@@ -173,16 +168,17 @@ def motion_of(
         cutoff: of the filter on the angle [Hz]; by default the highest at which the noise of the angle is a negligible share of
             the acceleration, and at most `highest`
         highest: cut-off over the sampling rate, by default
-        slid: angle over which friction turns over at a reversal [rad]: as far before and behind one nothing is compared
+        slid: angle over which friction turns over at a reversal [rad]: samples nearer to one are not compared
 
     Raises:
-        ValueError: too few samples, a cut-off that the record does not hold, or an angle whose noise hides the motion
+        ValueError: too few samples, or an angle whose noise hides the motion
     """
-    from scipy import signal
     from scipy.interpolate import Akima1DInterpolator
 
-    if len(time) < FEWEST:
-        raise ValueError(f"the log has {len(time)} samples; at least {FEWEST} are needed to determine how it moves")
+    if len(time) < MIN_SAMPLES:
+        raise ValueError(
+            f"the log has {len(time)} samples; at least {MIN_SAMPLES} determine a motion: record longer, or faster"
+        )
     step = float(np.median(np.diff(time)))
     grid = np.arange(0.0, float(time[-1] - time[0]) + 0.5 * step, step) + float(time[0])
     regular = np.asarray(Akima1DInterpolator(time, angle, extrapolate=True)(grid))
@@ -190,37 +186,44 @@ def motion_of(
     if cutoff is None:
         cutoff = widest_cutoff(frequency, power, of_noise, 1.0 / step, highest)
     every = _every(cutoff, step)
-    smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), regular)
-    quick = signal.sosfiltfilt(signal.butter(4, min(WIDER * cutoff, 0.4 / step), fs=1.0 / step, output="sos"), regular)
+    smooth = _low_passed(regular, cutoff, step)
+    quick = _low_passed(regular, min(SPEED_CUTOFF_FACTOR * cutoff, 0.4 / step), step)
     speed, acceleration = _rate(quick, step), _second_rate(smooth, step)
     stands = standing(regular, every, noise)
     known = ~stands & ~in_gap(time, grid, step, every)
-    known[: EDGE * every] = known[-EDGE * every :] = False
+    known[: END_SAMPLES * every] = known[-END_SAMPLES * every :] = False
     turning = _turning(regular, speed, slid) | near_rest(regular, every, noise)
     return Motion(grid, smooth, speed, acceleration, known, turning, stands, every, cutoff)
 
 
+def _low_passed(series: Array, cutoff: float, step: float) -> Array:
+    """Return a series through a filter of Butterworth, fourth order, forward and backward; its cut-off is in Hz."""
+    from scipy import signal
+
+    return np.asarray(signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), series))
+
+
 def _every(cutoff: float, step: float) -> int:
-    """How many samples one that is compared stands for: at twice the pass band residuals of noise are white."""
-    return max(1, round(1.0 / (step * 2.0 * PASS_BAND * cutoff)))
+    """Return the samples for each that is compared: at twice the pass band residuals of noise are white."""
+    return max(1, round(1.0 / (step * 2.0 * PASS_BAND_SHARE * cutoff)))
 
 
 def _rate(series: Array, step: float) -> Array:
-    """Derivative by differences of fourth order: those of second order lose 1 % where a period has 25 samples."""
+    """Return the derivative by differences of fourth order: those of second order lose 1 % if a period has 25 samples."""
     rate = np.gradient(series, step)
     rate[2:-2] = (8.0 * (series[3:-1] - series[1:-3]) - (series[4:] - series[:-4])) / (12.0 * step)
     return rate
 
 
 def _second_rate(series: Array, step: float) -> Array:
-    """Second derivative by differences of fourth order; zero at the two samples of each end."""
+    """Return the second derivative by differences of fourth order; zero at the two samples of each end."""
     rate = np.zeros_like(series)
     rate[2:-2] = 16.0 * (series[3:-1] + series[1:-3]) - (series[4:] + series[:-4]) - 30.0 * series[2:-2]
     return rate / (12.0 * step**2)
 
 
 def _turning(angle: Array, speed: Array, slid: float) -> NDArray[np.bool_]:
-    """Samples so near to a reversal that friction turns over there."""
+    """Return True for samples so near to a reversal that friction turns over there, shape (n,)."""
     from scipy import ndimage
 
     turns = np.flatnonzero(np.diff(np.sign(speed)) != 0.0)
@@ -239,16 +242,16 @@ def in_gap(time: Array, grid: Array, step: float, reach: int = 0) -> NDArray[np.
     from scipy import ndimage
 
     after = np.clip(np.searchsorted(time, grid), 1, len(time) - 1)
-    within = time[after] - time[after - 1] > GAP * step
+    within = time[after] - time[after - 1] > MAX_GAP_STEPS * step
     return ndimage.maximum_filter1d(within, 2 * reach + 1)
 
 
 def spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
-    """What motion and noise contribute to the acceleration.
+    """Return the contributions of motion and noise to the acceleration.
 
-    Above a quarter of the sampling rate the position is taken to hold only white noise; the median over that range does
-    not see single lines. The spectrum is estimated from the speed, which is flat enough not to leak over the decades
-    between motion and noise.
+    Above a quarter of the sample rate the position is taken to contain white noise alone; single lines do not change the median
+    over that range. The spectrum is estimated from the speed, which is flat enough not to leak over the decades between motion
+    and noise.
 
     Returns:
         frequency [Hz]; spectral density of the acceleration, and its part due to the noise [rad2/s4/Hz], all of shape
@@ -263,11 +266,11 @@ def spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
     return frequency, gain * speed, gain**2 * density, float(np.sqrt(density / (2 * step)))
 
 
-def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float, share: float = HIGHEST_CUTOFF) -> float:
-    """The highest cut-off at which noise is a negligible share of the acceleration [Hz], at most a share of the rate."""
+def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float, share: float = MAX_CUTOFF_SHARE) -> float:
+    """Return the highest cut-off at which noise is a negligible share of the acceleration [Hz], at most a share of the rate."""
     highest = share * rate
-    within = frequency <= PASS_BAND * highest
-    clean = np.cumsum(noise[within]) <= NOISE_SHARE * np.cumsum(acceleration[within])
+    within = frequency <= PASS_BAND_SHARE * highest
+    clean = np.cumsum(noise[within]) <= MAX_NOISE_SHARE * np.cumsum(acceleration[within])
     if clean[-1]:
         return highest
     edge = float(frequency[within][clean][-1]) if clean.any() else 0.0
@@ -276,27 +279,27 @@ def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: flo
             "the shaft does not move beyond the noise of its angle: record a larger motion, or see whether the angle is that "
             "of this joint"
         )
-    return edge / PASS_BAND
+    return edge / PASS_BAND_SHARE
 
 
 def standing(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
-    """Samples of a shaft that stands still: within `reach` samples around one of them it moves by no more than the noise."""
+    """Return True for samples of a shaft at rest: within `reach` samples around one it moves by no more than the noise."""
     from scipy import ndimage
 
     width = 2 * reach + 1
     moved = ndimage.maximum_filter1d(position, width) - ndimage.minimum_filter1d(position, width)
-    stands: NDArray[np.bool_] = ndimage.maximum_filter1d(moved <= 2.0 * REST * noise, width)
+    stands: NDArray[np.bool_] = ndimage.maximum_filter1d(moved <= 2.0 * REST_SIGMA * noise, width)
     return stands
 
 
 def near_rest(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
-    """Samples at rest or at a reversal, and those so close to one that the position filter mixes the two.
+    """Return True for samples at rest or at a reversal, and those so close that the position filter mixes the two.
 
-    A sample rests if the position `reach` samples earlier and later are equal within the noise. This finds the middle
-    of each stop; widening it by `reach` restores the stop, and by as much again covers the response of the filter.
+    A sample rests if the positions `reach` samples earlier and later are equal within the noise. This finds the middle of each
+    stop; widening it by `reach` restores the stop, and by as much again covers the response of the filter.
     """
     from scipy import ndimage
 
     padded = np.pad(position, reach, mode="edge")
-    resting = np.abs(padded[2 * reach :] - padded[: -2 * reach]) <= REST * np.sqrt(2) * noise
+    resting = np.abs(padded[2 * reach :] - padded[: -2 * reach]) <= REST_SIGMA * np.sqrt(2) * noise
     return ndimage.maximum_filter1d(resting, 4 * reach + 1)

@@ -1,4 +1,4 @@
-"""A log of a moving drive whose motion is taken as measured, and whose torque is compared, as an experiment."""
+"""A log of a moving drive along its measured motion, whose torque is compared, as an experiment."""
 
 from __future__ import annotations
 
@@ -14,26 +14,33 @@ from strainwave import Drive, _core, arguments
 from strainwave._core import Gear
 from strainwave.analysis.branches import noise
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import Nuisance, changing, sensible
+from strainwave.files.recording import Recording
+from strainwave.identification.experiments.experiment import (
+    RELATIVE_STEP,
+    Nuisance,
+    changing,
+    check_columns,
+    sensible,
+    with_step,
+)
 from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
-from strainwave.identification.experiments.motion import GAP, Motion, in_gap, motion_of
-from strainwave.messages import listed, quoted
+from strainwave.identification.experiments.motion import MAX_GAP_STEPS, Motion, in_gap, motion_of
+from strainwave.identification.fitting.loss import NORMAL_MAD
+from strainwave.messages import listed
 
 Array = NDArray[np.float64]
 Side = Literal["input", "output"]
-EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # what shows the torque, best first
-REVERSAL = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
+EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # best first
+REVERSAL_ANGLE = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
 MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
 OUTLIER_WINDOW = 101  # samples, over which ripple and noise may grow
-MEDIAN_OF_NORMAL = 1.4826  # standard deviations of a normal distribution in the median of its size
 MAX_SHARE_OF_GAPS = 0.2  # of the time of a log: with more of it, gaps are why nothing is left to compare
 MIN_SOUND = 0.999  # share of sound samples around an instant: rounding of times decides nothing
 HELD_QUANTILE = 0.98  # of the steps of a channel without noise, whose size stands for it
 MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
-DIFFERENCE = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
 OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
+MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
 INPUTS, LOAD, TEMPERATURE = 6, 2, 4  # of the inverse dynamics: how many, and the places of load torque and temperature
 
 
@@ -47,15 +54,14 @@ class MotionLog(ComparedByFields):
 
     Args:
         motion: of the input
-        effort: what was compared: `current`, `input_torque`, `joint_torque` (the motor's, counted at the output) or `voltage`
+        effort: channel compared: `current`, `input_torque`, `joint_torque` (the motor's, counted at the output) or `voltage`
         force: the effort on the grid of the motion, without outliers, shape (m,)
         recorded: the same as it was recorded, shape (m,)
         sound: False at outliers and clipped samples of the effort, and in gaps, shape (m,)
         extra: torque of other bodies that hold the output back, on the grid of the motion [N.m]; zero if nothing is known
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
         delayed: True if a delay of the effort behind the motion is an unknown
-        samples: how many were measured
-        starts: where a fit starts with each of the nuisances; with zero if not given
+        starts: initial value of each nuisance; zero if not given
     """
 
     motion: Motion
@@ -66,7 +72,6 @@ class MotionLog(ComparedByFields):
     extra: Array
     regressors: Mapping[str, Array] = field(default_factory=dict)
     delayed: bool = False
-    samples: int = 0
     starts: tuple[float, ...] = ()
 
     @classmethod
@@ -75,7 +80,6 @@ class MotionLog(ComparedByFields):
         recording: Recording,
         drive: Drive,
         *,
-        effort: str | None = None,
         cutoff: float | None = None,
         regressors: Sequence[str] = (),
     ) -> MotionLog:
@@ -87,18 +91,20 @@ class MotionLog(ComparedByFields):
         Raises:
             ValueError: a column is missing, or the angle does not determine the motion
         """
-        check_recording("recording", recording)
+        check_columns(recording, ("time",), "the log")
         arguments.drive(drive)
         from scipy.interpolate import Akima1DInterpolator
 
-        effort = _effort(recording, effort)
+        effort = next((name for name in EFFORTS if name in recording), None)
+        if effort is None:
+            raise ValueError(f"the log needs an effort, one of {listed(EFFORTS)}; it has {listed(recording.names)}")
         time, angle = recording.time, _input_angle(recording, drive)
         if np.ptp(angle) == 0.0:
             raise ValueError(
                 "the angle never changes: only a shaft that moves shows inertia and friction; "
                 "record a motion, or give the column of the angle that moves"
             )
-        motion = motion_of(time, angle, cutoff, REVERSAL)
+        motion = motion_of(time, angle, cutoff, REVERSAL_ANGLE)
 
         def on_grid(values: Array) -> Array:
             return np.interp(motion.time, time, values)
@@ -112,12 +118,12 @@ class MotionLog(ComparedByFields):
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
             motion, effort, force, on_grid(values), sound_there, known,
-            {name: on_grid(recording[name]) for name in regressors}, samples=len(recording),
+            {name: on_grid(recording[name]) for name in regressors},
         )  # fmt: skip
 
     @cached_property
     def measured(self) -> Array:
-        """The effort in the pass band, shape (1, n)."""
+        """Effort in the pass band, shape (1, n)."""
         return self.motion.filtered(self.force)[np.newaxis]
 
     @property
@@ -135,7 +141,7 @@ class MotionLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """The zero of the effort, if the shaft moves both ways; its delay; and the shares of other bodies."""
+        """Zero of the effort, if the shaft moves both ways; its delay; and the shares of other bodies."""
         described = [(f"{self.effort}_zero", EFFORTS[self.effort])] if self.both_ways else []
         described += [("delay", "s")] if self.delayed else []
         described += [(f"share of {name}", "1") for name in self.regressors]
@@ -181,7 +187,7 @@ class MotionLog(ComparedByFields):
         return replace(self, delayed=True, starts=())
 
     def starting(self, nuisances: Sequence[float]) -> MotionLog:
-        """Return the same, from where a fit starts with the nuisances."""
+        """Return the same, with initial values of the nuisances."""
         return replace(self, starts=tuple(nuisances))
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
@@ -205,7 +211,7 @@ class MotionLog(ComparedByFields):
         return np.where(self.sound, np.where(self.motion.resting, held, left), 0.0)
 
     def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        """Effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
+        """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
         unknown = dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
         zeros = [value for name, value in unknown.items() if name.endswith("_zero")]
         shares = nuisances[len(nuisances) - len(self.regressors) :]
@@ -236,19 +242,14 @@ class MotionLog(ComparedByFields):
         return constant * self.motion.speed
 
     def _by_motor(self, model: Drive, number: int, others: Array, effort: Array) -> Array:
-        """Derivative by a number of the motor, of a difference that is good to eight digits as the effort is smooth in it."""
-        described = _core.parameters(model)
-        _, value, *_, high = described[number]
-        step = DIFFERENCE * max(abs(value), 1e-3)
-        end = value + step if value + step <= high else value - step
-        values = [each[1] for each in described]
-        other = _core.with_numbers(model, [*values[:number], end, *values[number + 1 :]])
+        """Return the derivative by a number of the motor: a difference good to eight digits, as the effort is smooth in it."""
+        other, change = with_step(model, number, RELATIVE_STEP * max(abs(_core.parameters(model)[number][1]), 1e-3))
         torque, _ = needed_torque(other, self.motion, others)
-        return np.asarray((per_torque(other, self.effort) * torque + self.induced(other) - effort) / (end - value))
+        return np.asarray((per_torque(other, self.effort) * torque + self.induced(other) - effort) / change)
 
     def _by_load(self, model: Drive, others: Array, torque: Array) -> Array:
-        """Derivative of the torque at the input by one at the output, of which friction takes its share [1]."""
-        step = DIFFERENCE * max(
+        """Return the derivative of the torque at the input by one at the output, of which friction takes its share [1]."""
+        step = RELATIVE_STEP * max(
             float(np.abs(others).max()), abs(model.gear.kinematics.ratio) * float(np.abs(torque).max()), 1e-6
         )
         there, _ = needed_torque(model, self.motion, others + step)
@@ -310,14 +311,11 @@ def per_torque(drive: Drive, effort: str) -> float:
 
 
 def _check_moves(motion: Motion, time: Sequence[float] | Array = ()) -> None:
-    """
-    Raises:
-        ValueError: nothing is left to compare; `time` of the rows shows if gaps between them are the cause
-    """
+    """Raise ValueError if nothing is left to compare; `time` of the rows shows if gaps between them are the cause."""
     if np.any(motion.speed[motion.rows] != 0.0):
         return
     steps = np.diff(time)
-    gaps = steps[steps > GAP * np.median(steps)] if len(steps) else steps
+    gaps = steps[steps > MAX_GAP_STEPS * np.median(steps)] if len(steps) else steps
     if gaps.sum() > MAX_SHARE_OF_GAPS * steps.sum():
         raise ValueError(
             f"{len(gaps)} gaps fill {gaps.sum():.3g} s of its {steps.sum():.3g} s, and what lies between them is too short to "
@@ -330,12 +328,12 @@ def _check_moves(motion: Motion, time: Sequence[float] | Array = ()) -> None:
 
 
 def spoilt(values: Array) -> NDArray[np.bool_]:
-    """Samples that are outliers among their neighbours, or clipped at the end of the range.
+    """Return True for samples that are outliers among their neighbours, or clipped at the end of the range, shape (n,).
 
     Outliers: farther off the median of seven than six standard deviations of the noise (Hampel 1974). The noise is that of
-    second differences: the median follows both noise and motion, so that what is off it would show too little. Where ripple
-    grows, as with the speed, the samples around show it. Clipped: the largest or smallest level that comes again and again,
-    though an outlier may lie beyond.
+    second differences: the median follows noise and motion, so that residuals from it are too small. Ripple that grows, as with
+    the speed, is in the samples around. Clipped: the largest or smallest level that comes again and again; an outlier may lie
+    beyond.
     """
     from scipy import ndimage
 
@@ -346,14 +344,13 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
     scale = noise(values[~clipped])
     if np.median(off) == 0.0:  # values that are held or smooth, of which extremes would look like outliers
         scale = float(np.quantile(np.abs(np.diff(values)), HELD_QUANTILE)) or np.inf
-    around = MEDIAN_OF_NORMAL * ndimage.median_filter(off, OUTLIER_WINDOW, mode="nearest")
+    around = ndimage.median_filter(off, OUTLIER_WINDOW, mode="nearest") / NORMAL_MAD
     outliers = off > MAX_OUTLIER_SIGMA * np.maximum(scale, around)
-    spoilt_ones: NDArray[np.bool_] = outliers | clipped
-    return spoilt_ones
+    return np.asarray(outliers | clipped, bool)
 
 
 def _clipped(values: Array) -> NDArray[np.bool_]:
-    """Samples at the upper end of a range that was too small."""
+    """Return True for samples at the upper end of a range that was too small, shape (n,)."""
     levels, counts = np.unique(values, return_counts=True)
     upper = levels >= np.quantile(values, 0.9)
     if not upper.any():
@@ -365,19 +362,8 @@ def _clipped(values: Array) -> NDArray[np.bool_]:
     return (values >= level) if end else np.zeros(len(values), bool)
 
 
-def _effort(recording: Recording, wanted: str | None) -> str:
-    if wanted is not None:
-        arguments.one_of("effort", wanted, tuple(EFFORTS))
-    present = [name for name in EFFORTS if name in recording and wanted in (None, name)]
-    if not present:
-        raise ValueError(f"the log has none of {listed(EFFORTS)}, which show the torque; it has {listed(recording.names)}")
-    return present[0]
-
-
 def _input_angle(recording: Recording, drive: Drive) -> Array:
-    """The angle of the input [rad]: measured there, or as a rigid gear has it."""
-    if "time" not in recording:
-        raise ValueError(f"the log needs a column {quoted('time')}; it has {listed(recording.names)}")
+    """Return the angle of the input [rad]: measured there, or that of a rigid gear."""
     if "input_angle" in recording:
         return sensible(recording, "input_angle", "rad")
     if "output_angle" in recording:

@@ -9,7 +9,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
 from strainwave.analysis.branches import noise, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
@@ -31,35 +30,33 @@ class PreslidingLoop(ComparedByFields):
     Args:
         angle: angle of the shaft [rad], shape (n,), monotone between its turning points
         torque: torque that moves it [N.m], shape (n,)
-        samples: how many were measured; more than are left where each is the mean of several
     """
 
     angle: Array
     torque: Array
-    samples: int = 0
 
     @classmethod
     def of(cls, recording: Recording) -> PreslidingLoop:
-        """From columns angle and torque, in the order in which they were measured.
+        """Return the loop of columns angle and torque, in the order in which they were measured.
 
         Raises:
             ValueError: no such columns, or a path that does not turn back twice
         """
         check_recording("recording", recording)
         angle, torque = changing(recording, "angle", "rad"), changing(recording, "torque", "N.m")
-        taken, held = thinned(angle, torque)
-        return cls.along(taken, held, len(angle))
+        path, held = thinned(angle, torque)
+        return cls.along(path, held)
 
     @classmethod
-    def along(cls, angle: Array, torque: Array, samples: int = 0) -> PreslidingLoop:
-        """Along a path as measured, each of its branches made one-way by least squares, which noise shifts neither way."""
+    def along(cls, angle: Array, torque: Array) -> PreslidingLoop:
+        """Return the loop of a path, each of its branches made one-way by least squares, which noise shifts neither way."""
         turns = turning_points(angle)
         if len(turns) < 2:
             raise ValueError(
                 f"the angle turns back {len(turns)} times; a presliding loop must go to and fro at least once, best with "
-                "several amplitudes, so that its torque over the way since the last reversal is seen"
+                "several amplitudes, which show its torque over the way since the last reversal"
             )
-        return cls(one_way(angle, turns), torque, samples or len(angle))
+        return cls(one_way(angle, turns), torque)
 
     @cached_property
     def turns(self) -> list[int]:
@@ -84,7 +81,7 @@ class Breakaway:
     bent: float
 
 
-def breakaways(recording: Recording, *, motion: float | None = None) -> list[Breakaway]:
+def breakaways(recording: Recording) -> list[Breakaway]:
     """Return where ramps of torque break a shaft away.
 
     A ramp is a stretch over which the size of the torque rises from small values. The shaft has broken away where its angle
@@ -94,8 +91,6 @@ def breakaways(recording: Recording, *, motion: float | None = None) -> list[Bre
 
     Args:
         recording: columns time, torque and angle; the angle may have any zero
-        motion: the least that counts as motion [rad]; six standard deviations of the angle's noise, or two of its steps, if
-            not given
 
     Returns:
         one entry for each ramp that broke the shaft away, in the order of time
@@ -105,7 +100,7 @@ def breakaways(recording: Recording, *, motion: float | None = None) -> list[Bre
     """
     check_recording("recording", recording)
     time, torque, angle = recording.time, sensible(recording, "torque", "N.m"), sensible(recording, "angle", "rad")
-    threshold = _resolution(angle) if motion is None else arguments.number("motion", motion, "rad", "()", low=0.0)
+    threshold = _smallest_motion(angle)
     found = [each for ramp in _ramps(torque) if (each := _broken(time[ramp], torque[ramp], angle[ramp], threshold)) is not None]
     if not found:
         raise ValueError(
@@ -133,7 +128,8 @@ def one_way(path: Array, turns: list[int]) -> Array:
     return smooth
 
 
-def _resolution(angle: Array) -> float:
+def _smallest_motion(angle: Array) -> float:
+    """Return the smallest motion [rad]: six standard deviations of the noise of the angle, or two of its steps."""
     steps = np.abs(np.diff(angle))
     smallest = float(steps[steps > 0.0].min(initial=np.inf))
     quantised = np.mean(steps == 0.0) > 0.2  # an encoder that stands still repeats itself

@@ -1,4 +1,4 @@
-"""What gives way in series with the spring of a gear, where a structure puts bodies between its shafts."""
+"""Compliance in series with the spring of a gear, of a structure with bodies between its shafts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from strainwave._core import Gear
 
 
 def series_compliance(gear: Gear) -> float:
-    """Twist at the output per torque that is not the spring's, the input shaft held [rad/(N.m)]; 0 without stages.
+    """Return the compliance at the output beside that of the spring, the input shaft held [rad/(N.m)]; 0 without stages.
 
     Document A's statics, corrected (its eq. (1) at rest, with errata E-A1 and E-A2): radial displacements times
     tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear one torque,

@@ -10,25 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.analysis.branches import noise, thinned
-from strainwave.identification.fitting.covariance import correlation_length, posterior_of
+from strainwave.identification.fitting.covariance import posterior_of
+from strainwave.identification.fitting.noise import chance_of_gain, correlation_length
 
 Array = NDArray[np.float64]
 
 MAX_CHANGE = 0.05  # of the speed of a stretch, besides its irregularity
 IRREGULARITY_SIGMA = 3.0  # of the speed over the middle of a stretch: a larger difference at an end is acceleration
-MAX_CURVATURE = (
-    0.8  # share of the variation of the speed that a parabola explains: more is an oscillation, not a constant speed
-)
+MAX_CURVATURE = 0.8  # share of the variation of the speed that a parabola explains: more is an oscillation
 MAX_BACKWARD = 0.1  # of the way: a record one way does not go back by more
 MIN_MOVING_SPEED = 0.05  # of the largest speed of a record: slower parts rest
-NOISE_SIGMA = 8.0  # of the angle: what moves by less over a part of the record rests
-PARTS = 50  # of a record, over each of which a mean speed is taken
+MIN_MOTION_SIGMA = 8.0  # of the noise of the angle, by which a shaft moves over a part of the record
+MEAN_SPEED_PARTS = 50  # of a record, each with a mean speed
 MIN_ROWS = 40  # of a record whose angle determines speeds
 MIN_ROWS_OF_STRETCH = 20
 MIN_STEADY_SHARE = 0.5  # of the moving time, that stretches at constant speed fill; a record that has less is a log
 MAX_ROWS_OF_LEVEL = 2_000  # of a stretch, of which its level is found; a longer one is thinned
 MIN_GRAVITY_ANGLE = 0.2  # rad: over less gravity is a constant
-ASYMMETRY = 0.1  # of friction: standard deviation of the relative difference between both directions (assumed)
+ASYMMETRY_SIGMA = 0.1  # relative, of the friction of one direction to that of the other (assumed)
 MAX_CHANCE = 1e-3  # probability that chance explains as much as gravity does
 MAX_RELATIVE_SIGMA = 0.5  # of a level over the usual level: beyond, gravity cannot be separated from it
 
@@ -71,11 +70,11 @@ def constant_speeds(time: Array, angle: Array) -> list[slice]:
     rows = len(time)
     if rows < MIN_ROWS:
         return []
-    apart = max(rows // PARTS, 1)
+    apart = max(rows // MEAN_SPEED_PARTS, 1)
     ahead = np.arange(rows - apart)
     elapsed = np.maximum(time[ahead + apart] - time[ahead], 1e-300)
     speed = (angle[ahead + apart] - angle[ahead]) / elapsed
-    least = NOISE_SIGMA * noise(angle) / float(np.median(elapsed))
+    least = MIN_MOTION_SIGMA * noise(angle) / float(np.median(elapsed))
     moving = np.abs(speed) > max(MIN_MOVING_SPEED * float(np.abs(speed).max()), least)
     ways = np.where(moving, np.sign(speed), 0.0)
     there = np.flatnonzero(ways)
@@ -97,7 +96,7 @@ def _constant(time: Array, angle: Array, piece: slice) -> slice | None:
     t, q = time[piece], angle[piece]
     if len(t) < MIN_ROWS_OF_STRETCH:
         return None
-    apart = max(len(t) // PARTS, 1)
+    apart = max(len(t) // MEAN_SPEED_PARTS, 1)
     middle = 0.5 * (t[apart:] + t[:-apart])
     speed = (q[apart:] - q[:-apart]) / np.maximum(t[apart:] - t[:-apart], 1e-300)
     fifth = len(speed) // 5
@@ -164,7 +163,7 @@ def _symmetry(speeds: Array, torque: Array) -> Array:
         forward, backward = ((sizes == size) & (np.sign(speeds) == way) for way in (1.0, -1.0))
         if forward.any() and backward.any():
             half = 0.5 * abs(float(torque[forward].mean() - torque[backward].mean()))
-            rows.append((forward / forward.sum() + backward / backward.sum()) / max(2.0 * ASYMMETRY * half, 1e-300))
+            rows.append((forward / forward.sum() + backward / backward.sum()) / max(2.0 * ASYMMETRY_SIGMA * half, 1e-300))
     return np.array(rows).reshape(-1, len(speeds))
 
 
@@ -194,9 +193,6 @@ def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array
 
 def _chance(before: Sequence[Array], left: Sequence[Array], unknowns: int) -> float:
     """Return the probability that chance explains as much as two unknowns more do (F test, of independent rows)."""
-    from scipy.stats import f as fisher
-
     independent = sum(len(each) / max(correlation_length(each), 1.0) for each in left)
-    rest, gain = (sum(float(each @ each) for each in residuals) for residuals in (left, before))
-    freedom = independent - unknowns
-    return 1.0 if freedom <= 0.0 or rest <= 0.0 else float(fisher.sf((gain - rest) / 2.0 * freedom / rest, 2, freedom))
+    whole, rest = (sum(float(each @ each) for each in residuals) for residuals in (before, left))
+    return chance_of_gain(whole, rest, 2, independent - unknowns)

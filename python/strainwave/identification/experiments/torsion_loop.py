@@ -15,7 +15,7 @@ from strainwave._core import Gear
 from strainwave.analysis.branches import PRESLIDING, monotone, slid, still_slides, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.experiment import Nuisance, changing
+from strainwave.identification.experiments.experiment import RELATIVE_STEP, Nuisance, changing, with_step
 from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
@@ -23,13 +23,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class TorsionLoop(ComparedByFields):
-    """Torque over twist along a path, slow enough that only spring, hysteresis and friction at rest speak.
+    """Torque over twist along a path that is slow: spring, hysteresis and friction at rest alone determine it.
 
-    Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement. A linear spring cannot
-    tell them apart; for it the zero of the twist is taken as known. A path that never turns back, a single branch, tells
-    neither: it is taken to begin with an unloaded gear at the zeros of both axes.
+    A loop does not determine the zeros of both axes, so both are unknowns of the measurement. A linear spring does not separate
+    them; for it the zero of the twist is taken as known. A path that never turns back, a single branch, determines neither: it
+    is taken to begin with an unloaded gear at the zeros of both axes.
 
-    A drift is what a sensor's zero changes by from begin to end, in proportion to time; without a clock, to the samples.
+    A drift is the change of the zero of a sensor from begin to end, in proportion to time; without a clock, to the samples.
 
     At the input, with the output locked, the friction of the wave generator is inside the loop: the model's `friction_input` at
     rest, times the ratio.
@@ -38,14 +38,14 @@ class TorsionLoop(ComparedByFields):
         twist: twist at the output [rad], shape (n,), monotone between its points
         torque: torque referred to the output [N.m], shape (n,)
         history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
-        torque_zero: where a fit starts to look for the zero of the torque [N.m]
+        torque_zero: initial value of the zero of the torque [N.m]
         twist_zero: zero of the twist, if it is known [rad]
-        near_zero: where a fit starts to look for the zero of the twist [rad]; half way between the ends if not given
-        torque_drift: where it starts to look for a drift of the torque from begin to end [N.m]; no drift if None
+        near_zero: initial value of the zero of the twist [rad]; half way between the ends if not given
+        torque_drift: initial value of the drift of the torque from begin to end [N.m]; no drift if None
         twist_drift: the same of the twist [rad]
-        moments: when each sample was taken, as a share of the duration, shape (n,); in equal steps if not given
+        moments: time of each sample as a share of the duration, shape (n,); in equal steps if not given
         input_ratio: ratio of the gear if it was measured at the input, None if at the output
-        samples: how many were measured; more than are left in `twist` where each is the mean of several
+        samples: count of those measured; more than are left in `twist` if each is the mean of several
         corners: twists [rad] of a beginning and of reversals that are not compared, each with the number of the sample that
             comes after it
     """
@@ -67,12 +67,12 @@ class TorsionLoop(ComparedByFields):
 
     @classmethod
     def of(cls, recording: Recording, gear: Gear) -> TorsionLoop:
-        """From columns twist and torque at the output, or input_angle and input_torque with the output locked.
+        """Return the loop of columns twist and torque at the output, or input_angle and input_torque with the output locked.
 
-        What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
-        recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a beginning
-        or a reversal is left out: there friction turns over while its bristles bend, over a distance that no loop tells. Where
-        the gear has stages, what they give way under the torque is taken out of the twist: the rest is that of the spring.
+        A loop at the input is referred to the output: twist = input_angle / i, torque = i input_torque. Its samples just behind
+        a beginning or a reversal are left out: there friction turns over while its bristles bend, over a distance that no loop
+        determines. A long recording is thinned to the means of equal stretches. The compliance of the stages of a gear is taken
+        out of the twist: the rest is that of the spring.
 
         Raises:
             ValueError: a loop at the input of a gear with stages
@@ -106,7 +106,7 @@ class TorsionLoop(ComparedByFields):
 
     def __post_init__(self) -> None:
         if np.ptp(self.twist) == 0.0:
-            raise ValueError("the twist never changes: a torsion loop must load and unload the gear")
+            raise ValueError("the twist never changes: give the column of the twist, of a loop that loads and unloads the gear")
         span = float(np.ptp(self.twist) * np.ptp(self.torque))
         if np.cov(self.twist, self.torque)[0, 1] < 0.0:
             raise ValueError(
@@ -115,7 +115,9 @@ class TorsionLoop(ComparedByFields):
             )
         closed = abs(self.twist[-1] - self.twist[0]) < 0.05 * np.ptp(self.twist)
         if closed and np.trapezoid(self.torque, self.twist) < -0.01 * span:
-            raise ValueError("the loop gives energy instead of losing it; its samples must follow each other as measured")
+            raise ValueError(
+                "the loop gives energy instead of losing it; give its samples in the order in which they were measured"
+            )
 
     @property
     def measured(self) -> Array:
@@ -146,7 +148,7 @@ class TorsionLoop(ComparedByFields):
 
     @property
     def centre(self) -> float:
-        """Where the zero of the twist is, as far as is known before a fit [rad]."""
+        """Zero of the twist before a fit [rad]."""
         return self.middle if self.near_zero is None else self.near_zero
 
     @cached_property
@@ -160,11 +162,11 @@ class TorsionLoop(ComparedByFields):
 
     @cached_property
     def _behind_middle(self) -> Array:
-        """How far each sample is behind the middle of the record, as a share of it: what a drift has then changed."""
+        """Time of each sample from the middle of the record, as a share of the record: the share of a drift there."""
         return (np.linspace(0.0, 1.0, len(self.twist)) if self.moments is None else self.moments) - 0.5
 
     def without_drift(self) -> TorsionLoop:
-        """The loop less the drift that a fit would start from."""
+        """Return the loop less the initial value of its drift."""
         if self.torque_drift is None and self.twist_drift is None:
             return self
         twist = self.twist - (self.twist_drift or 0.0) * self._behind_middle
@@ -172,14 +174,14 @@ class TorsionLoop(ComparedByFields):
         return replace(self, twist=twist, torque=torque, torque_drift=None, twist_drift=None)
 
     def path(self, twist_zero: float, twist_drift: float = 0.0) -> Array:
-        """The twist from its zero, where the gear is virgin, with the run before that a cyclic history needs."""
+        """Return the twist from its zero, where the gear is virgin, with the run before that a cyclic history needs."""
         places, twists = [place for place, _ in self.corners], [twist for _, twist in self.corners]
         path = np.insert(self.twist - twist_drift * self._behind_middle, places, twists) - twist_zero
         return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
 
     @cached_property
     def compared(self) -> NDArray[np.intp]:
-        """Where the samples stand in the path, counted from its end."""
+        """Places of the samples in the path, counted from its end."""
         places = np.arange(-len(self.twist) - len(self.corners), 0)
         return np.delete(places, [place + before for before, (place, _) in enumerate(self.corners)])
 
@@ -203,38 +205,36 @@ class TorsionLoop(ComparedByFields):
         return predicted[np.newaxis], np.stack([*by_numbers, *(by_unknowns[name] for name in unknown)])[:, np.newaxis]
 
     def _drift_slope(self, model: Gear, twist_zero: float, twist_drift: float) -> Array:
-        """Derivative of the torque by the drift of the twist, by central differences: dual numbers shift all samples alike."""
-        step = 1e-6 * float(np.ptp(self.twist))
+        """Return the derivative of the torque by the drift of the twist, by differences: dual numbers shift all samples."""
+        step = RELATIVE_STEP * float(np.ptp(self.twist))
         moved = (model.trace(self.path(twist_zero, twist_drift + sense * step)) for sense in (1.0, -1.0))
         ahead, back = (torque[self.compared] for torque in moved)
         return np.asarray((ahead - back) / (2.0 * step))
 
     def friction(self, model: Gear) -> Array:
-        """What friction at rest adds to the torque [N.m], shape (n,): the input's if measured there, none at a held output."""
+        """Return the torque of friction at rest [N.m], shape (n,): that of the input if measured there, else none."""
         if self.input_ratio is None:
             return np.zeros_like(self.twist)
         torque = self.input_ratio * model.friction_input.quasistatic(self.input_ratio * self._displacement)
         return np.asarray(torque[-len(self.twist) :])
 
     def _friction_slope(self, model: Gear, number: int) -> Array:
-        """Derivative of `friction` by a number of the gear, by differences: torque at rest is all but linear in most of them.
+        """Return the derivative of `friction` by a number of the gear, by differences: it is all but linear in most of them.
 
-        Towards where a breakaway counts beside an equal Coulomb torque: upwards, and downwards for the others.
+        Upwards for a breakaway, which counts above an equal Coulomb torque alone, and downwards for the others.
         """
-        path, value, *_, low, high = _core.parameters(model)[number]
+        path, value, *_ = _core.parameters(model)[number]
         if self.input_ratio is None or not path.startswith("friction_input."):
             return np.zeros_like(self.twist)
-        step = 1e-6 * max(abs(value), 1e-6)
-        end = min(value + step, high) if path.endswith("breakaway") or value - step < low else value - step
-        numbers = [each[1] for each in _core.parameters(model)]
-        other = _core.with_numbers(model, [*numbers[:number], end, *numbers[number + 1 :]])
-        return (self.friction(other) - self.friction(model)) / (end - value)
+        step = RELATIVE_STEP * max(abs(value), 1e-6)
+        other, change = with_step(model, number, step if path.endswith("breakaway") else -step)
+        return (self.friction(other) - self.friction(model)) / change
 
     @cached_property
     def _displacement(self) -> Array:
-        """The path that friction sees [rad]: it must not turn at each wiggle of the noise, as a spring may.
+        """Path of the friction [rad]: it must not turn at each wiggle of the noise, as that of a spring may.
 
-        It begins so far behind the first sample that friction slides there, as it does in all that is left of a loop.
+        It begins so far before the first sample that friction slides there, as it does in all that is left of a loop.
         """
         twist = monotone(self.twist)
         if self.history == "cyclic":
@@ -242,25 +242,21 @@ class TorsionLoop(ComparedByFields):
         sense = np.sign(twist[np.argmax(twist != twist[0])] - twist[0])
         return np.concatenate(([twist[0] - sense * PRESLIDING * np.ptp(twist)], twist))
 
-    def virgin(self) -> TorsionLoop:
-        """The same measurement, taken to be the first loading."""
-        return replace(self, history="virgin")
-
 
 def _moments(recording: Recording) -> Array:
-    """When each sample was taken, as a share of the duration."""
+    """Return the time of each sample as a share of the duration, shape (n,)."""
     clock = recording.time if "time" in recording.names else np.arange(float(len(recording)))
     duration = float(np.ptp(clock))
     return (clock - clock[0]) / duration if duration > 0.0 else np.linspace(0.0, 1.0, len(clock))
 
 
 def _crossings(twist: Array, torque: Array) -> Array:
-    """Twists at which the torque passes zero upwards [rad]."""
+    """Return the twists at which the torque passes zero upwards [rad]."""
     at = np.flatnonzero((torque[:-1] < 0.0) & (torque[1:] >= 0.0))
     share = torque[at] / (torque[at] - torque[at + 1])
     return np.asarray(twist[at] + share * (twist[at + 1] - twist[at]))
 
 
 def at_input(recording: Recording) -> bool:
-    """Whether a torsion loop was measured at the input, with the output locked."""
+    """True if a torsion loop was measured at the input, with the output locked."""
     return not {"twist", "torque"} <= set(recording.names)

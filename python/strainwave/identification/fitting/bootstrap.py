@@ -1,4 +1,4 @@
-"""Bootstrap: how estimates scatter, when what a fit left is dealt out anew."""
+"""Bootstrap: scatter of the estimates of fits to resampled residuals."""
 
 from __future__ import annotations
 
@@ -11,23 +11,22 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
-from strainwave.identification.fitting.fit import ROUGH, Fit, solved_problem
-from strainwave.identification.fitting.loss import LOSSES
+from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
-BLOCK = 4.0  # correlation lengths that a block is long (assumed; bias of the variance falls with it, its scatter grows)
+LENGTHS_PER_BLOCK = 4.0  # correlation lengths (assumed; bias of the variance falls with it, its scatter grows)
 MAX_DRAWS = 100_000
-LEAST = 20  # draws of which an interval can be told
+MIN_DRAWS = 20  # that determine an interval
 
 
 @dataclass(frozen=True, eq=False)
 class Bootstrap(ComparedByFields):
-    """Estimates of many measurements as they might have been.
+    """Estimates of many resampled measurements.
 
     Attributes:
-        paths: what was estimated
+        paths: of the estimates
         units: unit of each
         values: estimates of each draw, shape (draws, p)
         failed: draws for which no fit was found; they are not among the values
@@ -48,7 +47,7 @@ class Bootstrap(ComparedByFields):
         return np.asarray(np.std(self.values, axis=0, ddof=1))
 
     def interval(self, path: str, confidence: float = 0.95) -> tuple[float, float]:
-        """The interval that holds this share of the draws, as much beyond it on either side (percentiles)."""
+        """Return the interval that contains this share of the draws, with as many on either side of it (percentiles)."""
         path, confidence = arguments.text("path", path), arguments.number("confidence", confidence, low=0.0, high=1.0)
         if path not in self.paths:
             raise ValueError(f"there is no estimate of {quoted(path)}; there are {listed(self.paths)}")
@@ -59,17 +58,17 @@ class Bootstrap(ComparedByFields):
 def bootstrap(
     found: Fit, draws: int = 200, *, seed: int = 0, progress: Callable[[int, int], None] = lambda done, draws: None
 ) -> Bootstrap:
-    """Fits again to measurements as they might have been: what the model predicts, and blocks of what it left in another order.
+    """Return fits to resampled measurements: the prediction of the model, and blocks of its residuals in another order.
 
-    Blocks are several times as long as residuals hang together, and channels of a record keep their instants, so that noise
-    hangs together as before. What was known before is drawn anew too. Nothing is taken to be linear; but where the size of the
-    noise changes along a record, that is lost, and `Estimate.sigma` is better.
+    Blocks are several correlation lengths long, and channels of a record keep their instants, so that noise correlates as
+    before. Priors are drawn anew, too. Nothing is taken to be linear. A noise whose size changes along a record becomes one of
+    constant size; `Estimate.sigma` is better then.
 
     Args:
-        found: what `fit` found
-        draws: how many, 20 or more; each is a fit that starts at its end
+        found: result of `fit`
+        draws: count of fits, 20 or more; each starts where `found` ended
         seed: of the random numbers
-        progress: is called with how many draws are done, and how many there are
+        progress: is called with the count of draws done, and of all
 
     Raises:
         TypeError: `found` is no fit
@@ -88,39 +87,37 @@ def bootstrap(
     >>> bool(abs(drawn.sigma[0] / found.estimates[0].sigma - 1.0) < 0.3)
     True
     """
-    draws = arguments.whole("draws", draws, LEAST, MAX_DRAWS)
+    draws = arguments.whole("draws", draws, MIN_DRAWS, MAX_DRAWS)
     random = np.random.default_rng(arguments.whole("seed", seed, 0))
     problem, best = solved_problem(found)
-    loss = LOSSES[found.loss]
-    weights = problem.weights(best, problem.first_weights(), loss)
+    weights = problem.weights(best)
     left = problem.residuals(best)
     samples = sum(each.size for each in left)
-    grown = float(np.sqrt(samples / max(samples - len(best), 1)))  # residuals are smaller than the noise that left them
-    lengths = [max(1, min(round(BLOCK * max(map(correlation_length, each))), max(1, each.shape[1] // 4))) for each in left]
+    grown = float(np.sqrt(samples / max(samples - len(best), 1)))  # residuals are smaller than their noise
+    lengths = [
+        max(1, min(round(LENGTHS_PER_BLOCK * max(map(correlation_length, each))), max(1, each.shape[1] // 4))) for each in left
+    ]
     predicted = [each for each, _ in problem.predict(best)]
     values = []
     for draw in range(draws):
         for record, model, each, length in zip(problem.records, predicted, left, lengths, strict=True):
             record.measured = model.copy()
-            record.measured[:, record.training] += grown * _dealt(each, length, random)
+            record.measured[:, record.training] += grown * _resampled(each, length, random)
         problem.draw_priors(random)
         with suppress(ValueError, FloatingPointError):
-            values.append(problem.solve(best, weights, loss, ROUGH**2))
+            values.append(problem.solve(best, weights, REFIT_TOLERANCE))
         progress(draw + 1, draws)
     if not values:
         raise FloatingPointError(
-            "no measurement as it might have been could be fitted: the model diverges beside its estimates"
+            "no resampled measurement could be fitted: the model diverges near its estimates; bound the parameters, or fix some"
         )
-    known = len(found.plan.unknowns)
-    order = [*range(known), *(each.unknown for each in found.plan.tied), *range(known, len(best))]
-    factors = np.ones(len(order))
-    factors[known : known + len(found.plan.tied)] = [each.factor for each in found.plan.tied]
+    order, factors = problem.leads()
     paths, units = zip(*((each.path, each.unit) for each in found.estimates), strict=True)
     return Bootstrap(paths, units, np.stack(values)[:, order] * factors, draws - len(values))
 
 
-def _dealt(left: Array, length: int, random: np.random.Generator) -> Array:
-    """Blocks of what was left in another order, less its mean, shape (channels, n)."""
+def _resampled(left: Array, length: int, random: np.random.Generator) -> Array:
+    """Return blocks of residuals in another order, less their mean, shape (channels, n)."""
     n = left.shape[1]
     starts = random.integers(0, n, -(-n // length))
     rows = (starts[:, np.newaxis] + np.arange(length)).ravel()[:n] % n

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import Fit, solved_problem
-from strainwave.identification.fitting.loss import LOSSES
 
 Array = NDArray[np.float64]
 MAX_RELATIVE_SIGMA = 0.1  # of a change in a direction; the data leave directions with a larger one open (assumed)
-TAKES_PART = 0.02  # of the largest change in a direction: what changes less takes no part
-WHOLE = 0.03  # how near exponents must come to a ratio of small whole numbers
-RATIOS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
-SMALLEST = 1e-9  # share of the largest singular value below which a direction changes nothing
+MIN_RELATIVE_CHANGE = 0.02  # of the largest change in a direction; a parameter that changes less takes no part
+EXPONENT_TOLERANCE = 0.03  # relative, between an exponent and a ratio of small whole numbers
+EXPONENTS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
+MIN_SINGULAR = 1e-9  # of the largest singular value; directions with a smaller one change nothing
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,7 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
     or a difference where both have one unit, a product of powers where the exponents are near ratios of whole numbers up to 3.
 
     Args:
-        found: what `fit` found; parameters that are 0 take no part
+        found: result of `fit`; parameters that are 0 take no part
         max_relative_sigma: relative standard deviation above which a direction counts as open
 
     Raises:
@@ -85,9 +84,8 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
     """
     limit = arguments.number("max_relative_sigma", max_relative_sigma, low=0.0)
     problem, best = solved_problem(found)
-    loss = LOSSES[found.loss]
-    weights = problem.weights(best, problem.first_weights(), loss)
-    rows = problem.information(best, weights, loss)
+    weights = problem.weights(best)
+    rows = problem.information(best, weights)
     known = len(found.plan.unknowns)
     estimates = found.estimates[:known]
     size = np.array([max(abs(value), abs(each.start)) for value, each in zip(best, estimates, strict=False)])
@@ -95,12 +93,14 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
     if not chosen:
         return ()
     size = size[chosen]  # a fit may have gone far in an open direction: its beginning has a size too
-    wider = _wider(found, problem.naive_sigma(best, weights, loss))
+    wider = _wider(found, problem.naive_sigma(best, weights))
     directions, sigmas = _directions(rows, chosen, size, wider)
     open_ones = []
     for direction, sigma in zip(directions, sigmas, strict=True):
         if sigma > limit:
-            order = [i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > TAKES_PART * np.abs(direction).max()]
+            order = [
+                i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > MIN_RELATIVE_CHANGE * np.abs(direction).max()
+            ]
             open_ones.append((order, direction / direction[order[0]], sigma))
     roots = (directions.T * np.where(sigmas <= limit, sigmas, 0.0)).T  # of the covariance of what is determined
     made = []
@@ -139,7 +139,7 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
         columns = columns - basis @ (basis.T @ columns)
     _, singular, directions = np.linalg.svd(columns, full_matrices=True)
     singular = np.append(singular, np.zeros(len(chosen) - len(singular)))
-    dead = singular <= SMALLEST * singular.max(initial=0.0)
+    dead = singular <= MIN_SINGULAR * singular.max(initial=0.0)
     with np.errstate(divide="ignore"):
         sigmas = np.where(dead, np.inf, wider / np.where(dead, 1.0, singular))
     order = np.argsort(-sigmas, kind="stable")
@@ -148,17 +148,17 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
 
 def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Array) -> tuple[str, float, Array, str] | None:
     """Return a formula of two parameters that stays the same when both move: words, value, derivatives, unit."""
-    alike = abs(abs(moves[0] / moves[1]) - 1.0) < WHOLE
+    alike = abs(abs(moves[0] / moves[1]) - 1.0) < EXPONENT_TOLERANCE
     first = paths[0] <= paths[1] if alike else abs(moves[0]) <= abs(moves[1])  # the larger factor is 1, else by name
     if units[0] == units[1] and not first:
         swapped = _formula(paths[::-1], units[::-1], values[::-1], moves[::-1])
         return None if swapped is None else (*swapped[:2], swapped[2][::-1], swapped[3])
     power = -(moves[0] / values[0]) / (moves[1] / values[1])  # of the second, where the first has 1
-    nearest = min(RATIOS, key=lambda ratio: abs(ratio - power))
-    whole = abs(nearest - power) <= WHOLE * abs(nearest)
+    nearest = min(EXPONENTS, key=lambda ratio: abs(ratio - power))
+    whole = abs(nearest - power) <= EXPONENT_TOLERANCE * abs(nearest)
     if units[0] == units[1] and not (whole and nearest < 0.0):
         factor = -moves[0] / moves[1]
-        share = "" if abs(abs(factor) - 1.0) < WHOLE else f"{abs(factor):.3g} "
+        share = "" if abs(abs(factor) - 1.0) < EXPONENT_TOLERANCE else f"{abs(factor):.3g} "
         words = f"{paths[0]} {'+' if factor > 0.0 else '-'} {share}{paths[1]}"
         return words, float(values[0] + factor * values[1]), np.array([1.0, factor]), units[0]
     if not whole:

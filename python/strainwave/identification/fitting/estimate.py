@@ -1,4 +1,4 @@
-"""A parameter as the data see it, with the interval that holds its true value."""
+"""Estimate of a parameter, with the interval that contains its true value."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one stan
 
 @dataclass(frozen=True, eq=False)
 class Estimate(ComparedByFields):
-    """One parameter as the data see it.
+    """Estimate of one parameter.
 
     Attributes:
-        path: where it stands in the model
+        path: of the parameter in the model
         unit: its unit
         start: value before the fit
         value: value after it
-        sigma: half the width of the interval that holds the true value with 68 %, by Student's distribution: the standard
-            deviation where samples are many; infinite where the data do not tell
-        at_limit: whether the fit ended at a limit of the parameter
+        sigma: half the width of the interval that contains the true value with 68 %, by Student's distribution: the standard
+            deviation if samples are many; infinite if the data do not determine it
+        at_limit: True if the fit ended at a limit of the parameter
         freedom: independent samples beyond the number of unknowns [1]
     """
 
@@ -36,7 +36,7 @@ class Estimate(ComparedByFields):
     freedom: float = np.inf
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
-        """The interval that holds the true value with this probability, if the model is right.
+        """Return the interval that contains the true value with this probability, if the model is right.
 
         >>> low, high = Estimate("friction_input.coulomb", "N.m", 0.1, 0.02, 0.001, False, freedom=4.0).interval()
         >>> round(low, 4), round(high, 4)
@@ -48,7 +48,7 @@ class Estimate(ComparedByFields):
 
 
 def student(confidence: float, freedom: float) -> float:
-    """Half the width of the interval that holds Student's variable with this probability.
+    """Return half the width of the interval that contains Student's variable with this probability.
 
     >>> round(student(0.95, 4.0), 3)
     2.776

@@ -1,11 +1,11 @@
-"""Least squares on any free parameters of a model, with exact derivatives, and what the data say about each of them."""
+"""Least squares on any free parameters of a model, with exact derivatives, and the uncertainty of each of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,34 +21,35 @@ from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import LOSSES, Squared
+from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
 from strainwave.identification.fitting.noise import correlation_length
-from strainwave.identification.fitting.problem import Problem, Record, Weights
-from strainwave.identification.fitting.unknowns import AT, Plan, plan
+from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
+from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, plan
 from strainwave.messages import listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
 
 Array = NDArray[np.float64]
-TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
-ROUGH = 1e-3  # the same of the passes that find how the channels weigh
-ROUGH_PASSES = 4  # at most, of one step each, behind the first
-PASSES = 5  # at most, of those that are exact
-SETTLED = 0.2  # relative change of weights that calls for no further pass
-LOOSE = 0.2  # of the distance to the limit of a parameter: with a larger standard deviation no interval is symmetric
-OF_GEAR = (FrictionTable, TorsionLoop)  # what is measured on a gear, also where the model is of a drive
+EXACT_TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps on small residuals end far below it
+ROUGH_TOLERANCE = 1e-3  # likewise, of the passes that determine the weights of the channels
+REFIT_TOLERANCE = 1e-6  # likewise, of fits to changed data or with a parameter held
+MAX_ROUGH_PASSES = 4  # of one step each, after the first
+MAX_PASSES = 5  # exact ones
+MAX_WEIGHT_CHANGE = 0.2  # relative, of a pass after which no other one follows
+MAX_SYMMETRIC_SIGMA = 0.2  # standard deviation over the distance to a limit; with a larger one the interval is not symmetric
+OF_GEAR = (FrictionTable, TorsionLoop)  # experiments on a gear, also if the model is a drive
 OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "input_torque"})
 
 
 @dataclass(frozen=True, eq=False)
 class Part(ComparedByFields):
-    """What a fit makes of one record.
+    """Result of a fit for one record.
 
     Attributes:
         name: of the record
         model: the model with the numbers that were fitted to this record
-        experiment: what was measured
-        predicted: what the model predicts, shape (channels, n)
-        training: which of the n samples took part, shape (n,)
+        experiment: the measurement
+        predicted: prediction of the model, shape (channels, n)
+        training: True for samples that took part, shape (n,)
     """
 
     name: str
@@ -63,11 +64,9 @@ class Part(ComparedByFields):
         return self.experiment.measured - self.predicted
 
     def rms(self, *, held_out: bool = False) -> Array:
-        """Root mean square residual of each channel over the samples that took part, or over those that did not."""
-        chosen = ~self.training if held_out else self.training
-        return (
-            np.sqrt(np.mean(self.residuals[:, chosen] ** 2, axis=1)) if chosen.any() else np.full(len(self.residuals), np.nan)
-        )
+        """Return the root mean square residual of each channel over the samples that took part, or over those that did not."""
+        residuals = self.residuals[:, ~self.training if held_out else self.training]
+        return np.sqrt(np.mean(residuals**2, axis=1)) if residuals.size else np.full(len(residuals), np.nan)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,32 +75,32 @@ class Fit(ComparedByFields):
 
     Attributes:
         model: the model with the fitted numbers; of parameters that each record has for itself, those of the first
-        estimates: the free parameters, those tied to them, then the unknowns of the measurements; what is one record's own
-            has its name behind an @
+        estimates: the free parameters, those tied to them, then the unknowns of the measurements; the name of a record
+            follows an @ if an estimate belongs to one record alone
         covariance: of the estimates, shape (p, p), infinite in directions that the data do not determine
-        parts: of each record its experiment, its model, what it predicts, and what it leaves
-        plan: what was looked for, and what was known before
-        loss: what the residuals cost
-        evaluations: how often the model was run
+        parts: of each record its experiment, model, prediction and residuals
+        plan: the unknowns and their priors
+        loss: name of the loss function
+        evaluations: count of the runs of the model
     """
 
     model: Any
     estimates: tuple[Estimate, ...]
     covariance: Array
     parts: tuple[Part, ...]
-    plan: Plan
-    loss: Literal["linear", "soft_l1"]
+    plan: FitParameters
+    loss: LossName
     evaluations: int
 
     @property
     def gear(self) -> Gear:
-        """The fitted gear."""
+        """Fitted gear."""
         gear: Gear = self.model.gear if isinstance(self.model, Drive) else self.model
         return gear
 
     @cached_property
     def correlation(self) -> Array:
-        """Correlation of the estimates, shape (p, p); not-a-number where the data do not determine it."""
+        """Correlation of the estimates, shape (p, p); not a number where the data do not determine it."""
         sigma = np.sqrt(np.diag(self.covariance))
         with np.errstate(invalid="ignore"):
             correlation: Array = self.covariance / np.outer(sigma, sigma)
@@ -109,17 +108,17 @@ class Fit(ComparedByFields):
 
     @property
     def experiment(self) -> Experiment:
-        """What it was fitted to, where that is one record."""
+        """Experiment of the only record."""
         return self._only.experiment
 
     @property
     def predicted(self) -> Array:
-        """What the model predicts for the only record, shape (channels, n)."""
+        """Prediction of the only record, shape (channels, n)."""
         return self._only.predicted
 
     @property
     def training(self) -> NDArray[np.bool_]:
-        """Which of the n samples of the only record took part, shape (n,)."""
+        """True for samples of the only record that took part, shape (n,)."""
         return self._only.training
 
     @property
@@ -128,56 +127,56 @@ class Fit(ComparedByFields):
         return self._only.residuals
 
     def rms(self, *, held_out: bool = False) -> Array:
-        """Root mean square residual of each channel of the only record, of the samples that took part or that did not."""
+        """Return the root mean square residual of each channel of the only record, as `Part.rms`."""
         return self._only.rms(held_out=held_out)
 
     @property
     def _only(self) -> Part:
         if len(self.parts) > 1:
-            raise ValueError(f"the fit is to {len(self.parts)} records; each has its own in parts, in their order")
+            raise ValueError(f"the fit is to {len(self.parts)} records; take it from one of its parts, in their order")
         return self.parts[0]
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What speaks against the estimates or their standard deviations, in words, as far as it shows without a further fit.
+        """Doubts of the estimates or their standard deviations, in words, as far as this fit shows them.
 
         A fit that ended at the wrong one of several minima need not show it: `minima` looks for others.
         """
-        return *self._loosely_told(), *self._left()
+        return *self._asymmetric(), *self._correlated()
 
-    def _loosely_told(self) -> Iterator[str]:
-        """Parameters whose intervals come near what they may not be, where no cost is a parabola."""
+    def _asymmetric(self) -> Iterator[str]:
+        """Yield parameters whose intervals come near a limit, where no cost is a parabola."""
         for unknown, estimate in zip(self.plan.unknowns, self.estimates, strict=False):
             limit = next((each for each in (unknown.low, unknown.high) if np.isfinite(each)), None)
             if limit is None or estimate.at_limit or not np.isfinite(estimate.sigma):
                 continue
             share = estimate.sigma / abs(estimate.value - limit)
-            if share > LOOSE:
+            if share > MAX_SYMMETRIC_SIGMA:
                 yield (
                     f"{estimate.path} is known to {100.0 * share:.0f} % only: its interval is not symmetric; "
-                    f'sw.profile(fit, "{estimate.path}") tells it'
+                    f'sw.profile(fit, "{estimate.path}") gives it'
                 )
 
-    def _left(self) -> Iterator[str]:
-        """Channels whose residuals are no white noise."""
+    def _correlated(self) -> Iterator[str]:
+        """Yield channels whose residuals are no white noise."""
         for part in self.parts:
-            of = f"{AT}{part.name}" if len(self.parts) > 1 else ""
+            of = f"{OF_RECORD}{part.name}" if len(self.parts) > 1 else ""
             for name, left in zip(part.experiment.channels, part.residuals, strict=True):
-                together = correlation_length(left[part.training])
-                if together > 1.0:
+                length = correlation_length(left[part.training])
+                if length > 1.0:
                     yield (
-                        f"what is left of {name}{of} hangs together over {together:.2g} samples: the sensor drifts, the model "
+                        f"the residuals of {name}{of} correlate over {length:.2g} samples: the sensor drifts, the model "
                         "lacks something, or the fit ended at the wrong minimum; look at the residuals, and try sw.minima(fit)"
                     )
 
     def summary(self) -> str:
-        """A table of the estimates and the residuals with what is doubted, to print."""
+        """Return a table of the estimates, the residuals and the doubts, to print."""
         lines = [f"{'parameter':44} {'start':>12} {'value':>14} {'sigma':>10}  unit"]
         for e in self.estimates:
             note = "  at its limit" if e.at_limit else "" if np.isfinite(e.sigma) else "  not determined by the data"
             lines.append(f"{e.path:44} {e.start:12.5g} {e.value:14.7g} {e.sigma:10.2g}  {e.unit}{note}")
         for part in self.parts:
-            of = f"{AT}{part.name}" if len(self.parts) > 1 else ""
+            of = f"{OF_RECORD}{part.name}" if len(self.parts) > 1 else ""
             for name, unit, trained, held in zip(
                 part.experiment.channels, part.experiment.units, part.rms(), part.rms(held_out=True), strict=True
             ):
@@ -200,20 +199,20 @@ def fit(
     dt: float | None = None,
     initial: Mapping[str, float] | None = None,
     training: Mask | Sequence[Mask] | Mapping[str, Mask] = None,
-    loss: Literal["linear", "soft_l1"] = "linear",
+    loss: LossName = "linear",
     bounds: Mapping[str, tuple[float, float]] | None = None,
     priors: Mapping[str, tuple[float, float] | Entry] | None = None,
     ties: Mapping[str, str | tuple[str, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     per_record: Sequence[str] = (),
 ) -> Fit:
-    """Fits free parameters of a model to measurements by least squares.
+    """Fit free parameters of a model to measurements by least squares.
 
     The Jacobian comes from dual numbers through the same code that simulates, so it is exact to rounding. Channels of all
-    records are weighed by their residuals, found in a first pass. The covariance accounts for residuals that hang together in
+    records are weighted by their residuals, found in a first pass. The covariance accounts for residuals that correlate in
     time.
 
-    Where several records are given, a key of `bounds`, `priors` and `fixed` may name one of them behind an @, as
+    If several records are given, a key of `bounds`, `priors` and `fixed` may name one of them behind an @, as
     "load.inertia @ heavy". Records are called by the names that a mapping gives them, else "record 1", "record 2" and so on.
 
     Args:
@@ -261,20 +260,23 @@ def fit(
     >>> round(found.gear.friction_input.coulomb, 9), round(found.gear.friction_input.viscous, 9)
     (0.02, 0.0003)
     """
-    _check_kinds(model, loss)
+    if not isinstance(model, Gear | Drive):
+        raise TypeError(f"model must be a Gear or a drive, not {shortened(model)}")
+    arguments.one_of("loss", loss, LOSSES)
     records = _records(recordings)
     if initial is not None and not (isinstance(model, Drive) and all(isinstance(each, Recording) for each in records.values())):
         raise TypeError("initial is the beginning of a drive log: give a drive and a recording, or leave it out")
     asked = plan(
         model, list(records), free, bounds=bounds, priors=priors, ties=ties, fixed=fixed, per_record=per_record
     )  # fmt: skip
-    models = [_core.with_numbers(model, list(numbers)) for numbers in asked.numbers]
     experiments = [
         experiment_of(own, each, channels, dt, initial) if isinstance(each, Recording) else each
-        for own, each in zip(models, records.values(), strict=True)
+        for own, each in zip(_models(model, asked), records.values(), strict=True)
     ]
-    problem = problem_of(asked, list(records), models, experiments, _masks(training, list(records)))
-    found = _solved(problem, loss)
+    problem = problem_of(asked, model, experiments, _masks(training, list(records)), loss)
+    for record, (predicted, _) in zip(problem.records, problem.predict(problem.start()), strict=True):
+        _check_motion(record.experiment, predicted)
+    found = solved_from(problem, problem.start())
     for part in found.parts:
         if isinstance(part.experiment, DriveLog):
             warn_of_bristles(part.model, part.experiment.step(part.model))
@@ -284,79 +286,75 @@ def fit(
 
 
 def solved_problem(found: Fit) -> tuple[Problem, Array]:
-    """The least squares of a fit, and the unknowns that solve it.
+    """Return the least squares of a fit, and the unknowns that solve it.
 
     Raises:
         TypeError: not a fit
     """
     if not isinstance(found, Fit):
         raise TypeError(f"found must be a Fit, which sw.fit returns, not {shortened(found)}")
-    models = [_core.with_numbers(found.model, list(numbers)) for numbers in found.plan.numbers]
     experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
-    problem = problem_of(found.plan, [part.name for part in found.parts], models, experiments, masks)
+    problem = problem_of(found.plan, found.model, experiments, masks, found.loss)
     known, tied = len(found.plan.unknowns), len(found.plan.tied)
     values = [each.value for each in found.estimates]
     return problem, np.array(values[:known] + values[known + tied :])
 
 
 def problem_of(
-    asked: Plan, names: list[str], models: Sequence[Any], experiments: Sequence[Experiment], masks: Sequence[Mask]
+    asked: FitParameters, model: Any, experiments: Sequence[Experiment], masks: Sequence[Mask], loss: LossName = "linear"
 ) -> Problem:
-    """The least squares of a plan on experiments, with the models before the fit and the samples that take part."""
+    """Return the least squares of unknowns on experiments, with the model before the fit and the samples that take part."""
     first, built = len(asked.unknowns), []
-    for experiment, mask, own, moves in zip(experiments, masks, models, asked.moves, strict=True):
-        _check_branch(experiment, [move.path for move in moves])
+    for experiment, mask, own, links in zip(experiments, masks, _models(model, asked), asked.links, strict=True):
+        _check_branch(experiment, [link.path for link in links])
         of_gear = isinstance(experiment, OF_GEAR) and isinstance(own, Drive)
-        built.append(Record(experiment, mask, own, moves, of_gear, first))
+        built.append(FitRecord(experiment, mask, own, links, of_gear, first))
         first += len(experiment.nuisances)
-    return Problem(asked, built, names)
+    return Problem(asked, built, loss)
 
 
-def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
-    """The fit from where the model stands, which must move as what was measured did."""
-    for record, (predicted, _) in zip(problem.records, problem.predict(problem.start()), strict=True):
-        _check_motion(record.experiment, predicted)
-    return solved_from(problem, problem.start(), named)
+def _models(model: Any, asked: FitParameters) -> list[Any]:
+    """Return the model of each record before a fit."""
+    return [_core.with_numbers(model, list(numbers)) for numbers in asked.numbers]
 
 
-def solved_from(problem: Problem, x: Array, named: Literal["linear", "soft_l1"]) -> Fit:
-    """The fit, in passes: the residuals of each say how much its channels weigh in the next."""
-    loss, records, weights = LOSSES[named], problem.records, problem.first_weights()
-    channels = sum(len(record.experiment.channels) for record in records)
-    alone = channels == 1 and not problem.plan.priors and isinstance(loss, Squared)  # where weights change nothing
+def solved_from(problem: Problem, x: Array) -> Fit:
+    """Return the fit from some unknowns, in passes: the residuals of each give the weights of the channels in the next."""
+    weights = problem.first_weights()
+    channels = sum(len(record.experiment.channels) for record in problem.records)
+    alone = channels == 1 and not problem.plan.priors and isinstance(problem.loss, Squared)  # weights then change nothing
     if not alone:
-        x = problem.solve(x, weights, loss, ROUGH)
-        for _ in range(ROUGH_PASSES):
-            before, weights = weights, problem.weights(x, weights, loss)
-            if _change(before, weights) < SETTLED:
+        x = problem.solve(x, weights, ROUGH_TOLERANCE)
+        for _ in range(MAX_ROUGH_PASSES):
+            before, weights = weights, problem.weights(x, weights)
+            if _change(before, weights) < MAX_WEIGHT_CHANGE:
                 break
-            x = problem.solve(x, weights, loss, ROUGH, trials=2)  # where it stands, and one step
-    for _ in range(1 if alone else PASSES):
-        before, x = weights, problem.solve(x, weights, loss, TOLERANCE)
-        weights = problem.weights(x, before, loss)
-        if _change(before, weights) < SETTLED:
+            x = problem.solve(x, weights, ROUGH_TOLERANCE, trials=2)  # where it stands, and one step
+    for _ in range(1 if alone else MAX_PASSES):
+        before, x = weights, problem.solve(x, weights, EXACT_TOLERANCE)
+        weights = problem.weights(x, before)
+        if _change(before, weights) < MAX_WEIGHT_CHANGE:
             break
-    estimates, covariance = problem.estimates(x, weights, loss)
+    return fit_of(problem, x, weights)
+
+
+def fit_of(problem: Problem, x: Array, weights: Sequence[Weights]) -> Fit:
+    """Return the fit that ended with these unknowns and weights."""
+    estimates, covariance = problem.estimates(x, weights)
     parts = tuple(
         Part(name, record.model(x), record.experiment, predicted, record.training)
-        for name, record, (predicted, _) in zip(problem.names, records, problem.predict(x), strict=True)
+        for name, record, (predicted, _) in zip(problem.plan.records, problem.records, problem.predict(x), strict=True)
     )
-    return Fit(parts[0].model, estimates, covariance, parts, problem.plan, named, problem.evaluations)
+    return Fit(parts[0].model, estimates, covariance, parts, problem.plan, problem.loss_name, problem.evaluations)
 
 
 def _change(before: Sequence[Weights], after: Sequence[Weights]) -> float:
-    """The largest relative change of weights."""
+    """Return the largest relative change of weights."""
     return max(float(np.abs(np.log(new.rows / old.rows)).max()) for old, new in zip(before, after, strict=True))
 
 
-def _check_kinds(model: object, loss: object) -> None:
-    if not isinstance(model, Gear | Drive):
-        raise TypeError(f"model must be a Gear or a drive, not {shortened(model)}")
-    arguments.one_of("loss", loss, LOSSES)
-
-
 def _records(recordings: object) -> dict[str, Any]:
-    """The measurements, by the names of their records."""
+    """Return the measurements by the names of their records."""
     if isinstance(recordings, Recording) or hasattr(recordings, "predict"):
         return {"record 1": recordings}
     if isinstance(recordings, Mapping):
@@ -374,7 +372,7 @@ def _records(recordings: object) -> dict[str, Any]:
 
 
 def _masks(training: Any, names: list[str]) -> list[Mask]:
-    """Which samples of each record take part."""
+    """Return the samples of each record that take part."""
     if training is None:
         return [None for _ in names]
     if isinstance(training, Mapping):
@@ -390,7 +388,7 @@ def _masks(training: Any, names: list[str]) -> list[Mask]:
 
 
 def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
-    """Of a path that never turns back, a fit can take the whole for the spring, or for hysteresis."""
+    """Raise ValueError for hysteresis of a path that never turns back: it is not separated from the spring."""
     wrong = [path for path in paths if not path.removeprefix("gear.").startswith("stiffness.")]
     if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
         raise ValueError(
@@ -400,7 +398,7 @@ def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
 
 
 def _check_motion(experiment: Experiment, predicted: Array) -> None:
-    """Where the model stands still, nothing changes with its parameters, and a fit would give its start back."""
+    """Raise ValueError for a model that stands still: nothing changes with its parameters, and a fit would end at its start."""
     if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):
         raise ValueError(
             "the model does not move under this command, though the drive did: nothing can be fitted from there. Start with "
@@ -416,7 +414,7 @@ def experiment_of(
     dt: float | None = None,
     initial: Mapping[str, float] | None = None,
 ) -> Experiment:
-    """The experiment that a recording holds, told by its columns and the kind of model.
+    """Return the experiment of a recording by its columns and the kind of model.
 
     Raises:
         ValueError: the columns fit no experiment

@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
-from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.noise import correlation_length
+from strainwave.identification.fitting.problem import MIN_NOISE
 from strainwave.parameters import Parameter, every
 
 Array = NDArray[np.float64]
 
 MAX_EXPLAINED_SHARE = 0.3  # of the residuals' power: a kept parameter whose change explains more of it is wrong
 MIN_SHARE_OF_LARGEST = 0.8  # of the largest share explained: which of such parameters explains a little more is chance
-EXACT = ("control.", "gear.kinematics.", "kinematics.")  # designed, not measured
-DEFINED = (".reference_temperature", ".reference_speed")  # for which the other numbers of a law hold
-STATED_NOWHERE = 0.1  # relative standard deviation of a kept value, if its source states neither spread nor uncertainty
-ASSUMED = 0.5  # relative standard deviation of a kept value that is assumed
+DESIGNED_PARTS = ("control.", "gear.kinematics.", "kinematics.")  # exact, as they are designed
+REFERENCE_NAMES = (".reference_temperature", ".reference_speed")  # exact: the other numbers of a law are those there
+SIGMA_IF_NOT_STATED = 0.1  # relative, of a kept value whose source states neither spread nor uncertainty
+SIGMA_IF_ASSUMED = 0.5  # relative, of a kept value that is assumed
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +32,7 @@ class Influence(ComparedByFields):
     Attributes:
         kept: the parameters kept whose value is not zero
         slopes: change of each estimate over the change of each of these, shape (estimates, kept)
-        bounds: error of each of them from which on the residuals show it, shape (kept,)
+        bounds: error of each of them that makes a residual as large as the noise, shape (kept,)
         shift_if_free: change of each of them if it were fitted, shape (kept,)
         explained_share: share of the residuals' power that this change explains, shape (kept,)
     """
@@ -82,48 +83,48 @@ def uncertainty(value: float, entry: Entry | None) -> float:
     >>> uncertainty(20.0, Entry("catalogue", spread=0.3)), uncertainty(20.0, None), uncertainty(20.0, Entry("assumed"))
     (6.0, 2.0, 10.0)
     """
-    if entry is None or (entry.spread is None and entry.uncertainty is None):
-        return (ASSUMED if entry is not None and entry.assumed else STATED_NOWHERE) * abs(value)
-    return float(np.hypot((entry.spread or 0.0) * value, entry.uncertainty or 0.0))
+    if entry is not None and (stated := entry.sigma(value)) is not None:
+        return stated
+    return (SIGMA_IF_ASSUMED if entry is not None and entry.assumed else SIGMA_IF_NOT_STATED) * abs(value)
 
 
 def influence(found: Fit) -> Influence:
     """Return the change of the estimates of a fit with what it kept, to first order.
 
     At the minimum the gradient J'r of the least squares is zero, and stays so when a kept parameter changes: the estimates move
-    by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters. What of K
-    no change of the estimates makes up for shows in the residuals, and so bounds the kept parameter.
+    by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters. The part of
+    K that no change of the estimates makes up for remains in the residuals, and so bounds the kept parameter.
     """
     known = every(found.model)
     nuisances = len(found.experiment.nuisances)
     of_model = found.estimates[: len(found.estimates) - nuisances]
     free = [known[estimate.path] for estimate in of_model]
-    taken = {each.number for each in free}
-    kept = tuple(each for each in known.values() if each.number not in taken and each.value != 0.0 and not _is_exact(each.path))
+    own = {each.number for each in free}
+    kept = tuple(each for each in known.values() if each.number not in own and each.value != 0.0 and not _is_exact(each.path))
     unknowns = np.array([estimate.value for estimate in found.estimates[len(of_model) :]])
     numbers = [each.number for each in (*free, *kept)]
     _, slopes = found.experiment.predict(found.model, numbers, unknowns)
     residual = np.sqrt(np.mean(found.residuals[:, found.training] ** 2, axis=1))
     size = np.abs(found.experiment.measured).max(axis=1)
-    weights = 1.0 / np.maximum(residual, 1e-12 * np.where(size > 0.0, size, 1.0))
+    weights = 1.0 / np.maximum(residual, MIN_NOISE * np.where(size > 0.0, size, 1.0))
     residuals = (found.residuals[:, found.training] * weights[:, np.newaxis]).ravel()
     columns = (slopes * weights[:, np.newaxis])[:, :, found.training].reshape(len(slopes), -1).T
     by_free = np.column_stack((columns[:, : len(free)], columns[:, len(numbers) :]))
     by_kept = columns[:, len(free) : len(numbers)]
-    told = np.any(by_kept, axis=0)  # else its influence is nil
+    acting = np.any(by_kept, axis=0)
     scale = np.linalg.norm(by_free, axis=0)
     scale[scale == 0.0] = 1.0
     moved = np.zeros((by_free.shape[1], len(kept)))
-    moved[:, told] = -np.linalg.lstsq(by_free / scale, by_kept[:, told], rcond=1e-10)[0] / scale[:, np.newaxis]
+    moved[:, acting] = -np.linalg.lstsq(by_free / scale, by_kept[:, acting], rcond=1e-10)[0] / scale[:, np.newaxis]
     shown = by_kept + by_free @ moved
     power = np.sum(shown**2, axis=0)
-    seen = power > 0.0
-    together = max(correlation_length(row) for row in found.residuals[:, found.training])
-    bounds = np.where(seen, np.sqrt(together / np.where(seen, power, 1.0)), np.inf)
-    shift = np.where(seen, residuals @ shown / np.where(seen, power, 1.0), 0.0)
+    divisor = np.where(power > 0.0, power, 1.0)
+    length = max(correlation_length(row) for row in found.residuals[:, found.training])
+    bounds = np.where(power > 0.0, np.sqrt(length / divisor), np.inf)
+    shift = np.where(power > 0.0, residuals @ shown / divisor, 0.0)
     explained = shift**2 * power / max(float(residuals @ residuals), 1e-300)
     return Influence(kept, moved, bounds, shift, explained)
 
 
 def _is_exact(path: str) -> bool:
-    return path.startswith(EXACT) or path.endswith(DEFINED) or ".order[" in path
+    return path.startswith(DESIGNED_PARTS) or path.endswith(REFERENCE_NAMES) or ".order[" in path

@@ -1,25 +1,26 @@
-"""How much residuals cost: all by their square, or large ones less."""
+"""Loss functions of residuals: the square, and one that counts large ones less."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+LossName = Literal["linear", "soft_l1"]
 NORMAL_MAD = 0.6744897501960817  # median of the absolute value of a standard normal variable
 
 
 class Loss(Protocol):
-    """Cost of residuals, in units of their standard deviation; half of `cost(residual**2)` is what a fit makes small."""
+    """Cost of residuals, in units of their standard deviation; a fit minimises half of `cost(residual**2)`."""
 
     def sigma(self, residual: Array) -> Array:
-        """Standard deviation of the noise of each channel, shape (channels, 1), from residuals, shape (channels, n)."""
+        """Return the standard deviation of the noise, shape (channels, 1), from residuals, shape (channels, n)."""
         ...
 
     def cost(self, squares: Array) -> Array:
-        """Cost over the square of a residual, and its first and second derivative, shape (3, n)."""
+        """Return the cost over the square of a residual, and its first and second derivative, shape (3, n)."""
         ...
 
 
@@ -48,15 +49,15 @@ class SoftL1:
         return np.stack((2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3))
 
 
-LOSSES: dict[str, Loss] = {"linear": Squared(), "soft_l1": SoftL1()}
+LOSSES: dict[LossName, Loss] = {"linear": Squared(), "soft_l1": SoftL1()}
 
 
 def slope(loss: Loss, residual: Array) -> Array:
-    """Derivative of half the cost by the residual: what a sample weighs with."""
+    """Return the derivative of half the cost by the residual."""
     return np.asarray(residual * loss.cost(residual**2)[1])
 
 
-def bend(loss: Loss, residual: Array) -> Array:
-    """Its second derivative."""
+def curvature(loss: Loss, residual: Array) -> Array:
+    """Return the second derivative of half the cost by the residual."""
     _, first, second = loss.cost(residual**2)
     return np.asarray(first + 2.0 * residual**2 * second)

@@ -1,4 +1,4 @@
-"""Whether a fit ended at the lowest of several minima: fits that start elsewhere, and where they end."""
+"""Other minima of a fit: fits with other initial values, and their ends."""
 
 from __future__ import annotations
 
@@ -11,28 +11,27 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
-from strainwave.identification.fitting.fit import ROUGH, Fit, solved_from, solved_problem
-from strainwave.identification.fitting.loss import LOSSES
+from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, solved_from, solved_problem
 from strainwave.messages import listed
 
 Array = NDArray[np.float64]
-ELSEWHERE = 2.0  # largest factor between where a fit ended and where another starts
-STARTS = 8
+MAX_START_FACTOR = 2.0  # between the end of a fit and the initial value of another one
+DEFAULT_STARTS = 8
 MAX_STARTS = 10_000
-TRIALS = 15  # steps of a fit that starts elsewhere
-AS_GOOD = 9.0  # rise of the cost: what lies three standard deviations off, were the model linear
-APART = 5.0  # standard deviations: with a rise that small, no linear model has it
-ALIKE = 1e-3  # of a parameter: as near as fits end, where there is no noise
+MAX_TRIALS = 15  # steps of a fit with other initial values
+MAX_RIVAL_COST = 9.0  # rise of the cost three standard deviations off, if the model is linear
+MIN_DISTANCE_SIGMA = 5.0  # standard deviations between two minima: with so small a rise no linear model has it
+MIN_RELATIVE_DISTANCE = 1e-3  # of a parameter: fits without noise end as near as that
 
 
 @dataclass(frozen=True, eq=False)
 class End(ComparedByFields):
-    """Where fits ended that started at different places.
+    """A minimum at which fits with different initial values ended.
 
     Attributes:
         values: of the free parameters, by path
-        cost: rise above the least cost; where the model is linear the square of the distance in standard deviations
-        starts: how many ended there
+        cost: rise above the least cost; if the model is linear, the square of the distance in standard deviations
+        starts: count of the fits that ended there
     """
 
     values: Mapping[str, float]
@@ -42,13 +41,13 @@ class End(ComparedByFields):
 
 @dataclass(frozen=True, eq=False)
 class Minima(ComparedByFields):
-    """Where a fit ends, depending on where it starts.
+    """Minima of a fit.
 
     Attributes:
-        best: the fit of the least cost; the one that was given, where none ended lower
-        ends: of the least cost first; the fit that was given is among them
+        best: the fit of the least cost; the given one if none ended lower
+        ends: that of the least cost first; that of the given fit is among them
         units: of the free parameters, by path
-        lower: whether another start led to a lower cost
+        lower: True if another start led to a lower cost
     """
 
     best: Fit
@@ -58,8 +57,8 @@ class Minima(ComparedByFields):
 
     @property
     def rivals(self) -> tuple[End, ...]:
-        """Ends beside the best that explain the measurement about as well."""
-        return tuple(end for end in self.ends[1:] if end.cost < AS_GOOD)
+        """Other ends than the best that explain the measurement about as well."""
+        return tuple(end for end in self.ends[1:] if end.cost < MAX_RIVAL_COST)
 
     def __str__(self) -> str:
         count = sum(end.starts for end in self.ends)
@@ -80,16 +79,16 @@ class Minima(ComparedByFields):
         return listed([f"{path} = {value:.5g} {self.units[path]}" for path, value in end.values.items()])
 
 
-def minima(found: Fit, starts: int = STARTS, *, seed: int = 0) -> Minima:
-    """Starts a fit elsewhere, to see whether it ended at the lowest minimum, and whether another explains as much.
+def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima:
+    """Return the minima at which a fit with other initial values ends.
 
-    Each free parameter starts at up to twice or half of where the fit ended, at random. A drive that vibrates has a minimum at
-    each natural frequency that gains or loses a period over the record; one that sticks has many. Their residuals need not look
+    Each free parameter starts at up to twice or half of its estimate, at random. A drive that vibrates has a minimum at each
+    natural frequency that gains or loses a period over the record; one that sticks has many. Their residuals need not look
     wrong, and standard deviations do not count other minima.
 
     Args:
-        found: what `fit` found
-        starts: how many; each takes about as long as the fit did
+        found: result of `fit`
+        starts: count of other initial values; each takes about as long as the fit did
         seed: of the random numbers
 
     Raises:
@@ -107,35 +106,36 @@ def minima(found: Fit, starts: int = STARTS, *, seed: int = 0) -> Minima:
     """
     starts, random = arguments.whole("starts", starts, 1, MAX_STARTS), np.random.default_rng(arguments.whole("seed", seed, 0))
     problem, given = solved_problem(found)
-    loss, unknowns = LOSSES[found.loss], found.plan.unknowns
-    weights = problem.weights(given, problem.first_weights(), loss)
+    unknowns, weights = found.plan.unknowns, problem.weights(given)
     reached = [given]
     for _ in range(starts):
         start = given.copy()
-        start[: len(unknowns)] *= ELSEWHERE ** random.uniform(-1.0, 1.0, len(unknowns))
+        start[: len(unknowns)] *= MAX_START_FACTOR ** random.uniform(-1.0, 1.0, len(unknowns))
         with suppress(ValueError, FloatingPointError):  # a model that is not valid there
-            reached.append(problem.solve(start, weights, loss, ROUGH, trials=TRIALS))
-    costs = [problem.cost(x, weights, loss) for x in reached]
+            reached.append(problem.solve(start, weights, ROUGH_TOLERANCE, trials=MAX_TRIALS))
+    costs = [problem.cost(x, weights) for x in reached]
     lower = min(costs) < costs[0] - 1.0  # a standard deviation
     best = found
     if lower:
-        best = solved_from(problem, reached[int(np.argmin(costs))], found.loss)
+        best = solved_from(problem, reached[int(np.argmin(costs))])
         _, lowest = solved_problem(best)
-        weights = problem.weights(lowest, weights, loss)
+        weights = problem.weights(lowest, weights)
         reached[int(np.argmin(costs))] = lowest
-        costs = [problem.cost(x, weights, loss) for x in reached]
-    sigma = np.array([max(each.sigma, ALIKE * abs(each.value)) or 1.0 for each in best.estimates[: len(unknowns)]])
+        costs = [problem.cost(x, weights) for x in reached]
+    sigma = np.array(
+        [max(each.sigma, MIN_RELATIVE_DISTANCE * abs(each.value)) or 1.0 for each in best.estimates[: len(unknowns)]]
+    )
     ends = _ends(np.array(reached)[:, : len(unknowns)], np.array(costs) - min(costs), sigma)
     paths = [each.path for each in unknowns]
-    told = tuple(End(dict(zip(paths, x.tolist(), strict=True)), cost, count) for x, cost, count in ends)
-    return Minima(best, told, {each.path: each.unit for each in unknowns}, lower)
+    described = tuple(End(dict(zip(paths, x.tolist(), strict=True)), cost, count) for x, cost, count in ends)
+    return Minima(best, described, {each.path: each.unit for each in unknowns}, lower)
 
 
 def _ends(reached: Array, costs: Array, sigma: Array) -> list[tuple[Array, float, int]]:
-    """What was reached, its rise of cost, and how many starts led there: what lies near one of less cost is one with it."""
+    """Return the ends, the rise of cost and the count of starts of each; one near an end of less cost is the same."""
     ends: list[tuple[Array, float, int]] = []
     for x, cost in sorted(zip(reached, costs.tolist(), strict=True), key=lambda each: each[1]):
-        near = [bool(np.all(np.abs(x - end) < APART * sigma)) for end, *_ in ends]
+        near = [bool(np.all(np.abs(x - end) < MIN_DISTANCE_SIGMA * sigma)) for end, *_ in ends]
         if any(near):
             place = near.index(True)
             end, least, count = ends[place]

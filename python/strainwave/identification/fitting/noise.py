@@ -1,4 +1,4 @@
-"""How residuals hang together: their spectrum, and for how many samples they do."""
+"""Correlation of residuals: their spectrum and their correlation length."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-PER_ORDER = 10  # samples that an order of an autoregression needs at least (assumed)
+MIN_SAMPLES_PER_ORDER = 10  # of an autoregression (assumed)
 
 
 def autoregression(series: Array) -> Array:
-    """Coefficients 1, a1, …, ak of the autoregression x[t] + a1 x[t-1] + … + ak x[t-k] = white noise that a series tells.
+    """Return the coefficients 1, a1, …, ak of the autoregression x[t] + a1 x[t-1] + … + ak x[t-k] = white noise of a series.
 
     Coefficients by Burg, "Maximum entropy spectral analysis" (1975), which are stable; the order by the criterion of Schwarz
     (1978), up to ten times the decimal logarithm of the number of samples.
@@ -26,7 +26,7 @@ def autoregression(series: Array) -> Array:
     ahead, back = series.copy(), series.copy()
     coefficients, power = np.ones(1), float(np.mean(series**2))
     best, least = coefficients, np.inf
-    for order in range(min(int(10.0 * np.log10(max(n, 1))), n // PER_ORDER) + 1):
+    for order in range(min(int(10.0 * np.log10(max(n, 1))), n // MIN_SAMPLES_PER_ORDER) + 1):
         if power <= 0.0:
             break
         criterion = n * np.log(power) + np.log(n) * order
@@ -44,7 +44,7 @@ def autoregression(series: Array) -> Array:
 
 
 def spectrum(series: Array, length: int) -> Array:
-    """Power of a series at the frequencies of a transform of this even length, by its autoregression; their mean is 1.
+    """Return the power of a series at the frequencies of a transform of even length, by its autoregression; their mean is 1.
 
     The frequencies above half the sampling rate mirror those below; the mean is over all.
     """
@@ -54,7 +54,7 @@ def spectrum(series: Array, length: int) -> Array:
 
 
 def andrews_lags(series: Array) -> int:
-    """Lags over which a Bartlett kernel sums, were the series an autoregression of first order.
+    """Return the lags over which a Bartlett kernel sums, for an autoregression of first order.
 
     Andrews, Econometrica 59 (1991) 817-858, equation 6.2 and section 6.4.
     """
@@ -67,7 +67,7 @@ def andrews_lags(series: Array) -> int:
 
 
 def correlation_length(residual: Array) -> float:
-    """Integrated autocorrelation time in samples, summed over Sokal's window; 1 for what an autoregression takes to be white.
+    """Return the integrated autocorrelation time in samples, over Sokal's window; 1 if an autoregression finds white noise.
 
     Sokal, "Monte Carlo methods in statistical mechanics" (1997), section 3.
     """
@@ -86,3 +86,16 @@ def correlation_length(residual: Array) -> float:
 def rms(values: Array) -> float:
     """Return the root mean square of values."""
     return float(np.sqrt(np.mean(values**2)))
+
+
+def chance_of_gain(before: float, left: float, more: int, freedom: float) -> float:
+    """Return the probability that `more` unknowns shrink the sum of squares of white residuals as much by chance (F test).
+
+    >>> round(chance_of_gain(4.0, 2.0, 1, 10), 4), chance_of_gain(4.0, 4.0, 1, 10)
+    (0.0098, 1.0)
+    """
+    from scipy.stats import f as fisher
+
+    if freedom <= 0.0 or before <= left:
+        return 1.0
+    return float(fisher.sf((before - left) / more * freedom / left, more, freedom)) if left > 0.0 else 0.0

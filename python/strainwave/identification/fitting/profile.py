@@ -1,4 +1,4 @@
-"""Profile likelihood: how far a parameter can go, when all others make up for it as well as they can."""
+"""Profile likelihood: the cost over one parameter, all others fitted anew."""
 
 from __future__ import annotations
 
@@ -11,30 +11,29 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.estimate import ONE_SIGMA, student
-from strainwave.identification.fitting.fit import ROUGH, Fit, solved_problem
-from strainwave.identification.fitting.loss import LOSSES
+from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
-STEPS = 24  # values tried to each side, at most
-NEAR = 0.01  # how near to the limit an end of the interval must come, relative in the root of the cost
-FARTHEST = 1e3  # of the size of a parameter: farther out nobody looks
+MAX_TRIALS = 24  # values tried to each side
+LIMIT_TOLERANCE = 0.01  # of an end of the interval, relative in the root of the cost
+MAX_RELATIVE_DISTANCE = 1e3  # from the estimate, over the size of the parameter
 
 
 @dataclass(frozen=True, eq=False)
 class Profile(ComparedByFields):
-    """What the data say to each value of one parameter.
+    """Profile likelihood of one parameter.
 
     Attributes:
         path: of the parameter
         unit: its unit
         values: tried, ascending, shape (n,)
-        cost: rise of the cost above its least, the others fitted anew, shape (n,); where the model is linear the square of the
+        cost: rise of the cost above its least, the others fitted anew, shape (n,); if the model is linear, the square of the
             distance in standard deviations
         limit: cost at the ends of the interval
-        interval: between which the parameter lies with the confidence asked for; to a side where the data do not bound it, it
-            ends at the limit of the law or of `bounds`, or is infinite
-        open_below, open_above: whether the data do not bound it to that side
+        interval: of the confidence asked for; to a side where the data do not bound the parameter, it ends at the limit of
+            the law or of `bounds`, or is infinite
+        open_below, open_above: True if the data do not bound it to that side
 
     >>> cost = np.array([4.0, 0.0, 1.0])
     >>> print(Profile("gear.damping", "N.m.s/rad", np.array([1.0, 2.0, 9.0]), cost, 4.0, (1.0, np.inf), False, True))
@@ -62,14 +61,14 @@ class Profile(ComparedByFields):
 
 
 def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
-    """The profile likelihood of one unknown of a fit: it is held at one value after the other, and all others are fitted anew.
+    """Return the profile likelihood of one unknown of a fit: held at one value after the other, with all others fitted anew.
 
-    Unlike the interval of an estimate, which takes the model to be linear, this one need not be symmetric, and shows to which
-    side the data do not bound a parameter. Its scale is adjusted so that near the least cost it agrees with the standard
-    deviation of the estimate, which counts that residuals hang together.
+    The interval of an estimate takes the model to be linear. This one need not be symmetric, and shows to which side the data
+    do not bound a parameter. Its scale is adjusted so that near the least cost it agrees with the standard deviation of the
+    estimate, which accounts for correlated residuals.
 
     Args:
-        found: what `fit` found
+        found: result of `fit`
         path: of a free parameter, or an unknown of the measurement, as the estimates name it
         confidence: of the interval
 
@@ -97,10 +96,9 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
     if path not in names:
         raise ValueError(f"the fit has no unknown {quoted(path)}; it has {listed(names)}")
     place = names.index(path)
-    estimate, loss = unknowns[place], LOSSES[found.loss]
-    weights = problem.weights(best, problem.first_weights(), loss)
-    least = problem.cost(best, weights, loss)
-    naive = problem.naive_sigma(best, weights, loss)[place]
+    estimate, weights = unknowns[place], problem.weights(best)
+    least = problem.cost(best, weights)
+    naive = problem.naive_sigma(best, weights)[place]
     adjusted = (naive / estimate.sigma) ** 2 if np.isfinite(estimate.sigma) and estimate.sigma > 0.0 else 1.0
     limit = (student(confidence, estimate.freedom) / student(ONE_SIGMA, estimate.freedom)) ** 2
     low, high = problem.limits()[place]
@@ -109,13 +107,13 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
         last = best.copy()
 
         def distance(value: float) -> float:
-            """Root of the rise of the cost, infinite where the model is not valid."""
+            """Return the root of the rise of the cost; infinite where the model is not valid."""
             nonlocal last
             start = last.copy()
             start[place] = value
             try:
-                solved = problem.solve(start, weights, loss, ROUGH**2, held=[place])
-                rise = problem.cost(solved, weights, loss) - least
+                solved = problem.solve(start, weights, REFIT_TOLERANCE, held=[place])
+                rise = problem.cost(solved, weights) - least
             except (ValueError, FloatingPointError):
                 return np.inf
             last = solved
@@ -134,21 +132,21 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
 def _search(
     distance: Callable[[float], float], value: float, sigma: float, end: float, wanted: float, size: float
 ) -> tuple[list[float], list[float], float, bool]:
-    """Values and costs towards an end, where the distance is as wanted, and whether it nowhere is."""
+    """Return values and costs towards an end, the value of the distance wanted, and True if no value has it."""
     sense = 1.0 if end > value else -1.0
     size = max(abs(value), size) or 1.0
-    farthest = min(abs(end - value), FARTHEST * size)
+    farthest = min(abs(end - value), MAX_RELATIVE_DISTANCE * size)
     step = min(0.5 * sigma if np.isfinite(sigma) and sigma > 0.0 else 0.1 * size, farthest)
     near, near_root, far, far_root = 0.0, 0.0, np.inf, np.inf
     tried, costs = [], []
-    for trial in range(STEPS):
+    for trial in range(MAX_TRIALS):
         if step <= 0.0:
             break
         root = distance(value + sense * step)
         if np.isfinite(root):
             tried.append(value + sense * step)
             costs.append(root**2)
-            if abs(root - wanted) <= NEAR * wanted:
+            if abs(root - wanted) <= LIMIT_TOLERANCE * wanted:
                 return tried, costs, value + sense * step, False
         if root < wanted:
             if step >= farthest:
@@ -159,15 +157,9 @@ def _search(
         else:
             far, far_root = step, root
         if np.isfinite(far):  # every other step halves, as a line alone may creep
-            step = 0.5 * (near + far) if trial % 2 else _between(near, near_root, far, far_root, wanted)
+            is_half = trial % 2 or not np.isfinite(far_root)
+            share = 0.5 if is_half else float(np.clip((wanted - near_root) / (far_root - near_root), 0.05, 0.95))
+            step = near + share * (far - near)
     if np.isfinite(far):
         return tried, costs, value + sense * far, False
     return tried, costs, end, True
-
-
-def _between(near: float, near_root: float, far: float, far_root: float, wanted: float) -> float:
-    """Where a line between two distances is as wanted; half way where the farther is infinite."""
-    if not np.isfinite(far_root):
-        return 0.5 * (near + far)
-    share = (wanted - near_root) / (far_root - near_root)
-    return near + float(np.clip(share, 0.05, 0.95)) * (far - near)

@@ -1,10 +1,10 @@
-"""What a fit looks for: free numbers of a model, shared by all records or one for each, and what is known of them before."""
+"""Unknowns of a fit: free numbers of a model, shared by all records or one for each, and their priors."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, isfinite
+from math import isfinite
 from typing import Any
 from warnings import warn
 
@@ -13,19 +13,19 @@ from strainwave.files.entries import Entry, Quantity
 from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import Parameter, every, parameters, unknown
 
-NEAR = 1e-6  # of the size of a parameter
-AT = " @ "  # between the path of a parameter and the record whose own it is
+LIMIT_TOLERANCE = 1e-6  # of the size of a parameter: within it of a limit, a fit ended there
+OF_RECORD = " @ "  # between the path of a parameter and the name of the only record that has it
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number that a fit looks for.
+    """An unknown of a fit.
 
     Attributes:
-        path: where it stands in the model, and of which record it is if it is the record's own
+        path: of the number in the model, with the record if the unknown is of one record
         unit: its unit
         before: its value in the model
-        low, high: what it may be
+        low, high: its limits
     """
 
     path: str
@@ -36,18 +36,18 @@ class Unknown:
 
     @property
     def start(self) -> float:
-        """Where a fit starts: the value of the model, or the nearest that it may be."""
+        """Initial value of a fit: that of the model, moved into the limits."""
         return min(max(self.before, self.low), self.high)
 
     def at_limit(self, value: float) -> bool:
-        """Whether a fit ended at what it may be: solvers stop short of it, by far less than the parameter's size."""
-        near = [NEAR * max(abs(end), abs(self.before)) if isfinite(end) else 0.0 for end in (self.low, self.high)]
+        """True if a fit ended at a limit: solvers stop short of it, by far less than the size of the parameter."""
+        near = [LIMIT_TOLERANCE * max(abs(end), abs(self.before)) if isfinite(end) else 0.0 for end in (self.low, self.high)]
         return value <= self.low + near[0] or value >= self.high - near[1]
 
 
 @dataclass(frozen=True)
-class Move:
-    """A number of the model of a record, that is a multiple of an unknown.
+class ParameterLink:
+    """A number of the model of a record that is a multiple of an unknown.
 
     Attributes:
         path: of the number
@@ -67,7 +67,7 @@ class Tied:
     """A parameter that follows an unknown.
 
     Attributes:
-        path: where it stands in the model, and of which record it is if the unknown is a record's own
+        path: in the model, with the record if the unknown is of one record
         unit: its unit
         before: its value in the model
         unknown: place of the unknown
@@ -83,7 +83,7 @@ class Tied:
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known of a multiple of an unknown before a fit: factor * unknown = value ± sigma, normally distributed."""
+    """Prior of a multiple of an unknown: factor * unknown = value ± sigma, normally distributed."""
 
     unknown: int
     factor: float
@@ -92,20 +92,22 @@ class Prior:
 
 
 @dataclass(frozen=True)
-class Plan:
-    """The unknowns of a model, and what each of them means for each record.
+class FitParameters:
+    """The unknowns of a fit, and the numbers of the model of each record that are multiples of them.
 
     Attributes:
+        records: names of the records
         unknowns: all of them
         numbers: of the model of each record, before the fit
-        moves: of the model of each record
+        links: of the model of each record
         tied: parameters that follow an unknown
-        priors: what is known before
+        priors: of the unknowns
     """
 
+    records: tuple[str, ...]
     unknowns: tuple[Unknown, ...]
     numbers: tuple[tuple[float, ...], ...]
-    moves: tuple[tuple[Move, ...], ...]
+    links: tuple[tuple[ParameterLink, ...], ...]
     tied: tuple[Tied, ...]
     priors: tuple[Prior, ...]
 
@@ -120,19 +122,19 @@ def plan(
     ties: Mapping[str, Any] | None = None,
     fixed: Mapping[str, float] | None = None,
     per_record: Sequence[str] = (),
-) -> Plan:
-    """The unknowns of a fit, from what its user asks; arguments and errors are those of `fit`.
+) -> FitParameters:
+    """Return the unknowns of a fit; arguments and errors are those of `fit`.
 
     >>> from strainwave import Drive
     >>> asked = plan(Drive(), ["light", "heavy"], ["motor.inertia", "load.inertia"], per_record=["load.inertia"])
     >>> [each.path for each in asked.unknowns]
     ['motor.inertia', 'load.inertia @ light', 'load.inertia @ heavy']
     """
-    return _Planner(model, records, free, per_record).plan(bounds or {}, priors or {}, ties or {}, fixed or {})
+    return _Parameters(model, records, free, per_record).plan(bounds or {}, priors or {}, ties or {}, fixed or {})
 
 
-class _Planner:
-    """Put a plan together, and report what is wrong with its parts."""
+class _Parameters:
+    """The parameters of a model that are free, and those of them that each record has for itself."""
 
     def __init__(self, model: Gear | Drive, records: Sequence[str], free: Sequence[str], per_record: Sequence[str]) -> None:
         self.model, self.records, self.known = model, list(records), every(model)
@@ -144,7 +146,7 @@ class _Planner:
 
     def plan(
         self, bounds: Mapping[str, Any], priors: Mapping[str, Any], ties: Mapping[str, Any], fixed: Mapping[str, Any]
-    ) -> Plan:
+    ) -> FitParameters:
         for name, value, example in (
             ("bounds", bounds, '{"load.inertia": (0.1, 0.9)}'),
             ("priors", priors, '{"load.inertia": (0.5, 0.02)}'),
@@ -157,13 +159,15 @@ class _Planner:
         owners = [(path, record) for path in self.free for record in self._owners(path)]
         places = {owner: place for place, owner in enumerate(owners)}
 
-        def moves(record: int) -> tuple[Move, ...]:
+        def linked(record: int) -> tuple[ParameterLink, ...]:
             of = {path: places[path, record if path in self.own else None] for path in self.free}
-            own = [Move(path, each.number, of[path], 1.0) for path, each in self.free.items()]
-            follow = [Move(path, self.known[path].number, of[leader], factor) for path, (leader, factor) in leaders.items()]
+            own = [ParameterLink(path, each.number, of[path], 1.0) for path, each in self.free.items()]
+            follow = [
+                ParameterLink(path, self.known[path].number, of[leader], factor) for path, (leader, factor) in leaders.items()
+            ]
             return (*own, *follow)
 
-        all_moves = tuple(moves(record) for record in range(len(self.records)))
+        links = tuple(linked(record) for record in range(len(self.records)))
         limits = self._limits(bounds, leaders)
         tied = tuple(
             Tied(self._named_of(path, record), self.known[path].unit, self.known[path].value, places[leader, record], factor)
@@ -171,19 +175,19 @@ class _Planner:
             for record in self._owners(leader)
         )
         unknowns = tuple(self._unknown(path, record, limits) for path, record in owners)
-        return Plan(unknowns, numbers, all_moves, tied, self._priors(priors, all_moves))
+        return FitParameters(tuple(self.records), unknowns, numbers, links, tied, self._priors(priors, links))
 
     def _owners(self, path: str) -> Sequence[int | None]:
-        """Records of which each has its own value of a free parameter; None for all together."""
+        """Return the records that have a value of a free parameter each; None for all together."""
         return range(len(self.records)) if path in self.own else (None,)
 
     def _named_of(self, path: str, record: int | None) -> str:
-        return path if record is None else f"{path}{AT}{self.records[record]}"
+        return path if record is None else f"{path}{OF_RECORD}{self.records[record]}"
 
     def _numbers(self, fixed: Mapping[str, Any]) -> tuple[tuple[float, ...], ...]:
-        """Numbers of the model of each record, with those that are given for it."""
+        """Return the numbers of the model of each record, with those that are given for it."""
         numbers = [[each.value for each in self.known.values()] for _ in self.records]
-        for key, value in sorted(fixed.items(), key=lambda item: AT in str(item[0])):  # those of one record have the last word
+        for key, value in sorted(fixed.items(), key=lambda item: OF_RECORD in str(item[0])):  # one record last
             for each, records in self._named("fixed", key):
                 if each.path in self.free:
                     raise ValueError(f"{each.path} is both free and fixed; take it out of one of the two")
@@ -193,7 +197,7 @@ class _Planner:
         return tuple(map(tuple, numbers))
 
     def _leaders(self, ties: Mapping[str, Any], fixed: Mapping[str, Any]) -> dict[str, tuple[str, float]]:
-        """What each tied number follows, and by which factor."""
+        """Return the free parameter that each tied one follows, and the factor."""
         leaders = {}
         for path, followed in ties.items():
             if path not in self.known:
@@ -210,7 +214,7 @@ class _Planner:
                 raise unknown(leader, self.known)
             if path in self.free:
                 raise ValueError(f"{path} is both free and tied to {leader}; take it out of one of the two")
-            if any(path in (key, key.split("[")[0], key.split(AT)[0]) for key in fixed):
+            if any(path in (key, key.split("[")[0], key.split(OF_RECORD)[0]) for key in fixed):
                 raise ValueError(f"{path} is both fixed and tied to {leader}; take it out of one of the two")
             if leader not in self.free:
                 raise ValueError(f"{path} is tied to {leader}, which is not free; free it, or give {path} a value in fixed")
@@ -220,7 +224,7 @@ class _Planner:
     def _limits(
         self, bounds: Mapping[str, Any], leaders: Mapping[str, tuple[str, float]]
     ) -> dict[tuple[str, int], tuple[float, float]]:
-        """What each free number may be, by path and record: within its law, its bounds and the law of those that follow it."""
+        """Return the limits of each free number by path and record: of its law, its bounds and the laws of its followers."""
         limits = {
             (path, record): (each.low, each.high) for path, each in self.free.items() for record in range(len(self.records))
         }
@@ -261,21 +265,21 @@ class _Planner:
             )
         return found
 
-    def _priors(self, priors: Mapping[str, Any], moves: tuple[tuple[Move, ...], ...]) -> tuple[Prior, ...]:
-        """What is known of each unknown before; what is said of one record goes before what is said of all."""
+    def _priors(self, priors: Mapping[str, Any], links: tuple[tuple[ParameterLink, ...], ...]) -> tuple[Prior, ...]:
+        """Return the priors of the unknowns; those of one record go before those of all."""
         found: dict[tuple[int, str], Prior] = {}
-        moved = {move.path for move in moves[0]}
-        for key, given in sorted(priors.items(), key=lambda item: AT in str(item[0])):
-            for each, records in self._named("priors", key, moved):
+        linked = {link.path for link in links[0]}
+        for key, given in sorted(priors.items(), key=lambda item: OF_RECORD in str(item[0])):
+            for each, records in self._named("priors", key, linked):
                 value, sigma = _prior(key, given, each)
                 for record in records:
-                    move = next(move for move in moves[record] if move.path == each.path)
-                    found[move.unknown, each.path] = Prior(move.unknown, move.factor, value, sigma)
+                    link = next(link for link in links[record] if link.path == each.path)
+                    found[link.unknown, each.path] = Prior(link.unknown, link.factor, value, sigma)
         return tuple(found.values())
 
     def _named(self, name: str, key: object, among: Any = None) -> list[tuple[Parameter, Sequence[int]]]:
-        """The parameters that a key names, and the records for which: all, or the one behind the @."""
-        path, at, record = arguments.text(f"a key of {name}", key).partition(AT)
+        """Return the parameters that a key names, and the records for which: all, or the one behind the @."""
+        path, at, record = arguments.text(f"a key of {name}", key).partition(OF_RECORD)
         if at and record not in self.records:
             raise ValueError(f"{name} names record {quoted(record)}; the records are {listed(self.records)}")
         chosen = parameters(name, self.model, [path])
@@ -290,14 +294,13 @@ class _Planner:
 
 
 def _prior(key: str, given: object, parameter: Parameter) -> tuple[float, float]:
-    """Value and standard deviation of a prior, in the unit of the parameter."""
+    """Return value and standard deviation of a prior, in the unit of the parameter."""
     name = f"priors[{quoted(key)}]"
     if isinstance(given, Entry):
         if isinstance(given, Quantity):
             given = given.to(parameter.unit)
         value = given.value if isinstance(given, Quantity) else parameter.value
-        sigma = hypot((given.spread or 0.0) * value, given.uncertainty or 0.0)
-        if sigma == 0.0:
+        if not (sigma := given.sigma(value)):
             raise ValueError(
                 f"{name}: its source has neither uncertainty, nor spread of a value that is not 0; give (value, sigma)"
             )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.candidates.friction import FrictionCandidate, fit_friction, ranking
+from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction
 from strainwave.identification.candidates.steady_shapes import is_loaded
 from strainwave.identification.checks.sizes import (
     friction_of_table,
@@ -22,10 +22,9 @@ from strainwave.identification.checks.sizes import (
     opposes_motion,
 )
 from strainwave.identification.checks.unexplained import explained
-from strainwave.identification.experiments.friction_table import BESIDE, FrictionTable, with_load
-from strainwave.identification.fitting.covariance import correlation_length
+from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
-from strainwave.identification.fitting.noise import rms
+from strainwave.identification.fitting.noise import correlation_length, rms
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
 from strainwave.identification.reading.column import Column
@@ -129,10 +128,10 @@ class SteadyFriction(Kind):
         order = np.argsort(table.speed, kind="stable")
         return tuple(
             Ranked(
-                line.name, line.parameters, line.error, line.error_sigma, "N.m",
-                correlation_length(each.fit.residuals[0][order]), line.cost,
+                each.name, each.parameters, each.error, each.error_sigma, "N.m",
+                correlation_length(each.fit.residuals[0][order]), cost_of(each.law),
             )
-            for line, each in zip(ranking(found), found, strict=True)
+            for each in found
         )  # fmt: skip
 
 
@@ -281,7 +280,7 @@ def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable
     if unsure:
         yield f"other laws are about as likely: their spread in {', '.join(unsure)} is part of its standard deviation"
     yield from thinned(table.samples, len(table.speed))
-    yield from unused(recording, ("speed", "torque", *BESIDE))
+    yield from unused(recording, ("speed", "torque", *CONDITIONS))
     if (left_out := int(np.sum(~best.fit.training))) > 0:
         yield f"{left_out} of {len(table.speed)} rows are outliers, and left out"
     yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, UNITS))

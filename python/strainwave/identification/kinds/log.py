@@ -10,7 +10,7 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.motion import fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.fitting.covariance import correlation_length
+from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.along_motion import fit_along_motion
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log

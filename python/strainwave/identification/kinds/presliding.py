@@ -13,7 +13,7 @@ from strainwave.identification.candidates.presliding import PreslidingCandidate,
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, only_if_explained, share_left
 from strainwave.identification.experiments.presliding import PreslidingLoop
-from strainwave.identification.fitting.covariance import correlation_length
+from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.at_rest import (
     BRISTLES,
     SIGNIFICANCE_SIGMA,

@@ -1,4 +1,4 @@
-"""What a recording shows of parts of a saved gear or drive: scales of its friction and load, a zero, a temperature."""
+"""Changes of parts of a saved gear or drive by a recording: scales of its friction and load, a zero, a temperature."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 SIGNIFICANCE_SIGMA = 3.0  # standard deviations by which a change must differ from none
 MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
 MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
-DIFFERENCE = 0.1  # standard deviations of a number, over which the difference of two predictions is taken
-BLOCKS = 20  # contiguous ones of a recording, over which what is left scatters
+STEP_SIGMA = 0.1  # standard deviations of a number, between two predictions
+RECORD_BLOCKS = 20  # contiguous ones of a recording, over which residuals scatter
 MIN_SAMPLES = 50  # of sliding, from which changes are determined
 DRY, VISCOUS, FRICTION, ZERO = "dry friction", "viscous friction", "friction", "zero"
 INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
@@ -30,7 +30,7 @@ PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 @dataclass(frozen=True)
 class Change:
-    """What a recording shows of a part of a saved gear or drive.
+    """Change of a part of a saved gear or drive by a recording.
 
     Attributes:
         name: of the part: `dry friction`, `viscous friction`, `friction` if the recording does not separate both, `zero` of the
@@ -51,19 +51,19 @@ class Change:
 
     @property
     def significance(self) -> float:
-        """The difference from the saved gear in standard deviations [1]."""
+        """Difference from the saved gear in standard deviations [1]."""
         off = abs(self.value - self.unchanged)
         return off / self.sigma if self.sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
 
     @property
     def significant(self) -> bool:
-        """True if it differs from the saved gear by what matters, and by more than chance makes."""
+        """True if it differs from the saved gear by more than chance makes, and by `smallest` or more."""
         return self.significance > SIGNIFICANCE_SIGMA and abs(self.value - self.unchanged) >= self.smallest
 
 
 @dataclass(frozen=True, eq=False)
 class Direction(ComparedByFields):
-    """How a channel changes with a part of a gear.
+    """Derivative of a channel by a part of a gear.
 
     Attributes:
         name, unit, unchanged, smallest: as of a `Change`
@@ -78,18 +78,17 @@ class Direction(ComparedByFields):
 
 
 def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direction]:
-    """Yield how a channel changes with the scales of dry and of viscous friction.
+    """Yield the derivatives of a channel by the scales of dry and of viscous friction.
 
     Args:
         gear: the saved one
-        at: what a gear predicts, shape (n,)
+        at: returns the prediction of a gear, shape (n,)
     """
     whole = at(gear)
     total = whole - at(gear.replace(**dict.fromkeys(PLACES, FRICTIONLESS)))
     numbers = _viscous_numbers(gear)
-    viscous = (
-        2.0 * (whole - at(gear.replace({path: 0.5 * value for path, value in numbers.items()}))) if numbers else 0.0 * whole
-    )
+    halved = at(gear.replace({path: 0.5 * value for path, value in numbers.items()})) if numbers else whole
+    viscous = 2.0 * (whole - halved)
     yield Direction(DRY, "1", 1.0, total - viscous)
     yield Direction(VISCOUS, "1", 1.0, viscous)
 
@@ -104,7 +103,7 @@ def _viscous_numbers(gear: Any) -> dict[str, float]:
 def changes_of(
     left: Array, directions: Sequence[Direction], by_numbers: Array, covariance: Array, coherent: float = 0.0
 ) -> tuple[tuple[Change, ...], Array]:
-    """Return what a residual shows of parts of a gear, and the part of the residual that they explain, shape (n,).
+    """Return changes of parts of a gear by a residual, and the part of the residual that they explain, shape (n,).
 
     Least squares of the residual on all directions together. Their variance is the scatter of contiguous blocks, within which
     residuals correlate (Liang and Zeger 1986), that of the saved numbers, and that by an error of the laws, which another
@@ -114,7 +113,7 @@ def changes_of(
     Args:
         left: measured less predicted, shape (n,)
         directions: of parts that may have changed
-        by_numbers: derivatives of what is predicted by the saved numbers, shape (n, p)
+        by_numbers: derivatives of the prediction by the saved numbers, shape (n, p)
         covariance: of these numbers, shape (p, p)
         coherent: root mean square error of the laws, in the unit of the residual
     """
@@ -125,8 +124,10 @@ def changes_of(
         inverse = np.linalg.pinv(columns / size) / size[:, np.newaxis]
         values = inverse @ left
         explained = columns @ values
-        variance = _scatter(inverse, left - explained, len(asked)) + coherent**2 * _coherent(inverse)
-        sigma = np.sqrt(variance + _by_saved(inverse @ by_numbers, covariance))
+        by_laws = coherent**2 * (_blocks(np.abs(inverse)) ** 2).sum(axis=0)
+        slopes = inverse @ by_numbers
+        by_saved = np.einsum("kp,pq,kq->k", slopes, covariance, slopes)
+        sigma = np.sqrt(_scatter(inverse, left - explained, len(asked)) + by_laws + by_saved)
         unsure = [k for k, each in enumerate(asked) if each.unit == "1" and sigma[k] > MAX_SCALE_SIGMA]
         if not unsure:
             break
@@ -151,7 +152,7 @@ def _without(asked: Sequence[Direction], worst: int) -> list[Direction]:
 
 def _blocks(values: Array) -> Array:
     """Return the sums over contiguous blocks, shape (k, n) becomes (blocks, k)."""
-    blocks = min(BLOCKS, max(values.shape[1] // 2, 1))
+    blocks = min(RECORD_BLOCKS, max(values.shape[1] // 2, 1))
     return np.array([part.sum(axis=1) for part in np.array_split(values, blocks, axis=1)])
 
 
@@ -159,16 +160,6 @@ def _scatter(inverse: Array, left: Array, unknowns: int) -> Array:
     """Return the variances of estimates by the scatter of blocks, shape (k,)."""
     sums = _blocks(inverse * left)
     return np.asarray((sums**2).sum(axis=0) * len(sums) / max(len(sums) - unknowns, 1))
-
-
-def _coherent(inverse: Array) -> Array:
-    """Return the variances of estimates by an error of size 1 that is coherent within each block, shape (k,)."""
-    return np.asarray((_blocks(np.abs(inverse)) ** 2).sum(axis=0))
-
-
-def _by_saved(slopes: Array, covariance: Array) -> Array:
-    """Return the variances of estimates by those of saved numbers, shape (k,)."""
-    return np.asarray(np.einsum("kp,pq,kq->k", slopes, covariance, slopes))
 
 
 def slopes_by_numbers(
@@ -179,14 +170,14 @@ def slopes_by_numbers(
     Args:
         gear_set: the saved one
         model: its gear or drive, at which they are taken
-        at: what such a model predicts, shape (n,)
+        at: returns the prediction of such a model, shape (n,)
         beginnings: of the paths of numbers that the channel depends on
     """
     here, known = at(model), gear_set.covariance
     own = None if known is None else known.among([path for path in known.paths if path.startswith(beginnings)])
     if own is None:
         return np.zeros((len(here), 0)), np.zeros((0, 0))
-    steps = DIFFERENCE * np.sqrt(np.diag(own.array))
+    steps = STEP_SIGMA * np.sqrt(np.diag(own.array))
     prefix = "" if isinstance(model, Drive) else "gear."
     slopes = [_slope(model, path.removeprefix(prefix), step, here, at) for path, step in zip(own.paths, steps, strict=True)]
     return np.stack(slopes, axis=1), own.array

@@ -22,12 +22,12 @@ class CombinedParameter:
     """A parameter of the gear or its drive, from the estimates of all files.
 
     Attributes:
-        estimate: the value taken: the mean of the files that agree, or the estimate of the best file
+        estimate: the result: the mean of the files that agree, or the estimate of the best file
         source: the name of the best file: the one whose law the gear has, else that with the smallest standard deviation
         others: estimates of other files, by their names
         contradicts: names of files whose estimate lies beyond three standard deviations of both
         best: the estimate of the best file
-        mean_of: names of the files that the mean is taken of, the best first; one if there is no mean
+        mean_of: names of the files in the mean, the best first; one if there is no mean
         widened: factor of the standard deviation of the mean, if files scatter more than they should [1]
     """
 
@@ -41,7 +41,7 @@ class CombinedParameter:
 
     @property
     def taken_from(self) -> str:
-        """The files that it rests on, in words."""
+        """Names of the files that determine it, in words."""
         if len(self.mean_of) < 2:
             return self.source
         return f"mean of {listed(self.mean_of)}"
@@ -55,8 +55,8 @@ def lines_of(numbers: Sequence[CombinedParameter]) -> Iterator[str]:
     """Yield a line for each parameter, to print."""
     width = max((len(each.estimate.label) for each in numbers), default=0)
     for each in numbers:
-        taken = each.estimate
-        yield f"  {taken.label:{width}}  {taken.value:11.5g} ± {taken.sigma:<8.2g} {taken.unit:12} {each.taken_from}"
+        best = each.estimate
+        yield f"  {best.label:{width}}  {best.value:11.5g} ± {best.sigma:<8.2g} {best.unit:12} {each.taken_from}"
 
 
 def combine(
@@ -108,8 +108,8 @@ def _combined(
         and distance(others[name], estimates[best]) <= MAX_DISTANCE_IN_MEAN
     ]  # fmt: skip
     agree = [] if best in copies else agree  # all of them are one measurement
-    taken, widened = mean_of([estimates[best], *(others[name] for name in agree)])
-    return CombinedParameter(taken, best, others, tuple(apart), estimates[best], (best, *agree), widened)
+    mean, widened = mean_of([estimates[best], *(others[name] for name in agree)])
+    return CombinedParameter(mean, best, others, tuple(apart), estimates[best], (best, *agree), widened)
 
 
 def mean_of(estimates: Sequence[FileEstimate]) -> tuple[FileEstimate, float]:

@@ -12,20 +12,15 @@ from strainwave.files.recording import Recording
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.fit import Fit, Part
-from strainwave.identification.fitting.unknowns import AT
+from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import Picture
 from strainwave.orders.two_encoders import TransmissionError
 
 Array = NDArray[np.float64]
 
 
-def curves_of(fit: Fit, part: Part | None = None) -> Recording:
-    """Return a measurement and the prediction of its model.
-
-    Args:
-        fit: the model fitted
-        part: the measurement, one of `fit.parts`; the first if not given
+def curves_of(fit: Fit) -> Recording:
+    """Return the first measurement of a fit and the prediction of its model.
 
     Returns:
         speed, twist or time; the first channel, under its name; `modelled`, the prediction; `held_out`, 1 where a sample took
@@ -35,13 +30,13 @@ def curves_of(fit: Fit, part: Part | None = None) -> Recording:
     The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of the
     prediction and C the covariance of the estimates (JCGM 100:2008, eq. 13).
     """
-    part = fit.parts[0] if part is None else part
+    part = fit.parts[0]
     experiment, channel = part.experiment, part.experiment.channels[0]
     over, unit, x = _abscissa(experiment)
     columns = {over: x, channel: experiment.measured[0], "modelled": part.predicted[0]}
     units = {over: unit, channel: experiment.units[0], "modelled": experiment.units[0], "held_out": "1"}
     columns["held_out"] = (~part.training).astype(float)
-    sigma = _sigma(fit, part)
+    sigma = _sigma(fit)
     if np.isfinite(sigma).all():
         columns["sigma"], units["sigma"] = sigma, experiment.units[0]
     return Recording(columns, units)
@@ -110,14 +105,10 @@ def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:
     return "time", "s", log.time
 
 
-def _sigma(fit: Fit, part: Part) -> Array:
+def _sigma(fit: Fit) -> Array:
     """Return the standard deviation of the prediction of the first channel, shape (n,)."""
+    part, own = fit.parts[0], {each.path: place for place, each in enumerate(fit.estimates)}
     zeros = [each.name for each in part.experiment.nuisances]
-    own: dict[str, int] = {}
-    for place, estimate in enumerate(fit.estimates):
-        path, _, record = estimate.path.partition(AT)
-        if record in ("", part.name):
-            own[path] = place
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
     known = [path for path in own if path in numbers and path not in zeros]
     nuisances = np.array([fit.estimates[own[name]].value for name in zeros])

@@ -16,21 +16,20 @@ from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEst
 
 Array = NDArray[np.float64]
 
-MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; friction with a larger one is not identified
 MIN_SPEEDS = 4  # different ones, that determine a law of friction and validate it
 PATH = "steady_friction"
 AT_SPEEDS = "friction at each speed"  # the model of a measurement of fewer speeds
 PLACES = ("friction_input.", "friction_mesh.")  # whose numbers act on steady friction
 
 
-def friction_at(speed: float, value: float, sigma: float, *, side: str = "input", unit: str = "N.m") -> FileEstimate:
+def friction_at(speed: float, value: float, sigma: float, *, side: str = "input") -> FileEstimate:
     """Return steady friction at a speed as an estimate.
 
     >>> print(friction_at(-0.41152, 2.3, 0.05, side="output").label)
     steady_friction (at 0.412 rad/s of the output)
     """
     why = TOO_UNCERTAIN if is_uncertain(value, sigma) else ""
-    return FileEstimate(PATH, unit, value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
+    return FileEstimate(PATH, "N.m", value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
 
 
 def different_speeds(speed: Array) -> int:
@@ -74,7 +73,7 @@ def friction_at_speeds(
         found = friction_at(
             float(np.abs(speed[sizes == size]).mean()), float(weights @ torque), float(np.sqrt(variance)), side=side
         )
-        estimates.append(_judged(found))
+        estimates.append(found if found.sigma else replace(found, sigma=np.inf, why="one number shows no scatter"))
     count = different_speeds(speed)
     few = (
         f"{count} different {'speed' if count == 1 else 'speeds'}, slow or fast, one way or the other, determine friction "
@@ -85,16 +84,8 @@ def friction_at_speeds(
     return tuple(estimates), (few, *zero)
 
 
-def _judged(found: FileEstimate) -> FileEstimate:
-    """Return friction at a speed, with the reason why the measurement does not determine it, if there is one."""
-    if found.sigma == 0.0:
-        return replace(found, sigma=np.inf, why="one number shows no scatter")
-    doubtful = found.sigma > MAX_RELATIVE_SIGMA * abs(found.value)
-    return replace(found, why="standard deviation exceeds half the value" if doubtful else "")
-
-
 def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, speed: float, load: float = 0.0) -> FileEstimate:
-    r"""Return the steady friction of a gear at a speed of its input, with the standard deviation that the covariance gives it.
+    r"""Return the steady friction of a gear at a speed of its input, with the standard deviation by the covariance.
 
     The standard deviation is that of a linear function of the estimates, $\sqrt{g^T C g}$, with g the derivatives of the
     friction (JCGM 100:2008, eq. 13). It is small where the measurement was made, even if the numbers of the law are known

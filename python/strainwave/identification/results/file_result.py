@@ -60,16 +60,16 @@ class FileEstimate:
 
     @property
     def own(self) -> float:
-        """The part of the standard deviation that no other file shares."""
+        """Part of the standard deviation that no other file shares."""
         return float(np.sqrt(max(self.sigma**2 - self.common**2, 0.0)))
 
     def resting_on(self, relative: float, beside: float = 0.0) -> FileEstimate:
-        """Return the same with the uncertainty of the torque constant that it rests on; what is no torque rests on none.
+        """Return the same with the uncertainty of the torque constant, if it grows with that.
 
         Args:
             relative: standard deviation of the torque constant over its value [1]
-            beside: what is taken off a number that grows with the constant, as the inertia of the motor, or what a motor whose
-                voltage was measured induces
+            beside: part of the number that does not grow with the constant, as the inertia of the motor, or the voltage that a
+                motor induces
         """
         return self.sharing(relative * (abs(self.value) + beside)) if self.is_of_torque else self
 
@@ -89,7 +89,7 @@ class FileEstimate:
 
     @property
     def label(self) -> str:
-        """Its path, with what distinguishes it from others of that path."""
+        """Path, with the law or speed that distinguishes it from others of that path."""
         return f"{self.path} ({self.law})" if self.law.startswith(("in ", "of ", "at ")) else self.path
 
     @property
@@ -108,11 +108,11 @@ class Picture(ComparedByFields):
     """Measured against modelled, to be drawn.
 
     Attributes:
-        curves: what it is drawn over, the channel measured, and `modelled`, as the functions of `results.curves` return them
-        look: how it is drawn
+        curves: the abscissa, the channel measured, and `modelled`, as the functions of `results.curves` return them
+        look: style of the drawing
         label: of the channel in words; its name if not given
-        title: what is drawn, where a file has several pictures
-        model: in words, where it is not that of the file
+        title: of the picture, if a file has several
+        model: in words, if it is not that of the file
     """
 
     curves: Recording
@@ -162,7 +162,7 @@ class FileResult(ComparedByFields):
 
     @property
     def title(self) -> str:
-        """What the file is, in words."""
+        """Kind of the file in words."""
         return self.what or ("not read" if self.recognised is None else KINDS[self.recognised.kind].title)
 
     @property
@@ -172,12 +172,12 @@ class FileResult(ComparedByFields):
 
     @property
     def friction(self) -> str:
-        """The laws of friction that were fitted, which give its numbers their meaning."""
+        """Fitted laws of friction, which give its numbers their meaning."""
         if self.fit is None:
             return self.model
         return f"{self.fit.gear.friction_input.name}, {self.fit.gear.friction_mesh.name}"
 
     @property
     def failed(self) -> tuple[Check, ...]:
-        """The checks that failed."""
+        """Checks that failed."""
         return tuple(check for check in self.checks if check.failed)

@@ -27,7 +27,7 @@ class GearSoFar:
 
     Attributes:
         gear_set: the set, with what earlier files have determined
-        start: the set that all began with; `gear_set` if not given
+        start: initial set of all files; `gear_set` if not given
         determined: parts of the gear that earlier files determine
         side: the side of the file that is fitted next, if a person gave it
         sigmas: standard deviation of the first number of friction and spring, by the file that determines the part
@@ -43,7 +43,7 @@ class GearSoFar:
 
     @property
     def initial(self) -> GearSet:
-        """The set that all began with."""
+        """Initial set of all files."""
         return self.gear_set if self.start is None else self.start
 
     def knows_better(self, part: str, estimates: Sequence[FileEstimate]) -> bool:
@@ -51,7 +51,7 @@ class GearSoFar:
         return part in self.determined and self.sigmas.get(part, np.inf) <= _first_sigma(part, estimates)
 
     def judged(self, part: str, estimates: Sequence[FileEstimate]) -> GearSoFar:
-        """Return the same with how well a file determines a part."""
+        """Return the same with the standard deviation of a part by a file."""
         return replace(self, sigmas={**self.sigmas, part: _first_sigma(part, estimates)})
 
     def with_fit(self, gear: Any, parts: Collection[str], estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
@@ -205,7 +205,7 @@ class TorqueConstant:
 def relative_sigma(gear_set: GearSet, path: str, value: float) -> float:
     """Return the standard deviation of a number of a set over its value [1]; 0 if the set states none."""
     entry = gear_set.sources.get(path)
-    return 0.0 if entry is None else float(entry.uncertainty / value if entry.uncertainty else entry.spread or 0.0)
+    return 0.0 if entry is None else (entry.sigma(value) or 0.0) / value
 
 
 def rotor_sigma(file: Recognised, gear_set: GearSet) -> float:
@@ -219,10 +219,8 @@ def rotor_sigma(file: Recognised, gear_set: GearSet) -> float:
 
 
 def _sigma(gear_set: GearSet, path: str, value: float) -> float:
-    entry = gear_set.sources.get(path, Entry("not given"))
-    if entry.uncertainty is not None:
-        return entry.uncertainty
-    return value * (ROTOR_SIGMA if entry.spread is None else entry.spread)
+    stated = gear_set.sources.get(path, Entry("not given")).sigma(value)
+    return ROTOR_SIGMA * value if stated is None else stated
 
 
 def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:

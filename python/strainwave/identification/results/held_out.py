@@ -1,4 +1,4 @@
-"""The error of a model on data that its numbers were not fitted to; models were compared by them."""
+"""Error of a model on data that its numbers were not fitted to, by which models were compared."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
-MAX_SHARE_VIBRATING = (
-    1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave the vibration of the load
-)
+MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
 MAX_IN_BAND = 0.01  # of what varies in the pass band
 
 
@@ -41,12 +39,12 @@ class HeldOut:
 
     @property
     def relative(self) -> float:
-        """The error over that of a model that predicts nothing [1]."""
+        """Error over that of a model that predicts nothing [1]."""
         return self.error / self.zero if self.zero > 0.0 else np.inf
 
     @property
     def share_of_plain(self) -> float:
-        """The error over that of plain least squares [1]; not a number without."""
+        """Error over that of plain least squares [1]; not a number without."""
         return self.error / max(self.plain, 1e-300)
 
     @property

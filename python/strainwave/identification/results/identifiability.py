@@ -1,4 +1,4 @@
-"""Which estimates of a fit the data determine, and why not the others."""
+"""Identifiability of the estimates of a fit: those that the data determine, and why not the others."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.entries import Entry
+from strainwave.identification.candidates.friction import STEADY_NUMBERS
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import Influence
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
 
-COMMON = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law of friction that has them
 MAX_SIGMA_OF_PHASE = 0.5  # rad
 MAX_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
 MAX_SHIFT_BY_WRONG = 0.05  # relative shift by a kept parameter that the measurement contradicts
@@ -25,7 +25,7 @@ MAX_CORRELATION = 0.98  # of two estimates; with a larger one, those that are un
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fit to a file, and what limits its estimates.
+    """A fit to a file, and the limits of its estimates.
 
     Attributes:
         fit: the fit
@@ -105,7 +105,7 @@ class Fitted:
 def _law(path: str, gear: Any) -> str:
     """Return the law that gives a number its meaning; empty for numbers that mean the same in every law."""
     part, _, name = path.removeprefix("gear.").partition(".")
-    return "" if part == "friction_input" and name in COMMON else str(getattr(gear, part).name)
+    return "" if part == "friction_input" and name in STEADY_NUMBERS else str(getattr(gear, part).name)
 
 
 def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:

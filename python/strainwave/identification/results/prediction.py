@@ -1,4 +1,4 @@
-"""A recording compared with what a saved gear predicts: the error, what the gear allows, and what changed."""
+"""A recording compared with the prediction of a saved gear: the error, the error allowed, and the changes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own fi
 
 @dataclass(frozen=True, eq=False)
 class Prediction(ComparedByFields):
-    """A recording compared with what a saved gear or drive predicts, every sample in the full band.
+    """A recording compared with the prediction of a saved gear or drive, every sample in the full band.
 
     Attributes:
         name: of the file
@@ -34,10 +34,10 @@ class Prediction(ComparedByFields):
         plain: error of plain least squares fitted to this recording itself; not a number without
         allowed: largest error that agrees with the saved gear: twice that on its own files and by its covariance
         samples: compared
-        changes: what the recording shows of parts of the gear
+        changes: of parts of the gear, by the recording
         error_with_changes: the error that is left with them
         lines: of the spectrum of the residual, as orders of the input or frequencies, the strongest evidence first
-        curves: what it is drawn over, the channel, `predicted` and `residual`; None if it could not be read
+        curves: the abscissa, the channel, `predicted` and `residual`; None if it could not be read
         checks: that of the error; failed if the recording contradicts the gear
         remarks: assumptions and limits, in short sentences
         refused: why the recording cannot be predicted; empty if it can
@@ -63,7 +63,7 @@ class Prediction(ComparedByFields):
 
     @property
     def relative(self) -> float:
-        """The error over that of a model that predicts nothing [1]."""
+        """Error over that of a model that predicts nothing [1]."""
         return self.error / self.varies if self.varies > 0.0 else np.inf
 
     @property
@@ -73,12 +73,12 @@ class Prediction(ComparedByFields):
 
     @property
     def changed(self) -> tuple[Change, ...]:
-        """The significant changes."""
+        """Significant changes."""
         return tuple(each for each in self.changes if each.significant)
 
     @property
     def common_scale(self) -> tuple[float, float] | None:
-        """The scale and its standard deviation of all torques together, if friction and load changed by one factor; else None.
+        """Scale of all torques and its standard deviation, if friction and load changed by one factor; else None.
 
         Then the torque constant or the range of a sensor is another one, and not the joint.
         """
@@ -111,7 +111,7 @@ def judged(prediction: Prediction, gear_set: GearSet, variance: float) -> Predic
     Args:
         prediction: with its error
         gear_set: the saved one
-        variance: mean variance of what it predicts by the covariance of its numbers, in the unit of the channel squared
+        variance: mean variance of the prediction by the covariance of its numbers, in the unit of the channel squared
     """
     own = validations(gear_set, prediction.channel)
     shares = [each.relative for each in own or gear_set.validation]

@@ -12,8 +12,8 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar
 
-PLACE = "gear.kinematics."
-SAME = 1e-9  # relative: two ratios that are one
+KINEMATICS = "gear.kinematics."
+RATIO_TOLERANCE = 1e-9  # relative: two ratios that differ by less are one
 
 
 def with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
@@ -41,23 +41,23 @@ def _with_kinematics(gear_set: GearSet, other: Any, of: GearSet | str) -> GearSe
     """Return the set with another ratio, whose source is that of a set, or as given."""
     if gear_set.gear.kinematics == other:
         return gear_set
-    sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(PLACE)}
-    names = [f"{PLACE}{field['name']}" for field in other.fields if field["kind"] != "choice"]
+    sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(KINEMATICS)}
+    names = [f"{KINEMATICS}{field['name']}" for field in other.fields if field["kind"] != "choice"]
     sources |= {name: Entry(of) if isinstance(of, str) else of.sources[name] for name in names}
     return replace(gear_set, gear=gear_set.gear.replace(kinematics=other), sources=sources)
 
 
 def _geared(gear: Any, ratio: float) -> Any:
     """Return the gear with another ratio; its output turns the same way as before."""
-    if abs(abs(ratio) - abs(gear.kinematics.ratio)) < SAME * abs(ratio):
+    if abs(abs(ratio) - abs(gear.kinematics.ratio)) < RATIO_TOLERANCE * abs(ratio):
         return gear
     return gear.replace(kinematics=_kinematics(ratio, gear.kinematics.ratio < 0.0))
 
 
 def _kinematics(ratio: float, backwards: bool) -> Any:
-    """Return a strain wave gear of this ratio, if whole teeth give it; else what has the ratio alone."""
+    """Return a strain wave gear of this ratio, if whole teeth give it; else a plain ratio."""
     size = abs(ratio)
-    if abs(size - round(size)) > SAME * size or round(size) < 2:
+    if abs(size - round(size)) > RATIO_TOLERANCE * size or round(size) < 2:
         return kinematics.PlainRatio(reduction=size)
     turns = 2 * round(size)  # two teeth fewer on the flexspline
     if backwards or ratio < 0.0:

@@ -241,7 +241,7 @@ def test_a_load_that_rings_on_its_spring_moves_no_friction() -> None:
 
 def test_a_log_that_does_not_tell_the_torque_or_the_motion_is_refused() -> None:
     only = sw.Recording({"time": TIME, "input_angle": RATIO * ANGLE}, {"time": "s", "input_angle": "rad"})
-    with pytest.raises(ValueError, match="which show the torque"):
+    with pytest.raises(ValueError, match="the log needs an effort, one of current"):
         MotionLog.of(only, drive())
     current = sw.Recording({"time": TIME, "current": torque(TRUTH)}, {"time": "s", "current": "A"})
     with pytest.raises(ValueError, match="needs an angle"):

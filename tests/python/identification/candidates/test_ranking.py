@@ -14,8 +14,10 @@ from strainwave.identification.candidates.torsion.beside import Elements
 from strainwave.identification.candidates.torsion.candidate import TorsionCandidate, candidate, starts
 from strainwave.identification.candidates.torsion.memories import BoucWen, FadingMemory
 from strainwave.identification.candidates.torsion.ranking import rank_loop
-from strainwave.identification.candidates.torsion.springs import KINDS, LINEAR, THREE_SEGMENT
+from strainwave.identification.candidates.torsion.springs import LINEAR, THREE_SEGMENT
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
+
+from tests.loops import KINDS
 
 Array = NDArray[np.float64]
 
@@ -71,7 +73,7 @@ def test_the_simplest_of_equals_comes_first() -> None:
     assert ranked[0].error == pytest.approx(0.15, rel=0.15)
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.words)
 def test_torques_of_a_start_are_those_of_the_gear_it_puts(kind: Any) -> None:
     """What is solved for as linear in the weights is what the gear then does."""
     loop = measured(sw.Gear(stiffness=SEGMENTS, hysteresis=ELEMENTS), along(0, 1, -1, 1))

@@ -13,7 +13,7 @@ import pytest
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave import friction
-from strainwave.identification.candidates.steady_shapes import Shape, beside_speed, harmonics_of, over_speed
+from strainwave.identification.candidates.steady_shapes import Shape, harmonics_of, over_speed, with_conditions
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import fit
 
@@ -140,7 +140,7 @@ def beside_speed_off(name: str, seed: int) -> Array:
     inner, *_ = found(plain, table)
     shape = Shape(plain.name, inner, plain.free)
     residual = table.torque - fit(sw.Gear(friction_input=inner), table, ["friction_input.coulomb"]).predicted[0]
-    (shape,) = (each for each in beside_speed(table, shape, residual) if each.name == name)
+    (shape,) = (each for each in with_conditions(table, shape, residual) if each.name == name)
     _, value, sigma = found(shape, table)
     return (value - [at(law, path) for path in shape.free]) / sigma
 

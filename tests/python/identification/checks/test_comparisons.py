@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.checks.comparisons import CHANCE, between_files, other_loads, with_start_set
+from strainwave.identification.checks.comparisons import MAX_CHANCE, between_files, other_loads, with_start_set
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
@@ -75,7 +75,7 @@ def test_the_share_that_fails_by_chance_is_the_one_stated() -> None:
     factors = np.exp(0.3 * random.standard_normal(count))
     (one,) = against(SMALL, of("loop.csv", {FIRST: known}, 1e-6))
     failed = float(np.mean((np.log(factors) / 0.3) ** 2 > one.limit))
-    assert failed == pytest.approx(CHANCE, abs=4.0 * np.sqrt(CHANCE / count))
+    assert failed == pytest.approx(MAX_CHANCE, abs=4.0 * np.sqrt(MAX_CHANCE / count))
 
 
 def test_friction_from_run_to_run_may_differ_by_more_than_its_standard_deviation_and_by_no_factor_of_two() -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal
-from strainwave.identification.experiments.motion import PASS_BAND, Motion, motion_of
+from strainwave.identification.experiments.motion import PASS_BAND_SHARE, Motion, motion_of
 
 STEP = 2e-3
 TIME = STEP * np.arange(5000)
@@ -23,9 +23,9 @@ def moving(every: int, cutoff: float) -> Motion:
 
 @pytest.mark.parametrize("cutoff", [5.0, 20.0, 50.0])
 def test_the_filter_is_that_of_butterworth_forward_and_backward(cutoff: float) -> None:
-    motion = moving(max(1, round(1.0 / (STEP * 2.0 * PASS_BAND * cutoff))), cutoff)
+    motion = moving(max(1, round(1.0 / (STEP * 2.0 * PASS_BAND_SHARE * cutoff))), cutoff)
     series = np.random.default_rng(0).normal(size=(3, len(TIME))) + np.sign(np.sin(TIME))
-    low_pass = signal.butter(4, PASS_BAND * cutoff, fs=1.0 / STEP, output="sos")
+    low_pass = signal.butter(4, PASS_BAND_SHARE * cutoff, fs=1.0 / STEP, output="sos")
     padded = np.pad(np.where(motion.known, series, 0.0), ((0, 0), (2000, 2000)))
     expected = signal.sosfiltfilt(low_pass, padded, axis=-1)[:, 2000:-2000][:, motion.rows]
     assert motion.filtered(series) == pytest.approx(expected, abs=1e-8)

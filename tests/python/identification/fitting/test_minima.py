@@ -95,7 +95,7 @@ def test_residuals_that_hang_together_are_doubted() -> None:
     falling = sw.friction.Stribeck(coulomb=0.03, breakaway=0.06, stribeck_speed=8.0, viscous=4e-4)
     found = of_table(falling, 2e-4)
     doubt = found.doubts[-1]
-    assert doubt.startswith("what is left of torque hangs together over")
+    assert doubt.startswith("the residuals of torque correlate over")
     assert f"doubt: {doubt}" in found.summary()
 
 
@@ -103,7 +103,7 @@ def test_what_is_known_loosely_is_doubted() -> None:
     found = of_table(LAW, 0.03)
     doubt, *_ = found.doubts
     assert doubt.startswith("friction_input.coulomb is known to")
-    assert 'sw.profile(fit, "friction_input.coulomb") tells it' in doubt
+    assert 'sw.profile(fit, "friction_input.coulomb") gives it' in doubt
 
 
 def test_what_makes_no_sense_is_refused() -> None:

@@ -90,7 +90,7 @@ def test_what_each_record_has_for_itself_is_in_its_own_model() -> None:
     assert found.model == found.parts[0].model
     assert [part.name for part in found.parts] == ["record 1", "record 2"]
     assert "residual of torque @ record 2" in found.summary()
-    with pytest.raises(ValueError, match="the fit is to 2 records; each has its own in parts"):
+    with pytest.raises(ValueError, match="the fit is to 2 records; take it from one of its parts"):
         _ = found.predicted
 
 

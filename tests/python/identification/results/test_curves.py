@@ -57,16 +57,6 @@ def test_what_took_no_part_is_marked() -> None:
     np.testing.assert_array_equal(marked == 0.0, training)
 
 
-def test_each_record_of_several_has_the_numbers_that_are_its_own() -> None:
-    fit = sw.fit(GEAR, {"cold": table(5), "warm": table(6)}, FREE, per_record=[FREE[1]])
-    paths = [each.path for each in fit.estimates]
-    for part in fit.parts:
-        places = [paths.index(FREE[0]), paths.index(f"{FREE[1]} @ {part.name}")]
-        covariance = fit.covariance[np.ix_(places, places)]
-        rows = np.stack([np.sign(SPEED), SPEED], axis=1)
-        np.testing.assert_allclose(curves_of(fit, part)["sigma"], np.sqrt([row @ covariance @ row for row in rows]), rtol=1e-9)
-
-
 def test_orders_are_as_uncertain_as_amplitude_and_phase_make_them() -> None:
     time = np.arange(0.0, 6.0, 0.004)
     angle = 30.0 * np.sin(0.5 * time) + 5.0 * np.sin(1.3 * time)

@@ -1,4 +1,4 @@
-"""What a loop is asked for beside the spring: Maxwell elements, friction at the input, or nothing."""
+"""Parts that are fitted to a loop beside the spring: Maxwell elements, friction at the input, or nothing."""
 
 from __future__ import annotations
 
@@ -18,40 +18,40 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 
 Array = NDArray[np.float64]
-SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists tried for an element's slip; no loop tried tells more apart
-MOST_ELEMENTS = 6  # kept after the convex step
-Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can tell
+SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists of slip that are tried; no loop tried separates more
+MAX_ELEMENTS = 6  # kept after the convex step
+Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can determine
 
 
 class Beside(ABC):
     """A part of the gear that is fitted beside the spring, or none."""
 
-    whole_spring = False  # whether it is a spring, too, and stands alone
-    dear = False  # whether what it can contribute takes long to find
-    minima = 1  # of least squares: from how many starts they are sought
+    whole_spring = False  # True for a part that is a spring, too, and takes its place
+    is_slow = False  # True if its library takes long to build
+    minima = 1  # count of initial values that are fitted
 
     @abstractmethod
     def words(self, gear: Gear) -> str:
-        """For the name of the candidate."""
+        """Return its part of the name of the candidate."""
 
     def known(self, loop: TorsionLoop, gear: Gear) -> Array:
-        """Torque of the loop that is neither the spring's nor asked for [N.m], shape (n,)."""
+        """Return the torque of the loop that is not fitted [N.m], shape (n,)."""
         return loop.friction(gear)
 
     @abstractmethod
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
-        """What it can contribute to the torque of the loop."""
+        """Return the torques that it can contribute to the loop."""
 
     @abstractmethod
     def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        """Paths of the parameters asked for; of `stiff` Maxwell elements the breakaway alone."""
+        """Return the paths of the fitted parameters; of `stiff` Maxwell elements the breakaway alone."""
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
-        """Stiffness and breakaway of each Maxwell element asked for."""
+        """Return stiffness and breakaway of each fitted Maxwell element."""
         return []
 
     def finished(self, found: Fit, start: Gear) -> Fit:
-        """The fit with what follows from the parameters asked for."""
+        """Return the fit with the numbers that follow from the fitted parameters."""
         return found
 
 
@@ -63,7 +63,7 @@ class Elements(Beside):
         return f" with {count} Maxwell element{'s' if count != 1 else ''}"
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
-        """Torques of elements of unit stiffness."""
+        """Return the torques of elements of unit stiffness."""
         path, slips = loop.path(loop.centre), half_span(loop) * SLIPS
         traces = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(path) for slip in slips.tolist()]
         places = tuple(range(len(slips)))
@@ -125,24 +125,24 @@ class Friction(Beside):
 
 
 def half_span(loop: TorsionLoop) -> float:
-    """Half of the twist that a loop goes through [rad]."""
+    """Return half of the range of the twist of a loop [rad]."""
     return 0.5 * float(np.ptp(loop.twist))
 
 
 def pairs(gear: Gear) -> list[tuple[float, float]]:
-    """Stiffness and breakaway of each Maxwell element of a gear."""
+    """Return stiffness and breakaway of each Maxwell element of a gear."""
     elements = gear.hysteresis
     assert isinstance(elements, hysteresis.MaxwellSlip)
     return list(zip(elements.stiffness, elements.breakaway, strict=True))
 
 
 def maxwell(elements: Sequence[tuple[float, float]]) -> hysteresis.MaxwellSlip:
-    """Maxwell elements of these stiffnesses and breakaways."""
+    """Return Maxwell elements of these stiffnesses and breakaways."""
     return hysteresis.MaxwellSlip(stiffness=[k for k, _ in elements], breakaway=[f for _, f in elements])
 
 
 def _neighbours(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
-    """The elements that carry torque; neighbours on the grid are one element that slips between them."""
+    """Return the elements that carry torque; neighbours on the grid are one element that slips between them."""
     elements: list[tuple[float, float]] = []
     last = -2
     for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)).tolist():
@@ -152,7 +152,7 @@ def _neighbours(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
         else:
             elements.append((k, torque))
         last = i
-    strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MOST_ELEMENTS], key=lambda e: e[1] / e[0])
+    strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MAX_ELEMENTS], key=lambda e: e[1] / e[0])
     return maxwell(strongest)
 
 

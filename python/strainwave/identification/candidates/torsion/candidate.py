@@ -1,8 +1,8 @@
-"""One kind of spring with what stands beside it, fitted to a loop: the convex problem's answer, refined.
+"""One kind of spring and the part beside it, fitted to a loop: the answer of a convex problem, refined.
 
-With knees and slip twists chosen beforehand a loop is linear in stiffnesses, all of which are positive: a convex problem with
-one answer (non-negative least squares), which needs no starting values. It finds how many Maxwell elements the loop can tell
-apart; exact derivatives then refine all numbers of spring and hysteresis together.
+For given knees and slip twists a loop is linear in stiffnesses, all of which are positive: a convex problem with one answer
+(non-negative least squares), which needs no initial values. It gives the count of Maxwell elements that the loop separates;
+exact derivatives then refine all numbers of spring and hysteresis together.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
-SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
-ALIKE = 1.1  # ratio of two slip twists; elements that are closer are one
-ROUNDS = 8  # of leaving out elements; an element at the edge of what a loop tells may come and go for ever
-MINIMA = 6  # of one kind that are looked at
-OFF_CENTRE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
+MAX_SLIP = 0.9  # of half the span: a loop does not separate an element that slips later from a spring
+MIN_SLIP_RATIO = 1.1  # of two slip twists; elements that are closer are one
+MAX_ROUNDS = 8  # of leaving out elements; one that the loop hardly determines may come and go for ever
+MAX_MINIMA = 6  # of one kind that are fitted
+MIN_ZERO_DISTANCE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
 DRIFTS = ("torque_drift", "twist_drift")
-DRIFTING = 3.0  # standard deviations that a drift must exceed
-STARTS = 500  # samples from which the start of a law is sought whose torques take long
-NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
+MIN_DRIFT_SIGMA = 3.0  # standard deviations of a drift
+MAX_START_SAMPLES = 500  # for initial values of a law whose torques take long
+MIN_ERROR_SHARE = 1e-3  # of the span of the torque: a smaller decrease of the error does not justify another parameter
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +41,10 @@ class TorsionCandidate(ComparedByFields):
 
     Attributes:
         spring: its kind of spring
-        beside: what was fitted beside the spring
+        beside: the part fitted beside the spring
         name: both, in words
         fit: the fit, of a gear with that spring and hysteresis
-        error: rms of the residuals on the samples held out [N.m]; on all, where none were
+        error: rms of the residuals on the samples held out [N.m]; on all if none were
     """
 
     spring: Kind
@@ -55,7 +55,7 @@ class TorsionCandidate(ComparedByFields):
 
     @property
     def loop(self) -> TorsionLoop:
-        """What it was fitted to, with the history found."""
+        """Loop that it was fitted to, with the history found."""
         experiment = self.fit.experiment
         assert isinstance(experiment, TorsionLoop)
         return experiment
@@ -63,11 +63,11 @@ class TorsionCandidate(ComparedByFields):
 
 @dataclass(frozen=True, eq=False)
 class Start(ComparedByFields):
-    """The convex problem's answer.
+    """Answer of the convex problem.
 
     Attributes:
         gear: with spring and hysteresis
-        loop: the measurement, with its history and where the zero of the torque is
+        loop: the measurement, with its history and the zero of the torque
         error: root of the sum of the squared residuals of the samples that train [N.m]
     """
 
@@ -79,15 +79,15 @@ class Start(ComparedByFields):
 def starts(
     loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = 1
 ) -> list[Start]:
-    """The best springs of a kind with what stands beside them, without starting values.
+    """Return the best springs of a kind with the part beside them, without initial values.
 
     Args:
         loop: measured torque over twist
-        gear: what is not sought is taken from it
+        gear: the other parts are taken from it
         training: samples that take part, shape (n,)
-        spring: kind of spring sought
-        beside: what is sought beside it
-        most: how many are wanted; they differ in knees and other numbers that the torque is not linear in
+        spring: kind of spring
+        beside: the part beside it
+        most: largest count; they differ in knees and other numbers that the torque is not linear in
 
     Returns:
         starts, best first
@@ -95,17 +95,17 @@ def starts(
     Raises:
         ValueError: nothing of these kinds fits the loop
     """
-    seen = loop.without_drift()
-    if beside.dear:
-        seen, training = _sparse(seen, training)
+    steady = loop.without_drift()
+    if beside.is_slow:
+        steady, training = _sparse(steady, training)
     middle = 0.0 if loop.single_branch else loop.centre
-    half = float(np.abs(seen.twist - middle).max())
-    sought = seen.torque - beside.known(seen, gear)
-    zeros = _zero_columns(seen)
-    libraries = [spring.library(seen.twist - middle, half, gear), beside.library(seen, gear)]
+    half = float(np.abs(steady.twist - middle).max())
+    torque = steady.torque - beside.known(steady, gear)
+    zeros = _zero_columns(steady)
+    libraries = [spring.library(steady.twist - middle, half, gear), beside.library(steady, gear)]
     rows = [replace(library, torques=library.torques[training]) for library in libraries]
-    answers = solve(sought[training], rows, zeros[training], most)
-    level = float(np.abs(seen.torque).max())
+    answers = solve(torque[training], rows, zeros[training], most)
+    level = float(np.abs(steady.torque).max())
 
     def begun(answer: Answer) -> Start:
         torque_zero = level * float(answer.weights[-1][0] - answer.weights[-1][1]) if zeros.size else 0.0
@@ -115,9 +115,9 @@ def starts(
 
 
 def candidate(
-    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = MINIMA
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = MAX_MINIMA
 ) -> TorsionCandidate:
-    """A kind of spring and what stands beside it, fitted from the convex problem's answers: at most from so many."""
+    """Fit a kind of spring and the part beside it, from `most` answers of the convex problem at most."""
     readings = _readings(loop, spring)
     most = min(most, max(spring.minima, beside.minima))
     begun = min((starts(each, gear, training, spring, beside, most) for each in readings), key=lambda found: found[0].error)
@@ -128,19 +128,19 @@ def candidate(
 
 
 def _readings(loop: TorsionLoop, spring: Kind) -> list[TorsionLoop]:
-    """Choices that a loop does not determine: if its path had been run before, and which guess is nearer to the zero."""
+    """Return choices that a loop does not determine: if its path had been run before, and which guess is nearer to the zero."""
     if loop.single_branch:
         return [loop]
     away = np.inf if loop.unloaded is None else abs(loop.unloaded - loop.centre)
-    apart = spring.knows_zero and OFF_CENTRE * half_span(loop) < away < half_span(loop)
+    apart = spring.knows_zero and MIN_ZERO_DISTANCE * half_span(loop) < away < half_span(loop)
     zeros = [loop.near_zero, loop.unloaded] if apart else [loop.near_zero]
-    return [replace(each, near_zero=zero) for each in (loop, loop.virgin()) for zero in zeros]
+    return [replace(each, near_zero=zero) for each in (loop, replace(loop, history="virgin")) for zero in zeros]
 
 
 def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
-    """The candidate with a drift of torque or twist, if the loop shows one; else itself.
+    """Return the candidate with a drift of torque or twist, if the loop shows one; else itself.
 
-    A drift counts if it exceeds three standard deviations, and if what is held out is predicted better with it.
+    A drift counts if it exceeds three standard deviations, and if the samples held out are predicted better with it.
     """
     if found.loop.single_branch:
         return found
@@ -152,17 +152,17 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
 
 
 def drifts(found: TorsionCandidate) -> dict[str, Any]:
-    """What drift was found."""
+    """Return the fitted drifts by name."""
     return {e.path: e.value for e in found.fit.estimates if e.path in DRIFTS}
 
 
 def _drift_shown(found: TorsionCandidate) -> bool:
     sigma = {e.path: e.sigma for e in found.fit.estimates}
-    return all(abs(value) > DRIFTING * sigma[name] for name, value in drifts(found).items())
+    return all(abs(value) > MIN_DRIFT_SIGMA * sigma[name] for name, value in drifts(found).items())
 
 
 def resumed(found: TorsionCandidate) -> TorsionLoop:
-    """The loop as a fit that goes on from there sees it."""
+    """Return the loop with the end of a fit as initial values."""
     at = {estimate.path: estimate.value for estimate in found.fit.estimates}
     starts: dict[str, Any] = {name: at[name] for name in ("torque_zero", *DRIFTS) if name in at}
     return replace(found.loop, near_zero=at.get("twist_zero", found.loop.near_zero), **starts)
@@ -171,7 +171,7 @@ def resumed(found: TorsionCandidate) -> TorsionLoop:
 def finished(
     begin: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: Kind, beside: Beside, known: Gear
 ) -> TorsionCandidate:
-    """The candidate whose refinement begins there."""
+    """Return the candidate whose refinement begins with a gear."""
     found = beside.finished(_refined(begin, loop, training, spring, beside), known)
     held_out = found.rms(held_out=True)[0]
     words = beside.words(found.gear)
@@ -180,28 +180,28 @@ def finished(
 
 
 def with_fewer(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
-    """The candidate with those two Maxwell elements as one that slip at the most similar twists."""
+    """Return the candidate with the two Maxwell elements as one that slip at the most similar twists."""
     return finished(merged(found.fit.gear), found.loop, found.fit.training, found.spring, found.beside, known)
 
 
 def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> Fit:
-    """The fit, without elements that the loop cannot tell from the spring or from nothing.
+    """Return the fit, without elements that the loop does not separate from the spring or from nothing.
 
-    An element that never slips within the loop is a linear spring, one that holds no torque is none, and two that slip at the
-    same twist are one. One that slips before the loop can tell is given the least twist to slip at that it can.
+    An element that never slips within the loop is a linear spring, one without torque is none, and two that slip at the same
+    twist are one. One that slips earlier than the loop determines slips at the smallest twist that it determines.
     """
     half, span = half_span(loop), float(np.ptp(loop.torque))
     least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING)
     stiff: set[int] = set()
-    for last in [*(ROUNDS - 1) * [False], True]:
+    for last in [*(MAX_ROUNDS - 1) * [False], True]:
         free = spring.free(gear) + beside.free(gear, stiff)
         found = _in_order(fit(gear, loop, free, training=training), spring)
         fitted = beside.elements(found.gear)
         if last:
             break
-        slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < SLIPPING * half * k]
+        slipping = [(k, f) for k, f in fitted if MIN_ERROR_SHARE * span < f < MAX_SLIP * half * k]
         if len(slipping) < len(fitted):
-            stuck = sum(k for k, f in fitted if f >= SLIPPING * half * k)
+            stuck = sum(k for k, f in fitted if f >= MAX_SLIP * half * k)
             stiffened = spring.stiffened(found.gear.stiffness, stuck)
             gear, stiff = gear.replace(stiffness=stiffened, hysteresis=maxwell(slipping)), set()
         elif _alike(slipping):
@@ -216,7 +216,7 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
 
 
 def merged(gear: Gear) -> Gear:
-    """The gear with those two Maxwell elements as one that slip at the most similar twists."""
+    """Return the gear with the two Maxwell elements as one that slip at the most similar twists."""
     elements = sorted(pairs(gear), key=lambda e: e[1] / e[0])
     slips = np.log([f / k for k, f in elements])
     first = int(np.argmin(np.diff(slips)))
@@ -226,27 +226,27 @@ def merged(gear: Gear) -> Gear:
 
 
 def _alike(elements: Sequence[tuple[float, float]]) -> bool:
-    """Whether two Maxwell elements slip at all but the same twist."""
+    """True if two Maxwell elements slip at nearly the same twist."""
     slips = np.sort([f / k for k, f in elements])
-    return bool(np.any(slips[1:] < ALIKE * slips[:-1]))
+    return bool(np.any(slips[1:] < MIN_SLIP_RATIO * slips[:-1]))
 
 
 def _in_order(found: Fit, spring: Kind) -> Fit:
-    """The same fit, the knees of its spring in order."""
+    """Return the same fit, the knees of its spring in order."""
     ordered = spring.in_order(found.gear.stiffness)
     return found if ordered is found.gear.stiffness else replace(found, model=found.gear.replace(stiffness=ordered))
 
 
 def _sparse(loop: TorsionLoop, training: NDArray[np.bool_]) -> tuple[TorsionLoop, NDArray[np.bool_]]:
-    """A loop of few samples, of which a start needs no more."""
-    step = -(-len(loop.twist) // STARTS)
+    """Return a loop of few samples, which suffice for initial values."""
+    step = -(-len(loop.twist) // MAX_START_SAMPLES)
     few = slice(None, None, step)
     moments = None if loop.moments is None else loop.moments[few]
     return replace(loop, twist=loop.twist[few], torque=loop.torque[few], moments=moments, corners=()), training[few]
 
 
 def _zero_columns(loop: TorsionLoop) -> Array:
-    """What a zero of the torque contributes, either way; nothing where it is known."""
+    """Return the columns of a zero of the torque, either way; none if it is known."""
     if loop.single_branch:
         return np.empty((len(loop.twist), 0))
     level = np.full(len(loop.twist), np.abs(loop.torque).max())

@@ -1,16 +1,16 @@
-"""Which samples of a loop a fit sees, and which it only predicts."""
+"""Samples of a loop that a fit takes, and those that it predicts."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-BLOCKS = 20
-FOLDS = 4
+LOOP_BLOCKS = 20  # of the samples of a loop
+FOLDS = 4  # each of every fourth block
 
 
 def held_out_blocks(n: int, fold: int = FOLDS - 1) -> NDArray[np.bool_]:
-    """Samples that train: all but every fourth of twenty blocks, which are held out to validate.
+    """Return True for samples that train: all but every fourth of twenty blocks, which are held out to validate.
 
     Whole blocks, because neighbours on a loop resemble each other too much to test one by the other. The four folds hold out
     each block once.
@@ -23,5 +23,5 @@ def held_out_blocks(n: int, fold: int = FOLDS - 1) -> NDArray[np.bool_]:
 
 
 def block_of(n: int) -> NDArray[np.intp]:
-    """The block of each sample."""
-    return np.arange(n) * BLOCKS // n
+    """Return the block of each sample, shape (n,)."""
+    return np.arange(n) * LOOP_BLOCKS // n

@@ -13,7 +13,7 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 
 Array = NDArray[np.float64]
-ROUNDS = 4  # in which spring and hysteresis are chosen in turn; none tried took more than three
+MAX_ROUNDS = 4  # of choosing spring and hysteresis in turn; no loop tried took more than three
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,8 @@ class Choice:
 
     Attributes:
         columns: of the library's torques, those of its weights
-        put: the gear with this part, from its weights
-        group: choices of one group lead to the same minimum; starts are sought in several
+        put: returns the gear with this part, from its weights
+        group: choices of one group lead to the same minimum; answers are of several groups
     """
 
     columns: tuple[int, ...]
@@ -33,11 +33,11 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class Library(ComparedByFields):
-    """What one kind of part can add to the torque.
+    """Torques that one kind of part can add.
 
     Attributes:
         torques: of unit weights along the loop [N.m], shape (n, m)
-        choices: to take one of
+        choices: of which a gear has one
     """
 
     torques: Array
@@ -54,7 +54,7 @@ class Answer(ComparedByFields):
 
     Attributes:
         choices: one of each library
-        weights: of each, and of what always takes part
+        weights: of each, and of the columns that always take part
         error: root of the sum of the squared residuals [N.m]
     """
 
@@ -63,24 +63,23 @@ class Answer(ComparedByFields):
     error: float
 
     def put(self, gear: Gear) -> Gear:
-        """The gear with all of it."""
+        """Return the gear with all parts."""
         for choice, weights in zip(self.choices, self.weights, strict=False):
             gear = choice.put(gear, weights)
         return gear
 
 
-def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int = 1) -> list[Answer]:
-    """Those choices of each library that explain the torque sought best, with positive weights.
+def solve(torque: Array, libraries: Sequence[Library], always: Array, most: int = 1) -> list[Answer]:
+    """Return the choices of each library that explain a torque best, with positive weights.
 
-    Of given choices the weights are a convex problem, non-negative least squares (LawsonHanson1974), which the triangle
-    of one QR decomposition of all columns holds as well as the columns. The libraries are gone through in turn until nothing
-    improves.
+    For given choices the weights are a convex problem, non-negative least squares (LawsonHanson1974). The triangle of one QR
+    decomposition of all columns replaces the columns. The libraries are tried in turn until nothing improves.
 
     Args:
-        sought: torque to explain [N.m], shape (n,)
+        torque: to explain [N.m], shape (n,)
         libraries: kinds of parts; one choice of each is taken
-        always: columns that take part whatever is chosen, shape (n, k)
-        most: how many answers are wanted
+        always: columns that take part in any choice, shape (n, k)
+        most: largest count of answers
 
     Returns:
         answers, best first; their choices of the first library that has several groups are of different ones
@@ -97,7 +96,7 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int 
     matrix = np.column_stack([*(library.torques for library in libraries), always])
     size = np.linalg.norm(matrix, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    triangle = np.asarray(np.linalg.qr(np.column_stack((matrix / size, sought)), mode="r"), float)
+    triangle = np.asarray(np.linalg.qr(np.column_stack((matrix / size, torque)), mode="r"), float)
     firsts = np.cumsum([0, *(library.torques.shape[1] for library in libraries)])
     constant = [*range(firsts[-1], matrix.shape[1])]
 
@@ -115,7 +114,7 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int 
             answers[numbers] = Answer(tuple(choices), tuple(np.split(found[0] / size[order], ends)), found[1])
 
     chosen = (0,) * len(libraries)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         before = len(answers)
         for place, library in enumerate(libraries):
             for number in range(len(library.choices)):
@@ -126,7 +125,7 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int 
         if len(answers) == before:
             break
     if not answers:
-        raise ValueError("no spring and hysteresis fits this loop")
+        raise ValueError("no spring and hysteresis fits this loop; see whether the units of twist and torque are right")
     parted = next((place for place, each in enumerate(libraries) if len({choice.group for choice in each.choices}) > 1), 0)
     of_groups: dict[float, Answer] = {}
     for answer in sorted(answers.values(), key=lambda answer: answer.error):
@@ -134,12 +133,12 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int 
     return [*of_groups.values()][:most]
 
 
-def _positive(matrix: Array, sought: Array) -> tuple[Array, float] | None:
-    """Non-negative weights and what they leave; nothing where the active set cycles: other choices remain."""
+def _positive(matrix: Array, torque: Array) -> tuple[Array, float] | None:
+    """Return non-negative weights and their error; None if the active set cycles, as other choices remain."""
     from scipy.optimize import nnls
 
     try:
-        weights, error = nnls(matrix, sought)
+        weights, error = nnls(matrix, torque)
     except RuntimeError:
         return None
     return weights, float(error)

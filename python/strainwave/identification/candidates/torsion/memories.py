@@ -1,7 +1,7 @@
-"""Laws of hysteresis beside Maxwell-slip that a loop may show, each with what it starts from.
+"""Laws of hysteresis of a loop beside Maxwell-slip, each with its initial values.
 
-Every one of them is linear in a factor of its torques while its twists are held: of a table of twists and exponents the best
-start is found by convex problems, as that of the spring.
+Each of them is linear in a factor of its torques at constant twists: convex problems find the best initial values of a table of
+twists and exponents, as those of the spring.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from strainwave import hysteresis, stiffness
 from strainwave._core import Gear
 from strainwave.identification.candidates.torsion.beside import Beside, half_span
 from strainwave.identification.candidates.torsion.library import Choice, Library
-from strainwave.identification.candidates.torsion.springs import NEGLIGIBLE, scaled, unit_compliance
+from strainwave.identification.candidates.torsion.springs import MIN_STIFFNESS_SHARE, scaled, unit_compliance
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ Law = (
     | hysteresis.FrictionalWindup
     | hysteresis.MaxwellSlip
 )
-LEAST = 1e-9  # N.m: a law without torque has no shape
+MIN_TORQUE = 1e-9  # N.m: a law without torque has no shape
 
 
 class Without(Beside):
@@ -49,10 +49,10 @@ class Without(Beside):
 
 @dataclass(frozen=True)
 class FadingMemory(Beside):
-    """So many branches that forget. The torque of each is linear in its stiffness."""
+    """A count of branches that forget. The torque of each is linear in its stiffness."""
 
     branches: int
-    rates = np.geomspace(0.3, 100.0, 16)  # per half the span: tried for how fast a branch forgets
+    rates = np.geomspace(0.3, 100.0, 16)  # per half the span, of forgetting, tried
 
     def words(self, gear: Gear) -> str:
         return f" with fading memory of {self.branches} branch{'es' if self.branches > 1 else ''}"
@@ -62,7 +62,7 @@ class FadingMemory(Beside):
 
         def choice(places: tuple[int, ...]) -> Choice:
             def put(g: Gear, weights: Array) -> Gear:
-                least = NEGLIGIBLE * float(weights.sum()) + LEAST
+                least = MIN_STIFFNESS_SHARE * float(weights.sum()) + MIN_TORQUE
                 stiffnesses = [max(float(weight), least) for weight in weights]
                 law = hysteresis.FadingMemory(stiffness=stiffnesses, forgetting=[rates[place] for place in places])
                 return g.replace(hysteresis=law)
@@ -78,9 +78,9 @@ class FadingMemory(Beside):
 
 
 class Scaled(Beside):
-    """A law whose torque has a factor; all else is tried."""
+    """A law whose torque has a factor; its other numbers are tried."""
 
-    dear = True
+    is_slow = True
     minima = 4
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
@@ -88,21 +88,21 @@ class Scaled(Beside):
         tried = [(law, torque) for law in laws if np.isfinite(torque := _traced(law, loop)).all()]
 
         def choice(place: int, law: Law) -> Choice:
-            return Choice((place,), lambda g, weights: self.put(g, law, max(float(weights[0]), LEAST)), place)
+            return Choice((place,), lambda g, weights: self.put(g, law, max(float(weights[0]), MIN_TORQUE)), place)
 
         return Library.of([torque for _, torque in tried], [choice(place, law) for place, (law, _) in enumerate(tried)])
 
     @abstractmethod
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
-        """Laws to try, of about unit torque."""
+        """Yield laws to try, of about unit torque."""
 
     @abstractmethod
     def put(self, gear: Gear, law: Law, factor: float) -> Gear:
-        """The gear with so many times the law."""
+        """Return the gear with a multiple of the law."""
 
 
 class BoucWen(Scaled):
-    """Its twists are the reach, saturation over stiffness."""
+    """Bouc and Wen's law. Its twist is the reach, saturation over stiffness."""
 
     def words(self, gear: Gear) -> str:
         return " with Bouc and Wen's hysteresis"
@@ -121,7 +121,7 @@ class BoucWen(Scaled):
 
 
 class Preisach(Scaled):
-    """Of a density that falls as a power."""
+    """Preisach's law of a density that falls as a power."""
 
     def words(self, gear: Gear) -> str:
         return " with Preisach's hysteresis of a power density"
@@ -141,7 +141,7 @@ class Preisach(Scaled):
 
 
 class Regimes(Scaled):
-    """Tried as it is with equal regimes in both senses: lost motion from the width of the loop, the rest from a table."""
+    """A stiffness for each regime, tried with equal regimes in both senses: lost motion from the width of the loop."""
 
     whole_spring = True
 
@@ -197,8 +197,8 @@ BESIDE_A_SPRING: tuple[Beside, ...] = (Without(), FadingMemory(1), FadingMemory(
 
 
 def _alone(gear: Gear, law: Law, factor: float) -> Gear:
-    """The gear with a law that is its whole spring: what stands beside it adds nothing that could be measured."""
-    return gear.replace(stiffness=stiffness.Linear(k=NEGLIGIBLE * factor), hysteresis=law)
+    """Return the gear with a law that is its whole spring, beside a linear one of negligible stiffness."""
+    return gear.replace(stiffness=stiffness.Linear(k=MIN_STIFFNESS_SHARE * factor), hysteresis=law)
 
 
 def _traced(law: Law, loop: TorsionLoop) -> Array:

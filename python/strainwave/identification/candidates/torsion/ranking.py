@@ -1,4 +1,4 @@
-"""All kinds of spring and hysteresis on one loop, by what they predict where they were not fitted."""
+"""All kinds of spring and hysteresis on one loop, ranked by their predictions of samples held out."""
 
 from __future__ import annotations
 
@@ -20,37 +20,36 @@ from strainwave.identification.candidates.torsion.candidate import (
     drifts,
     resumed,
     with_drift,
-    with_fewer,
 )
-from strainwave.identification.candidates.torsion.folds import BLOCKS, FOLDS, block_of, held_out_blocks
+from strainwave.identification.candidates.torsion.folds import FOLDS, LOOP_BLOCKS, block_of, held_out_blocks
 from strainwave.identification.candidates.torsion.memories import BESIDE_A_SPRING, WHOLE
-from strainwave.identification.candidates.torsion.selection import asked
+from strainwave.identification.candidates.torsion.selection import asked, simpler
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Kind, Negligible
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.identification.fitting.noise import correlation_length
 
 Array = NDArray[np.float64]
-UNNOTICED = 0.01  # of the error of the best
-MINIMA = 2  # of one kind that are looked at: there are many kinds
-BEHIND = 1.25  # times the residuals of the best: models that leave more are judged by one fold
-TIMES = 5  # a law is timed; the least counts
+MIN_EXCESS = 0.01  # of the error of the best: a smaller difference is none
+MAX_MINIMA = 2  # of one kind that are fitted: there are many kinds
+MAX_RESIDUAL_FACTOR = 1.25  # over the residuals of the best: models that leave more are judged by one fold
+TIMED_RUNS = 5  # of a law, of which the shortest counts
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate(ComparedByFields):
-    """One model of a loop, and how well it predicts.
+    """One model of a loop, and the error of its predictions.
 
     Attributes:
         name: spring and hysteresis, in words
         fit: to all samples
-        parameters: numbers of the gear that were fitted
+        parameters: count of the fitted numbers of the gear
         error: rms error on samples held out [N.m]: blocks of neighbours, each predicted by a fit to other blocks
         standard_error: of that error, by how the blocks differ [N.m]
-        predicted: blocks that were held out in turn; five of twenty, where the residuals alone show the model to be far behind
-        worse: by how much its error exceeds that of the best on the same blocks [N.m], and the standard error of that
-        correlation: samples of its residuals that hang together: 1 of white noise, which leaves nothing to explain
-        cost: time that its torque takes [s per sample]
+        predicted: blocks that were held out in turn; five of twenty if the residuals alone show the model to be far behind
+        worse: its error less that of the best on the same blocks [N.m], and the standard error of the difference
+        correlation: correlation length of its residuals [samples]: 1 of white noise, which leaves nothing to explain
+        cost: time of its torque [s per sample]
     """
 
     name: str
@@ -65,38 +64,37 @@ class Candidate(ComparedByFields):
 
     @property
     def good(self) -> bool:
-        """Whether it is as good as the best: worse by no more than one standard error, or by less than anyone would notice."""
-        return self.predicted == BLOCKS and self.worse[0] <= max(self.worse[1], UNNOTICED * (self.error - self.worse[0]))
+        """True if it is as good as the best: worse by no more than one standard error, or by less than 1 %."""
+        return self.predicted == LOOP_BLOCKS and self.worse[0] <= max(self.worse[1], MIN_EXCESS * (self.error - self.worse[0]))
 
 
 def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False) -> tuple[Candidate, ...]:
-    """Fits all kinds of spring and hysteresis to a loop, and ranks them by what they predict.
+    """Fit all kinds of spring and hysteresis to a loop, and return them ranked by their predictions.
 
-    In stages, not all with all: springs with Maxwell elements, then the other laws of hysteresis beside the best of these
-    springs and the simplest ones, then the springs beside the best law. Each fit starts from a convex problem, without a guess.
+    They are fitted in stages: springs with Maxwell elements, then the other laws of hysteresis beside the best of these springs
+    and the simplest ones, then the springs beside the best law. Each fit starts from a convex problem, without a guess.
 
-    What is held out are blocks of neighbours, each predicted by a fit to three quarters of the blocks. By how much a model is
-    worse than the best is judged on the same blocks, so that what is hard to predict for both does not count. The simplest that
-    is worse by no more than one standard error comes first (Breiman et al. 1984, section 3.4.3), then all by how much worse
-    they are.
+    Blocks of neighbours are held out, each predicted by a fit to three quarters of the blocks. Models are compared with the
+    best on the same blocks, so that samples that are hard to predict for both do not count. The simplest that is worse by no
+    more than one standard error comes first (Breiman et al. 1984, section 3.4.3), then all by their difference to the best.
 
     Args:
         loop: measured torque over twist
         gear: the gear to start from; spring and hysteresis are replaced, the rest is kept
-        friction_measured: whether `gear.friction_input` was measured on this gear, as for `fit_loop`
+        friction_measured: True if `gear.friction_input` was measured on this gear, as for `fit_loop`
 
     Returns:
-        all candidates, the one to take first
+        all candidates, the best first
 
     Raises:
         ValueError: too few samples for any candidate
     """
-    if len(loop.twist) < 2 * BLOCKS:
+    if len(loop.twist) < 2 * LOOP_BLOCKS:
         raise ValueError(
-            f"a ranking holds out {BLOCKS} blocks of a loop, so it needs {2 * BLOCKS} samples; there are {len(loop.twist)}"
+            f"a ranking holds out {LOOP_BLOCKS} blocks of a loop, so it needs {2 * LOOP_BLOCKS} samples; there are "
+            f"{len(loop.twist)}: record more"
         )
-    every = np.ones(len(loop.twist), bool)
-    tried = _Tried(loop, gear, every)
+    tried = _Tried(loop, gear)
     beside = asked(loop, gear, friction_measured)
     for each in beside:
         tried.add(PLAIN, [each])
@@ -109,7 +107,7 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
             tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.beside])
         tried.add([LINEAR, CUBIC], BESIDE_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
-    near = BEHIND * min(_left(each) for each in candidates)
+    near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
     found = [_judged(each, FOLDS if _left(each) < near else 1) for each in candidates]
     return _ordered([each for each in found if each is not None])
 
@@ -117,25 +115,25 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
 class _Tried:
     """Candidates fitted to all samples."""
 
-    def __init__(self, loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_]) -> None:
-        self.loop, self.gear, self.training = loop, gear, training
+    def __init__(self, loop: TorsionLoop, gear: Gear) -> None:
+        self.loop, self.gear, self.training = loop, gear, np.ones(len(loop.twist), bool)
         self._found: dict[tuple[Kind, Beside], TorsionCandidate] = {}
 
     def add(self, springs: Sequence[Kind], besides: Sequence[Beside]) -> None:
-        """Fits each of the springs with each of what stands beside it, if not yet done."""
+        """Fit each of the springs with each of the parts beside it, if not yet done."""
         for spring in springs:
             for beside in besides:
                 if (spring, beside) in self._found:
                     continue
                 try:
                     with _trying():
-                        found = candidate(self.loop, self.gear, self.training, spring, beside, MINIMA)
+                        found = candidate(self.loop, self.gear, self.training, spring, beside, MAX_MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
                 self._found[spring, beside] = found
 
     def drift(self) -> None:
-        """Starts again with a drift, if the best shows one."""
+        """Fit all again with a drift, if the best shows one."""
         drifting = with_drift(self.best, self.gear)
         if drifting is not self.best:
             self.loop, before = replace(self.loop, **drifts(drifting)), [*self._found]
@@ -150,48 +148,44 @@ class _Tried:
     @property
     def best(self) -> TorsionCandidate:
         if not self._found:
-            raise ValueError("no spring and hysteresis fits this loop; it may have too few samples")
+            raise ValueError("no spring and hysteresis fits this loop; it may have too few samples: record more")
         return min(self._found.values(), key=lambda each: each.error)
 
     def simpler(self) -> Iterator[TorsionCandidate]:
-        """The best with Maxwell elements, with fewer and fewer of them."""
+        """Yield the best candidate with Maxwell elements, with fewer and fewer of them."""
         elastic = [each for each in self.candidates if each.beside.elements(each.fit.gear)]
-        if not elastic:
-            return
-        found = min(elastic, key=lambda each: each.error)
-        while len(found.beside.elements(found.fit.gear)) > 1:
-            with _trying():
-                found = with_fewer(found, self.gear)
-            yield found
+        with _trying():
+            for best in sorted(elastic, key=lambda each: each.error)[:1]:
+                yield from simpler(best, np.inf, self.gear)
 
 
 def behind_play(spring: Kind) -> Kind:
-    """The kind of spring with play before it."""
+    """Return the kind of spring with play before it."""
     return spring if isinstance(spring, Backlash) else Backlash(spring)
 
 
 @contextmanager
 def _trying() -> Iterator[None]:
-    """A fit tries what it likes, and SciPy divides by a singular value of 0 where a number has no effect."""
+    """Ignore warnings of a trial: SciPy divides by a singular value of 0 if a number has no effect."""
     with warnings.catch_warnings(action="ignore", category=PassivityWarning), np.errstate(divide="ignore", invalid="ignore"):
         yield
 
 
 def _left(found: TorsionCandidate) -> float:
-    """What a fit to all samples leaves of the torque, rms [N.m]."""
+    """Return the rms residual of a fit to all samples [N.m]."""
     return float(found.fit.rms()[0])
 
 
 @dataclass(frozen=True, eq=False)
 class _Judged(ComparedByFields):
-    """A candidate with the mean squared error of each block, by fits that did not see it; not-a-number of blocks not tried."""
+    """A candidate with the mean squared error of each block, by fits without it; not a number for blocks not tried."""
 
     candidate: TorsionCandidate
     blocks: Array
 
 
 def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
-    """Each fold is fitted from where the fit to all ended; none where one of them has no fit."""
+    """Return a candidate judged by some folds, each fitted from the end of the fit to all; None if one of them has no fit."""
     free = [estimate.path for estimate in found.fit.estimates if "." in estimate.path]
     loop = resumed(found)
     n = len(loop.twist)
@@ -205,7 +199,7 @@ def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
             return None
         squares[~training] = part.residuals[0, ~training] ** 2
     block = block_of(n)
-    return _Judged(found, np.array([squares[block == each].mean() for each in range(BLOCKS)]))
+    return _Judged(found, np.array([squares[block == each].mean() for each in range(LOOP_BLOCKS)]))
 
 
 def _ordered(judged: Sequence[_Judged]) -> tuple[Candidate, ...]:
@@ -215,9 +209,9 @@ def _ordered(judged: Sequence[_Judged]) -> tuple[Candidate, ...]:
 
 
 def _measured(judged: _Judged, best: _Judged) -> Candidate:
-    """Errors are roots of mean squares, so that their standard errors are those of the squares over twice the root."""
-    made, seen = judged.candidate.fit, np.isfinite(judged.blocks)
-    blocks, of_best = judged.blocks[seen], best.blocks[seen]
+    """Return the candidate with its errors: roots of mean squares, with the standard errors of these."""
+    made, tried = judged.candidate.fit, np.isfinite(judged.blocks)
+    blocks, of_best = judged.blocks[tried], best.blocks[tried]
     error = float(np.sqrt(blocks.mean()))
     twice = 2.0 * max(error, np.finfo(float).tiny) * np.sqrt(len(blocks))
     return Candidate(
@@ -234,11 +228,11 @@ def _measured(judged: _Judged, best: _Judged) -> Candidate:
 
 
 def _cost(found: TorsionCandidate) -> float:
-    """Time of the torque [s per sample], the least of several runs."""
+    """Return the time of the torque [s per sample], the shortest of several runs."""
     path = found.loop.path(found.loop.centre)
     gear = found.fit.gear
     least = np.inf
-    for _ in range(TIMES):
+    for _ in range(TIMED_RUNS):
         begun = time.perf_counter()
         try:
             gear.trace(path)

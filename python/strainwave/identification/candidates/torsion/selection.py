@@ -1,4 +1,4 @@
-"""Spring and Maxwell-slip hysteresis of a loop, as `identify` takes them."""
+"""Spring and Maxwell-slip hysteresis of a loop, as `identify` fits them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from strainwave._core import Gear
 from strainwave.identification.candidates.torsion.beside import Beside, Dry, Elements, Friction, Nothing
 from strainwave.identification.candidates.torsion.candidate import (
-    NEGLIGIBLE,
+    MIN_ERROR_SHARE,
     TorsionCandidate,
     candidate,
     drifts,
@@ -27,18 +27,18 @@ SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 def fit_loop(
     loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None, *, friction_measured: bool = False
 ) -> list[TorsionCandidate]:
-    """Fits each kind of spring to a loop, and beside it what the loop can tell.
+    """Fit each kind of spring to a loop, with the part beside it that the loop determines.
 
-    That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear
-    is kept. A loop from the input holds the friction of the wave generator too. Where this was measured, it is taken out.
-    Where it was not, the loop tells the sum of friction and hysteresis only; one of them is fitted, friction rather than
-    hysteresis, and the other is kept. A drift of torque or twist is taken along where the loop shows one.
+    That is Maxwell-slip hysteresis, in parallel with the spring. A single branch determines none: the hysteresis of the gear is
+    kept. A loop from the input contains the friction of the wave generator, too. If this was measured, it is taken out. If not,
+    the loop determines the sum of friction and hysteresis alone; one of them is fitted, friction rather than hysteresis, and
+    the other is kept. A drift of torque or twist is fitted if the loop shows one.
 
     Args:
         loop: measured torque over twist
-        gear: the gear to start from; what is fitted is replaced, the rest is kept
+        gear: the gear to start from; fitted parts are replaced, the rest is kept
         training: samples that take part, shape (n,); the rest validates
-        friction_measured: whether `gear.friction_input` was measured on this gear
+        friction_measured: True if `gear.friction_input` was measured on this gear
 
     Returns:
         candidates, best first by the error on data held out; of those within 5 % of it, and a thousandth of the span of the
@@ -55,13 +55,13 @@ def fit_loop(
         loop = replace(loop, **drift)
         candidates = [candidate(loop, gear, chosen, *each) for each in kinds]
         best = min(candidates, key=lambda c: c.error)
-    good = float(np.hypot(1.05 * best.error, NEGLIGIBLE * np.ptp(loop.torque)))
+    good = float(np.hypot(1.05 * best.error, MIN_ERROR_SHARE * np.ptp(loop.torque)))
     candidates += simpler(best, good, gear)
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
 
 
 def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:
-    """The best candidate with fewer and fewer Maxwell elements, as long as it stays good."""
+    """Yield the best candidate with fewer and fewer Maxwell elements, as long as its error is at most `good`."""
     found = best
     while len(found.beside.elements(found.fit.gear)) > 1 and found.error <= good:
         found = with_fewer(found, known)
@@ -69,7 +69,7 @@ def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[Torsio
 
 
 def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Beside]:
-    """Return what is fitted to the loop beside the spring: Maxwell elements, or what takes their place."""
+    """Return the parts that are fitted to the loop beside the spring: Maxwell elements, or those in their place."""
     if loop.single_branch:
         return [Nothing()]
     friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)

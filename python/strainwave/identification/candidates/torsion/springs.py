@@ -1,4 +1,4 @@
-"""Kinds of spring that a loop may show, each with what it starts from: linear in positive weights, its knees tried."""
+"""Kinds of spring of a loop, each with its initial curves: linear in positive weights, for each of some knees."""
 
 from __future__ import annotations
 
@@ -15,38 +15,36 @@ from strainwave._core import Gear
 from strainwave.identification.candidates.torsion.library import Choice, Library
 
 Array = NDArray[np.float64]
-Part = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
-Spring = Part | stiffness.Backlash
-KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span: tried for the knees of a spring
-CLEARANCES = np.array(
-    [0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2]
-)  # of half the span: tried for a play from flank to flank
-SHARES = (0.2, 0.5, 0.8)  # of the compliance at zero torque: tried for the wave generator's
-HARDENINGS = (0.1, 1.0, 4.0)  # per the torque at half the span: tried for flexspline and wave generator
-NEGLIGIBLE = 1e-6  # of the secant stiffness: a spring that stands for none
+Law = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
+Spring = Law | stiffness.Backlash
+KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span, tried
+CLEARANCES = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2])  # of half the span: play between flanks, tried
+WAVE_GENERATOR_SHARES = (0.2, 0.5, 0.8)  # of the compliance at zero torque, tried
+HARDENINGS = (0.1, 1.0, 4.0)  # per the torque at half the span, of flexspline and wave generator, tried
+MIN_STIFFNESS_SHARE = 1e-6  # of the secant stiffness, in place of no spring
+MIN_STIFFNESS = 1e-9  # N.m/rad
 
 
 class Kind(ABC):
     """A kind of spring."""
 
-    name: str
     words: str
-    minima = 1  # of least squares: from how many starts they are sought
+    minima = 1  # count of initial curves that are fitted
 
     @abstractmethod
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
-        """What it can add to the torque along a twist from its zero [rad], shape (n,), that reaches about `half` either way."""
+        """Return its torques along a twist from its zero [rad], shape (n,), that reaches about `half` either way."""
 
     def free(self, gear: Gear) -> list[str]:
-        """Paths of its numbers."""
+        """Return the paths of its numbers."""
         return [f"stiffness.{field['name']}" for field in gear.stiffness.fields]
 
     def stiffened(self, spring: Spring, k: float) -> Spring:
-        """The spring in parallel with a linear one of stiffness k, if that is of the same kind; else the spring itself."""
+        """Return the spring in parallel with a linear one of stiffness k, if that is of the same kind; else the spring."""
         return spring
 
     def in_order(self, spring: Spring) -> Spring:
-        """The same curve, its knees in order."""
+        """Return the same curve, its knees in order."""
         return spring
 
     @property
@@ -56,7 +54,7 @@ class Kind(ABC):
 
 
 class Linear(Kind):
-    name, words = "linear", "linear spring"
+    words = "linear spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         return Library.of([twist], [Choice((0,), lambda g, w: g.replace(stiffness=stiffness.Linear(k=_soft(w))))])
@@ -71,7 +69,7 @@ class Linear(Kind):
 
 
 class Cubic(Kind):
-    name, words = "cubic", "cubic spring"
+    words = "cubic spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         def put(g: Gear, w: Array) -> Gear:
@@ -85,7 +83,7 @@ class Cubic(Kind):
 
 
 class Piecewise(Kind):
-    name, words = "piecewise", "piecewise spring"
+    words = "piecewise spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         def choice(place: int, knee: float) -> Choice:
@@ -103,9 +101,9 @@ class Piecewise(Kind):
 
 
 class ThreeSegment(Kind):
-    """Slopes may only grow from segment to segment at the start; a fit may end elsewhere."""
+    """Three segments, whose initial slopes grow from one to the next; a fit may end elsewhere."""
 
-    name, words = "three_segment", "three-segment spring"
+    words = "three-segment spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         knees = (half * KNEES).tolist()
@@ -130,7 +128,7 @@ class ThreeSegment(Kind):
         return stiffness.ThreeSegment(k1=spring.k1 + k, k2=spring.k2 + k, k3=spring.k3 + k, t1=t1, t2=t2)
 
     def in_order(self, spring: Spring) -> Spring:
-        """A second knee below the first is none."""
+        """Return the same curve; a second knee below the first becomes the first."""
         assert isinstance(spring, stiffness.ThreeSegment)
         if spring.t2 >= spring.t1:
             return spring
@@ -138,14 +136,14 @@ class ThreeSegment(Kind):
 
 
 class MultiCompliance(Kind):
-    """Its torque is linear in a factor of both stiffnesses that divides both hardenings; all else is tried."""
+    """Flexspline and wave generator in series: linear in a factor of both stiffnesses that divides both hardenings."""
 
-    name, words = "multi_compliance", "multi-compliance spring"
+    words = "multi-compliance spring"
     minima = 4
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         ratio = abs(gear.kinematics.ratio)
-        shapes = [unit_compliance(half, ratio, *shape) for shape in product(SHARES, HARDENINGS, HARDENINGS)]
+        shapes = [unit_compliance(half, ratio, *shape) for shape in product(WAVE_GENERATOR_SHARES, HARDENINGS, HARDENINGS)]
         inside = [shape for shape in shapes if np.isfinite(_torque(shape, twist)).all()]
 
         def choice(place: int, unit: stiffness.MultiCompliance) -> Choice:
@@ -165,10 +163,6 @@ class Backlash(Kind):
 
     law: Kind
     minima = 6
-
-    @property
-    def name(self) -> str:  # type: ignore[override]
-        return f"backlash_{self.law.name}"
 
     @property
     def words(self) -> str:  # type: ignore[override]
@@ -209,9 +203,9 @@ def _behind_play(choice: Choice, clearance: float, first: int) -> Choice:
 
 
 class Negligible(Kind):
-    """No spring: the hysteresis is a whole spring by itself."""
+    """No spring, as the hysteresis is a whole spring by itself."""
 
-    name, words = "none", "no spring"
+    words = "no spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         return Library(np.empty((len(twist), 0)), (Choice((), lambda g, w: g),))
@@ -222,13 +216,12 @@ class Negligible(Kind):
 
 LINEAR, CUBIC, PIECEWISE, THREE_SEGMENT, MULTI_COMPLIANCE = Linear(), Cubic(), Piecewise(), ThreeSegment(), MultiCompliance()
 PLAIN = (LINEAR, CUBIC, PIECEWISE, THREE_SEGMENT, MULTI_COMPLIANCE)
-KINDS: tuple[Kind, ...] = (*PLAIN, *(Backlash(kind) for kind in PLAIN))
 
 
 def unit_compliance(
     half: float, ratio: float, share: float, flexspline: float, wave_generator: float
 ) -> stiffness.MultiCompliance:
-    """Flexspline and wave generator that twist by `half` [rad] under 1 N.m.
+    """Return flexspline and wave generator that twist by `half` [rad] under 1 N.m.
 
     Args:
         half: that twist [rad]
@@ -250,8 +243,8 @@ def unit_compliance(
 
 
 def scaled(unit: stiffness.MultiCompliance, torque: float) -> stiffness.MultiCompliance:
-    """That twists as far under so many times the torque."""
-    factor = max(torque, 1e-9)
+    """Return the spring that twists as far under a multiple of the torque."""
+    factor = max(torque, MIN_STIFFNESS)
     return unit.replace(
         flexspline_stiffness=factor * unit.flexspline_stiffness,
         flexspline_hardening=unit.flexspline_hardening / factor,
@@ -272,5 +265,5 @@ def _beyond(twist: Array, knees: Sequence[float]) -> list[Array]:
 
 
 def _soft(weights: Array) -> float:
-    """A stiffness that is not zero, whatever the weights."""
-    return max(float(weights[0]), NEGLIGIBLE * float(np.sum(weights)), 1e-9)
+    """Return the first weight as a stiffness that is not zero."""
+    return max(float(weights[0]), MIN_STIFFNESS_SHARE * float(np.sum(weights)), MIN_STIFFNESS)
