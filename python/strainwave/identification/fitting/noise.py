@@ -92,7 +92,7 @@ def chance_of_gain(before: float, left: float, more: int, freedom: float) -> flo
     """Return the probability that `more` unknowns shrink the sum of squares of white residuals as much by chance (F test).
 
     >>> round(chance_of_gain(4.0, 2.0, 1, 10), 4), chance_of_gain(4.0, 4.0, 1, 10)
-    (0.0098, 1.0)
+    (0.0101, 1.0)
     """
     from scipy.stats import f as fisher
 
