@@ -69,9 +69,9 @@ class GearSoFar:
         fitted, before = {each.path: each for each in estimates}, gear_numbers(self.gear_set.gear)
         changed = {part: getattr(gear, part) for part in parts}
         sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
-        for path, (value, _) in gear_numbers(self.gear_set.gear.replace(**changed)).items():
-            if not is_of(path, parts):
-                continue
+        after = self.gear_set.gear.replace(**changed)
+        numbers = {path: value for path, (value, _) in gear_numbers(after).items() if is_of(path, parts)}
+        for path, value in numbers.items():
             if path in fitted:
                 sources[path] = source_of(fitted[path], name)
             elif path in before and value == before[path][0] and path in self.gear_set.sources:
@@ -82,8 +82,8 @@ class GearSoFar:
                 sigma = leads.sigma if leads is not None and np.isfinite(leads.sigma) else None
                 sources[path] = Entry(source=f"assumed: {why}; no file determines it", uncertainty=sigma)
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
-        determined_by |= {each.path: name for each in estimates if is_of(each.path, parts) and not each.why}
-        gear_set = replace(self.gear_set, gear=self.gear_set.gear.replace(**changed), sources=sources)
+        determined_by |= {each.path: name for each in estimates if each.path in numbers and not each.why}
+        gear_set = replace(self.gear_set, gear=after, sources=sources)
         own = {part for part in parts if any(is_of(path, {part}) for path in determined_by)}
         return replace(self, gear_set=gear_set, determined=self.determined | own, determined_by=determined_by)
 

@@ -1,0 +1,20 @@
+"""The gear so far: what a file determines of it."""
+
+from __future__ import annotations
+
+import strainwave as sw
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.gear_so_far import GearSoFar
+
+
+def test_an_estimate_that_is_no_number_of_the_gear_determines_none_of_it() -> None:
+    """The amplitude of an order is compared between files; the gear has it as an element of a sequence."""
+    before = sw.GearSet.read("csg-20-100")
+    error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[6e-5], phase=[0.1])
+    of_order = FileEstimate("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier")
+    own = FileEstimate("gear.kinematic_error.amplitude[0]", "rad", 6e-5, 1e-6, "")
+    gear = before.gear.replace(kinematic_error=error)
+    known = GearSoFar(before).with_fit(gear, ["kinematic_error"], [of_order, own], "a.csv")
+    assert known.determined_by == {"gear.kinematic_error.amplitude[0]": "a.csv"}
+    assert known.determined == {"kinematic_error"}
+    assert known.gear_set.sources["gear.kinematic_error.amplitude[0]"].uncertainty == 1e-6
