@@ -6,6 +6,7 @@ using namespace strainwave;
 namespace strainwave::host {
 
 void bind_gear_laws(nb::module_& core);
+void bind_gear(nb::module_& core);
 void bind_drive_parts(nb::module_& core);
 void bind_inputs(nb::module_& core);
 void bind_drives(nb::module_& core);
@@ -27,6 +28,7 @@ NB_MODULE(_core, core) {
     core.attr("PassivityWarning") = nb::steal(PyErr_NewExceptionWithDoc(
         "strainwave._core.PassivityWarning", "A set of parameters lets its model create energy.", PyExc_UserWarning, nullptr));
     strainwave::host::bind_gear_laws(core);
+    strainwave::host::bind_gear(core);
     strainwave::host::bind_drive_parts(core);
     strainwave::host::bind_inputs(core);
     strainwave::host::bind_drives(core);

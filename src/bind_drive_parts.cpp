@@ -4,8 +4,17 @@ namespace strainwave::host {
 
 void bind_drive_parts(nb::module_& core) {
     bind_family<NoVerbs>(core, "motor", "Motors on the input shaft.", motor::Models{});
-    bind_family<NoVerbs>(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
     bind_family<NoVerbs>(core, "loads", "What the output shaft carries.", load::Models{});
+    nb::module_ compensation = family_module(core, "compensation", "What takes away what the gear does to the motion.");
+    bind_list<FeedforwardVerbs>(core, compensation, "feedforward", strainwave::compensation::Feedforwards{});
+    bind_list<NoVerbs>(core, compensation, "learning", strainwave::compensation::Learners{});
+    bind_list<NoVerbs>(core, compensation, "observer", strainwave::compensation::Observers{});
+    const Bound<ParameterCompensation> whole{bind<ParameterCompensation>(core, "Compensation", "compensation"),
+                                             description_of<ParameterCompensation>()};
+    property(whole, "active", "bool", "Whether it makes any difference.", [](const ParameterCompensation& m) {
+        return m.feedforward.model.index() > 0 || m.learning.model.index() > 0 || m.observer.model.index() > 0;
+    });
+    bind_family<NoVerbs>(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
     bind_family<NoVerbs>(core, "sensor", "What a controller sees a quantity by.", sensor::Models{});
     bind_family<NoVerbs>(core, "thermal", "Temperatures of a drive.", thermal::Models{});
     bind_family<NoVerbs>(core, "meter", "Powers and energies of a drive.", meter::Models{});

@@ -213,7 +213,7 @@ Values twist_of(const ParameterGear& gear, const Call& call) {
 
 }  // namespace
 
-void bind_drives(nb::module_& core) {
+void bind_gear(nb::module_& core) {
     using Gear = ParameterGear;
     const Bound<Gear> gear{bind<Gear>(core, "Gear", "gear"), description_of<Gear>()};
     verb(gear, "save", {{"path", "str | pathlib.Path"}, {"*", ""}, {"name", "str"}, {"source", "str"}}, "None",
@@ -229,6 +229,9 @@ void bind_drives(nb::module_& core) {
          "Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of "
          "`trace`, to rounding, for every spring and hysteresis.",
          &twist_of);
+}
+
+void bind_drives(nb::module_& core) {
     bind<ParameterSensors>(core, "Sensors", "sensors");
     using Drive = ParameterDrive;
     const Bound<Drive> drive{bind<Drive>(core, "Drive", "drive"), description_of<Drive>()};

@@ -164,6 +164,12 @@ struct VariationVerbs {
         variation_verbs({c.type, c.description, law});
     }
 };
+struct FeedforwardVerbs {
+    template <class M>
+    static void add(const Bound<M>& c, int law) {
+        feedforward_verbs({c.type, c.description, law});
+    }
+};
 
 /// A law with every verb it has.
 template <class Verbs, class M>

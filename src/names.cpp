@@ -23,6 +23,20 @@ constexpr auto output_of_law() {
 
 using Number = std::function<void(const std::string& name, int element, const Field&)>;
 
+template <class X, class Law>
+void each_name(const Law& law, const std::string& before, const Number& number);
+
+/// The same of a struct within one: of the part of that name, if the law has one.
+template <class X, class Law>
+void each_name_within(const Law& law, const std::string& before, const Field& field, const Number& number) {
+    bool is_of_part = false;
+    general::with_part(law, field.name, [&](const auto& part) {
+        is_of_part = true;
+        each_name<X>(part, before + field.name + ".", number);
+    });
+    if (!is_of_part) each_name<X>(law, before + field.name + "_", number);
+}
+
 /// Calls number(name, element, field) for each number of a struct of a law, whose name begins with `before`.
 template <class X, class Law>
 void each_name(const Law& law, const std::string& before, const Number& number) {
@@ -32,9 +46,14 @@ void each_name(const Law& law, const std::string& before, const Number& number) 
         X names{};
         X::fields(names, [&]<class T>(const T& member, const Field& field) {
             if constexpr (stands_for_chosen<T>)
-                each_name<T>(law, before + field.name + ".", number);
+                general::with_part(law, field.name, [&](const auto& part) {
+                    if constexpr (requires { part.model; })
+                        part.visit([&]<class Inner>(const Inner& inner) {
+                            each_name<StateOf<Inner>>(inner, before + field.name + ".", number);
+                        });
+                });
             else if constexpr (Described<T>)
-                each_name<T>(law, before + field.name + "_", number);
+                each_name_within<T>(law, before, field, number);
             else if constexpr (requires { member.item; })
                 for (int i = 0; i < member.size(); ++i) number(before + field.name, i, field);
             else

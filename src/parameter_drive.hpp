@@ -44,10 +44,6 @@ struct AtRunTime<S, friction::Thermal<S, Law>> {
     using type = friction::Thermal<S, AnyOf<S, friction::Varying>>;
 };
 template <class S, class Law>
-struct AtRunTime<S, control::Sampled<S, Law>> {
-    using type = control::Sampled<S, AnyOf<S, control::Continuous>>;
-};
-template <class S, class Law>
 struct AtRunTime<S, sensor::Delayed<S, Law>> {
     using type = sensor::Delayed<S, AnyOf<S, sensor::Plain>>;
 };
@@ -78,11 +74,29 @@ struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
 
 }  // namespace detail
 
-using ParameterGear =
-    Gear<double, AnyOf<double, kinematics::Models>, AnyOf<double, kinematic_error::Models>, AnyOf<double, kinematic_error::Noises>,
-         AnyOf<double, stiffness::Models>, AnyOf<double, hysteresis::Models>, AnyOf<double, friction::Models>,
-         AnyOf<double, friction::Models>, AnyOf<double, friction::Models>, AnyOf<double, softening::Models>,
-         AnyOf<double, structure::Models>, AnyOf<double, variation::Models>>;
+template <class S>
+using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
+                     AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,
+                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>, AnyOf<S, softening::Models>,
+                     AnyOf<S, structure::Models>, AnyOf<S, variation::Models>>;
+
+namespace detail {
+
+template <class S, class Gear, class Load>
+struct AtRunTime<S, compensation::ModelFeedforward<S, Gear, Load>> {
+    using type = compensation::ModelFeedforward<S, AnyGear<S>, AnyOf<S, load::Models>>;
+};
+template <class S, class Law, class Compensation_>
+struct AtRunTime<S, control::Sampled<S, Law, Compensation_>> {
+    using type = control::Sampled<S, AnyOf<S, control::Continuous>,
+                                  Compensation<S, AnyOf<S, compensation::Feedforwards>, AnyOf<S, compensation::Learners>,
+                                               AnyOf<S, compensation::Observers>>>;
+};
+
+}  // namespace detail
+
+using ParameterGear = AnyGear<double>;
+using ParameterCompensation = AtRunTime<control::Sampled, double>::Compensation;
 using ParameterSensors = Sensors<double, AnyOf<double, sensor::Models>>;
 using ParameterDrive =
     Drive<double, AnyOf<double, control::Models>, AnyOf<double, motor::Models>, ParameterGear, AnyOf<double, load::Models>,

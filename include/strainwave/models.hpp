@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/compensation/models.hpp>
 #include <strainwave/control/models.hpp>
 #include <strainwave/friction/models.hpp>
 #include <strainwave/hysteresis/models.hpp>

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from strainwave import drives
 from strainwave._core import (
+    Compensation,
     Drive,
     Gear,
     PassivityWarning,
     Sensors,
+    compensation,
     control,
     friction,
     hysteresis,
@@ -138,6 +140,7 @@ __all__ = [
     "BearingOrders",
     "Bootstrap",
     "Combination",
+    "Compensation",
     "Compilation",
     "Derivatives",
     "Difference",
@@ -175,6 +178,7 @@ __all__ = [
     "check_ratings",
     "combinations",
     "compare",
+    "compensation",
     "compile",
     "control",
     "derivatives",

@@ -9,6 +9,7 @@ import numpy
 import numpy.typing
 
 from strainwave import (
+    compensation as compensation,
     control as control,
     friction as friction,
     hysteresis as hysteresis,
@@ -24,6 +25,7 @@ from strainwave import (
     thermal as thermal,
     variation as variation
 )
+import strainwave.compensation
 import strainwave.control
 import strainwave.friction
 import strainwave.hysteresis
@@ -45,34 +47,6 @@ families: dict[str, dict[str, type[Any]]]
 
 class PassivityWarning(UserWarning):
     """A set of parameters lets its model create energy."""
-
-class Signal:
-    """
-    A command or another input over time, as the compiled loops know it: a line in pieces, and waves.
-    """
-
-    def __init__(self, start: numpy.typing.NDArray[numpy.float64], level: numpy.typing.NDArray[numpy.float64], slope: numpy.typing.NDArray[numpy.float64], waves: numpy.typing.NDArray[numpy.float64]) -> None:
-        """
-        Pieces of a line, shape (n,) each, and amplitude, frequency, sweep and phase of each wave, shape (m, 4).
-        """
-
-    def at(self, instants: numpy.typing.NDArray[numpy.float64], before: bool) -> numpy.typing.NDArray[numpy.float64]:
-        """Values and rates at `instants` [s], or just before them: shape (2, …)."""
-
-def inputs(command: Signal, load: Signal, temperature: Signal, instants: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-    """
-    Command, input of the load and temperature, each with its rate, at start, middle and end of each step: shape (n, 3, 6).
-    """
-
-def grid(step: float, duration: float, tolerance: float) -> numpy.typing.NDArray[numpy.float64]:
-    """
-    0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.
-    """
-
-def time_grid(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8], float]:
-    """
-    All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the longest step from one to the next.
-    """
 
 class Gear:
     """
@@ -223,6 +197,119 @@ class Gear:
 
     @staticmethod
     def from_datasheet(ratio: float, **figures: Any) -> Gear: ...
+
+class Compensation:
+    """
+    What a sampled controller is given beside the error: what a model, a learner and an observer know of the drive.
+
+    .. math:: \\theta_r = i r + \\theta_f + \\theta_l, \\qquad u_f = p\\,(\\tau_f + \\tau_l + \\tau_o) + q\\,\\dot\\theta_r
+
+    with r the commanded output angle, theta_f, theta_l the leads of the input, tau_f, tau_l, tau_o the torques that feed-forward,
+    learner and observer ask for, one after the other; p = actuation_per_torque, q = actuation_per_speed. The controller
+    follows theta_r with the input and r with the output, and adds u_f to what it asks for, before any limit.
+
+    p is 1 N.m/(N.m) for a motor that takes a torque, 1 over the torque constant for one that takes a current and for a
+    Cascade, and the resistance over the torque constant for one that takes a voltage, with q the back-EMF constant.
+
+    >>> import strainwave as sw
+    >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))
+    >>> sw.control.Sampled(law=sw.control.PositionSpeed(), compensation=part).compensation.observer.limit
+    0.3
+
+    Parameters
+    ----------
+    feedforward: What a model of the drive asks for; default NoFeedforward()
+    learning: What is learnt of what repeats; default NoLearning()
+    observer: What is observed to be missing; default NoObserver()
+    actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
+    actuation_per_speed: What the motor takes, per input speed q: its back-EMF [s/rad]; default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition
+    """
+
+    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def feedforward(self) -> strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap:
+        """What a model of the drive asks for"""
+
+    @property
+    def learning(self) -> strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive:
+        """What is learnt of what repeats"""
+
+    @property
+    def observer(self) -> strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale:
+        """What is observed to be missing"""
+
+    @property
+    def actuation_per_torque(self) -> float:
+        """What the motor takes, per torque p [1/(N.m)]"""
+
+    @property
+    def actuation_per_speed(self) -> float:
+        """What the motor takes, per input speed q: its back-EMF [s/rad]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'compensation'
+
+    source: str = 'definition'
+
+    fields: tuple[dict[str, Any], ...]
+
+    @property
+    def active(self) -> bool:
+        """Whether it makes any difference."""
+
+class Signal:
+    """
+    A command or another input over time, as the compiled loops know it: a line in pieces, and waves.
+    """
+
+    def __init__(self, start: numpy.typing.NDArray[numpy.float64], level: numpy.typing.NDArray[numpy.float64], slope: numpy.typing.NDArray[numpy.float64], waves: numpy.typing.NDArray[numpy.float64]) -> None:
+        """
+        Pieces of a line, shape (n,) each, and amplitude, frequency, sweep and phase of each wave, shape (m, 4).
+        """
+
+    def at(self, instants: numpy.typing.NDArray[numpy.float64], before: bool) -> numpy.typing.NDArray[numpy.float64]:
+        """Values and rates at `instants` [s], or just before them: shape (2, …)."""
+
+def inputs(command: Signal, load: Signal, temperature: Signal, instants: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Command, input of the load and temperature, each with its rate, at start, middle and end of each step: shape (n, 3, 6).
+    """
+
+def grid(step: float, duration: float, tolerance: float) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.
+    """
+
+def time_grid(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8], float]:
+    """
+    All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the longest step from one to the next.
+    """
 
 class Sensors:
     """

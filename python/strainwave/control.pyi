@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import strainwave._core
+
 
 class OpenLoop:
     """
@@ -639,7 +641,8 @@ class Sampled:
     with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
     t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
     lambda = 1 / b: over a period it moves as it does under a constant input, which its second section does not have: that one is
-    of first order in T, as an integral is. Before the first output the actuation is 0.
+    of first order in T, as an integral is. Before the first output the actuation is 0. ``compensation`` adds to the command at each
+    instant what it knows of the drive.
     Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
     sampled itself.
 
@@ -653,6 +656,7 @@ class Sampled:
     Parameters
     ----------
     law: What is worked out at each instant; default OpenLoop(gain=1.0)
+    compensation: What is known of the drive, and asked for beside the error; default Compensation(feedforward=NoFeedforward(), learning=NoLearning(), observer=NoObserver(), actuation_per_torque=1.0, actuation_per_speed=0.0)
     period: Time from one sample to the next [s], in (0, inf); default 0.001
     delay: Time from a sample to the output that is worked out from it [s], in [0, inf); default 0.0
 
@@ -666,9 +670,9 @@ class Sampled:
     AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly for a constant input
     """
 
-    def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., period: float = ..., delay: float = ...) -> None: ...
+    def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., compensation: strainwave._core.Compensation = ..., period: float = ..., delay: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., period: float = ..., delay: float = ...) -> Sampled:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., compensation: strainwave._core.Compensation = ..., period: float = ..., delay: float = ...) -> Sampled:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -676,6 +680,10 @@ class Sampled:
     @property
     def law(self) -> OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback:
         """What is worked out at each instant"""
+
+    @property
+    def compensation(self) -> strainwave._core.Compensation:
+        """What is known of the drive, and asked for beside the error"""
 
     @property
     def period(self) -> float:

@@ -3,9 +3,23 @@
 #include <strainwave/control/models.hpp>
 #include <strainwave/fastest.hpp>
 
+#include "compensation.hpp"
 #include "laws.hpp"
 
 namespace strainwave::general {
+
+namespace detail {
+
+template <class S>
+struct AroundAny {
+    using type = control::Sampled<S, Control<S>, AnyCompensation<S>>;
+};
+template <>
+struct Around<control::Sampled<double>, Control<double>> : AroundAny<double> {};
+template <>
+struct Around<control::Sampled<Slope>, Control<Slope>> : AroundAny<Slope> {};
+
+}  // namespace detail
 
 template <class S>
 using ControlLaws = Laws<S, control::Models, Control<S>>;
@@ -20,7 +34,7 @@ void Control<S>::places(Places& found) const {
 }
 template <class S>
 void Control<S>::discrete_places(Places& found) const {
-    ControlLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S, control::DiscreteOf<S, Law>>(law, found); });
+    ControlLaws<S>::visit(*this, [&](const auto& law) { add_places<S>(law, control::initial_discrete<S>(law), found); });
 }
 template <class S>
 auto Control<S>::initial_state() const -> State {

@@ -23,7 +23,7 @@ void Thermal<S>::places(Places& found) const {
 }
 template <class S>
 void Thermal<S>::output_places(Places& found) const {
-    ThermalLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S, typename Law::Output>(law, found); });
+    ThermalLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S>(law, typename Law::Output{}, found); });
 }
 template <class S>
 auto Thermal<S>::initial_state() const -> State {
@@ -64,7 +64,7 @@ void Meter<S>::places(Places& found) const {
 }
 template <class S>
 void Meter<S>::output_places(Places& found) const {
-    MeterLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S, typename Law::Output>(law, found); });
+    MeterLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S>(law, typename Law::Output{}, found); });
 }
 template <class S>
 auto Meter<S>::initial_state() const -> State {

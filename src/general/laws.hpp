@@ -75,29 +75,39 @@ private:
     }
 };
 
-// A state is nothing but scalars, so it fits the slots as it lies in memory. Slots that hold none stand for no history.
+// A state of a fixed size is nothing but scalars, so it fits the slots as it lies in memory; one with parts of other laws is copied
+// number by number. Slots that hold none stand for no history.
 
-/// The state of a law, out of the slots of its part.
-template <class X, class S, int n, int few>
-X unpacked(const Storage<S, n, few>& slots) {
+namespace detail {
+template <class S, class X>
+inline constexpr bool is_of_fixed_size = strainwave::detail::counter_of<S, X>.fixed;
+}
+
+/// The state of a law, out of the slots of its part; `begun()` is that without history.
+template <class X, class S, int n, int few, class Begun>
+X unpacked(const Storage<S, n, few>& slots, const Begun& begun) {
     if constexpr (std::is_same_v<X, Storage<S, n, few>>) {  // a law that varies another has its state
         return slots;
-    } else {
+    } else if constexpr (detail::is_of_fixed_size<S, X>) {
         X x{};
         if constexpr (size_of<S, X> > 0) {
             static_assert(sizeof x == size_of<S, X> * sizeof(S) && size_of<S, X> <= n);
             if (slots.slot.size() >= size_of<S, X>) std::memcpy(static_cast<void*>(&x), slots.slot.item, sizeof x);
         }
         return x;
+    } else {
+        X x = begun();
+        if (slots.slot.size() > 0) refill(x, slots.slot);
+        return x;
     }
 }
 template <class S, class Law, class Slots>
-auto own(const Law&, const Slots& slots) {
-    return unpacked<StateOf<S, Law>, S>(slots);
+auto own(const Law& law, const Slots& slots) {
+    return unpacked<StateOf<S, Law>, S>(slots, [&] { return strainwave::initial_state(law); });
 }
 template <class S, class Law, class Slots>
-auto own_discrete(const Law&, const Slots& slots) {
-    return unpacked<control::DiscreteOf<S, Law>, S>(slots);
+auto own_discrete(const Law& law, const Slots& slots) {
+    return unpacked<control::DiscreteOf<S, Law>, S>(slots, [&] { return control::initial_discrete<S>(law); });
 }
 
 /// A state or an output of a law in the slots of its part.
@@ -109,48 +119,48 @@ Slots packed(const X& x) {
         Slots slots{};
         using S = std::remove_cvref_t<decltype(slots.slot[0])>;
         constexpr int count = size_of<S, X>;
-        if constexpr (count > 0) {
-            static_assert(count <= Slots::capacity, "the storage of this family has too few slots for a law");
+        static_assert(count <= Slots::capacity, "the storage of this family has too few slots for a law");
+        if constexpr (count > 0 && detail::is_of_fixed_size<S, X>) {
             if constexpr (requires { slots.slot.count; }) slots.slot.count = count;
             std::memcpy(static_cast<void*>(slots.slot.item), &x, sizeof x);
+        } else if constexpr (count > 0) {
+            const auto numbers = flattened<S>(x);
+            slots.slot.count = numbers.size();
+            for (int i = 0; i < numbers.size(); ++i) slots.slot[i] = numbers[i];
         }
         return slots;
     }
 }
 
-/// Slots of the law within a law. A function of its own, because Clang looks for that law wherever a generic lambda names it.
-template <class Law>
-void add_inner_places(const Law& law, Places& found) {
-    law.law.places(found);
-}
-
-/// Slots of the numbers of a state or an output, in order. Of a law within a law those that it has.
+/// Slots of the numbers of a state or an output, in order; returns the slot after them. Of laws within a law those that they have.
 template <class S, class X, class Law>
-void add_places(const Law& law, Places& found, int first = 0) {
-    X names{};
-    X::fields(names, [&]<class T>(const T& member, const Field&) {
+int add_places(const Law& law, const X& x, Places& found, int first = 0) {
+    X::fields(x, [&]<class T>(const T& member, const Field& field) {
         if constexpr (is_storage<T>) {
             Places within;
-            add_inner_places(law, within);
+            with_part(law, field.name, [&](const auto& part) {
+                if constexpr (requires { part.places(within); }) part.places(within);
+            });
             for (int i = 0; i < within.count; ++i) found.add(first + within.slot[i]);
-            first += T::capacity;
+            first += member.slot.size();
         } else if constexpr (Described<T>) {
-            add_places<S, T>(law, found, first);
-            first += size_of<S, T>;
+            int end = -1;
+            with_part(law, field.name, [&](const auto& part) { end = add_places<S>(part, member, found, first); });
+            first = end < 0 ? add_places<S>(law, member, found, first) : end;
         } else if constexpr (requires { member.item; }) {
             for (int i = 0; i < member.size(); ++i) found.add(first++);
         } else {
             found.add(first++);
         }
     });
+    return first;
 }
 template <class S, class Law>
 void add_state_places(const Law& law, Places& found) {
-    using X = StateOf<S, Law>;
-    if constexpr (is_storage<X>)
+    if constexpr (is_storage<StateOf<S, Law>>)
         law.law.places(found);
     else
-        add_places<S, X>(law, found);
+        add_places<S>(law, StateOf<S, Law>(strainwave::initial_state(law)), found);
 }
 
 #define SW_GENERAL(Name)          \

@@ -19,7 +19,7 @@ void Motor<S>::places(Places& found) const {
 }
 template <class S>
 void Motor<S>::output_places(Places& found) const {
-    MotorLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S, typename Law::Output>(law, found); });
+    MotorLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S>(law, typename Law::Output{}, found); });
 }
 template <class S>
 auto Motor<S>::initial_state() const -> State {

@@ -61,6 +61,17 @@ inline constexpr bool is_storage = false;
 template <class S, int n, int few>
 inline constexpr bool is_storage<Storage<S, n, few>> = true;
 
+/// Calls f(part) with the part of a law whose name is that of a part of its state. One arranged for speed has a law alone.
+template <class Law, class F>
+void with_part(const Law& law, const char* name, const F& f) {
+    if constexpr (Described<Law>)
+        Law::fields(law, [&](const auto& part, const Field& field) {
+            if (same(field.name, name)) f(part);
+        });
+    else if constexpr (requires { law.law; })
+        if (same(name, "law")) f(law.law);
+}
+
 /// Recorded numbers of whichever law was chosen: their places do not depend on it.
 template <class S, int n>
 using OutputStorage = Storage<S, n, n>;

@@ -20,7 +20,7 @@ void Structure<S>::places(Places& found) const {
 }
 template <class S>
 void Structure<S>::output_places(Places& found) const {
-    StructureLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S, typename Law::Output>(law, found); });
+    StructureLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S>(law, typename Law::Output{}, found); });
 }
 template <class S>
 auto Structure<S>::initial_state() const -> State {

@@ -221,7 +221,7 @@ def test_a_model_that_was_never_made_is_no_part_of_another(model: Any) -> None:
 
 @given(any_value)
 def test_what_is_printed_is_what_makes_the_same_value(value: Any) -> None:
-    names = {model.__name__: model for model in [*EVERY_MODEL, sw.Sensors]}
+    names = {model.__name__: model for model in [*EVERY_MODEL, sw.Sensors, sw.Compensation, sw.Gear]}
     assert eval(repr(value), names) == value
 
 

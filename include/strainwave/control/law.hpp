@@ -27,9 +27,15 @@ namespace strainwave::control {
 /// What is asked of a drive at one instant.
 template <class S>
 struct Command {
-    S value{0.0};  ///< As the scenario gives it
-    S rate{0.0};   ///< Its time derivative
-    S ratio{1.0};  ///< Signed, of the gear: input angle per output angle
+    S value{0.0};            ///< As the scenario gives it
+    S rate{0.0};             ///< Its time derivative
+    S ratio{1.0};            ///< Signed, of the gear: input angle per output angle
+    S input_lead{0.0};       ///< How far the input is to lead `ratio * value`, rad: what the gear loses of its motion
+    S input_lead_rate{0.0};  ///< rad/s
+    S feedforward{0.0};      ///< Asked for without any error, in the unit of what the law asks for
+
+    constexpr S input_angle() const { return ratio * value + input_lead; }
+    constexpr S input_speed() const { return ratio * rate + input_lead_rate; }
 };
 
 /// What a controller knows of its drive: each number through its sensor, and what its motor can follow.
@@ -57,14 +63,14 @@ constexpr Array<const char*, 2> choices(Feedback) { return {{"input", "output"}}
 /// Commanded minus measured, of the shaft whose encoder the loop closes on, at the input: of angles [rad] and of speeds [rad/s].
 template <class S>
 constexpr S angle_error(Feedback feedback, const Command<S>& command, const Measurement<S>& measured) {
-    const S angle = feedback == Feedback::output ? command.ratio * measured.output_angle : measured.input_angle;
-    return command.ratio * command.value - angle;
+    if (feedback == Feedback::output) return command.ratio * command.value - command.ratio * measured.output_angle;
+    return command.input_angle() - measured.input_angle;
 }
 /// `commanded`: the output speed.
 template <class S>
 constexpr S speed_error(Feedback feedback, const S& commanded, const Command<S>& command, const Measurement<S>& measured) {
-    const S speed = feedback == Feedback::output ? command.ratio * measured.output_speed : measured.input_speed;
-    return command.ratio * commanded - speed;
+    if (feedback == Feedback::output) return command.ratio * commanded - command.ratio * measured.output_speed;
+    return command.ratio * commanded + command.input_lead_rate - measured.input_speed;
 }
 
 /// When a sampled law acts next [s from now]: at the first instant, and on in periods. A period of 0: it acts all the time.

@@ -59,7 +59,7 @@ struct LeadLag {
 
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const S lag = section(lead(x, command, measured), x.lag, lag_numerator / lag_denominator);
-        return measured.limits.within(limit).limited(gain * lag);
+        return measured.limits.within(limit).limited(gain * lag + command.feedforward);
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         return {(error(command, measured) - x.lead) / lead_denominator, (lead(x, command, measured) - x.lag) / lag_denominator};

@@ -48,11 +48,11 @@ struct PI {
     };
 
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        return measured.limits.within(limit).limited(asked(x, error(command, measured)));
+        return measured.limits.within(limit).limited(asked(x, command, error(command, measured)));
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const S now = error(command, measured);
-        return {measured.limits.within(limit).integral_rate(asked(x, now), now)};
+        return {measured.limits.within(limit).integral_rate(asked(x, command, now), now)};
     }
     constexpr State relaxation_rate() const { return {}; }
 
@@ -60,7 +60,9 @@ private:
     constexpr S error(const Command<S>& command, const Measurement<S>& measured) const {
         return speed_error(feedback, command.value, command, measured);
     }
-    constexpr S asked(const State& x, const S& error) const { return proportional * error + integral * x.error_integral; }
+    constexpr S asked(const State& x, const Command<S>& command, const S& error) const {
+        return proportional * error + integral * x.error_integral + command.feedforward;
+    }
 };
 
 }  // namespace strainwave::control

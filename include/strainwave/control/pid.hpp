@@ -54,11 +54,11 @@ struct PID {
     };
 
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        return measured.limits.within(limit).limited(unlimited(x, error(command, measured)));
+        return measured.limits.within(limit).limited(unlimited(x, error(command, measured), command.feedforward));
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const Error now = error(command, measured);
-        return {measured.limits.within(limit).integral_rate(unlimited(x, now), now.angle)};
+        return {measured.limits.within(limit).integral_rate(unlimited(x, now, command.feedforward), now.angle)};
     }
     constexpr State relaxation_rate() const { return {}; }
 
@@ -70,8 +70,8 @@ private:
     constexpr Error error(const Command<S>& command, const Measurement<S>& measured) const {
         return {angle_error(feedback, command, measured), speed_error(feedback, command.rate, command, measured)};
     }
-    constexpr S unlimited(const State& x, const Error& now) const {
-        return proportional * now.angle + integral * x.error_integral + derivative * now.speed;
+    constexpr S unlimited(const State& x, const Error& now, const S& feedforward) const {
+        return proportional * now.angle + integral * x.error_integral + derivative * now.speed + feedforward;
     }
 };
 

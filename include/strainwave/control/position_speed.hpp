@@ -72,13 +72,12 @@ struct PositionSpeed {
 
     /// What is asked of the motor before any limit.
     constexpr S asked(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        const S commanded = command.ratio * command.rate;
+        const S commanded = command.input_speed();
         return speed_proportional * speed_error(command, measured) + speed_integral * x.speed_integral +
-               viscous_feedforward * commanded + coulomb_feedforward * sign(commanded);
+               viscous_feedforward * commanded + coulomb_feedforward * sign(commanded) + command.feedforward;
     }
     constexpr S speed_error(const Command<S>& command, const Measurement<S>& measured) const {
-        const S wanted =
-            position_gain * angle_error(feedback, command, measured) + speed_feedforward * command.ratio * command.rate;
+        const S wanted = position_gain * angle_error(feedback, command, measured) + speed_feedforward * command.input_speed();
         return clip(wanted, -speed_limit, speed_limit) - measured.input_speed;
     }
 };

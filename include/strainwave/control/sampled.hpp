@@ -1,13 +1,16 @@
 #pragma once
+#include <strainwave/compensation/compensation.hpp>
 #include <strainwave/control/pid.hpp>
 
 namespace strainwave::control {
 
-template <class S, class Law_ = PID<S>>
+template <class S, class Law_ = PID<S>, class Compensation_ = Compensation<S>>
 struct Sampled {
     using Law = Law_;
+    using Compensation = Compensation_;
 
     Law law{};
+    Compensation compensation{};
     S period{1e-3};
     S delay{0.0};
 
@@ -24,7 +27,8 @@ struct Sampled {
         with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
         t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
         lambda = 1 / b: over a period it moves as it does under a constant input, which its second section does not have: that one is
-        of first order in T, as an integral is. Before the first output the actuation is 0.
+        of first order in T, as an integral is. Before the first output the actuation is 0. ``compensation`` adds to the command at each
+        instant what it knows of the drive.
         Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
         sampled itself.
 
@@ -38,6 +42,7 @@ struct Sampled {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, law, "What is worked out at each instant"));
+        visit(SW_PART(m, compensation, "What is known of the drive, and asked for beside the error"));
         visit(SW_FIELD(m, period, "s", "Time from one sample to the next", smallest));
         visit(SW_FIELD(m, delay, "s", "Time from a sample to the output that is worked out from it", 0));
     }
@@ -50,6 +55,7 @@ struct Sampled {
     /// Zero before the first sample, which is then taken at once.
     struct Discrete {
         typename Law::State law{};
+        typename Compensation::State compensation{};
         S actuation{0.0};
         S pending{0.0};
         S until_sample{0.0};
@@ -57,12 +63,18 @@ struct Sampled {
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_PART(m, law, "State of the law"));
+            visit(SW_PART(m, compensation, "State of the compensation"));
             visit(SW_FIELD(m, actuation, "1", "What the motor is given, in its unit"));
             visit(SW_FIELD(m, pending, "1", "What it is given once it is computed"));
             visit(SW_FIELD(m, until_sample, "s", "Time until the next sample"));
         }
     };
 
+    constexpr Discrete initial_discrete() const { return {{}, compensation.initial_state(), S(0.0), S(0.0), S(0.0)}; }
+    constexpr auto compile() const {
+        return Sampled<S, decltype(compiled(law)), decltype(compensation.compile())>{compiled(law), compensation.compile(), period,
+                                                                                     delay};
+    }
     constexpr S held(const Discrete& x) const { return x.actuation; }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
@@ -78,12 +90,16 @@ struct Sampled {
                                const Measurement<S>& measured) const {
         const Discrete x = with_output(before, within);  // a delay of a whole period ends where the next sample begins
         const auto now = sample_is_due(x, within);
-        const auto rate = flattened<S>(law.rate(x.law, command, measured)), relaxation = flattened<S>(law.relaxation_rate());
+        const auto instant = compensation.instant(x.compensation, command, measured, period);
+        const Command<S> asked = instant.command(compensation);
+        const auto rate = flattened<S>(law.rate(x.law, asked, measured)), relaxation = flattened<S>(law.relaxation_rate());
         auto numbers = flattened<S>(x.law);
         for (int i = 0; i < numbers.size(); ++i) numbers[i] = select(now, numbers[i] + reach(relaxation[i]) * rate[i], numbers[i]);
-        const S pending = select(now, law.act(x.law, command, measured), x.pending);
+        const S actuation = law.act(x.law, asked, measured), pending = select(now, actuation, x.pending);
+        const auto compensated = compensation.advance(x.compensation, instant, actuation, period);
         const S until_sample = select(now, x.until_sample + period, x.until_sample);
-        return with_output({refilled(x.law, numbers), x.actuation, pending, until_sample}, within);
+        return with_output({refilled(x.law, numbers), chosen<S>(now, compensated, x.compensation), x.actuation, pending, until_sample},
+                           within);
     }
     constexpr Schedule<S> schedule(const Discrete& x) const { return {x.until_sample, period, delay}; }
 

@@ -48,11 +48,12 @@ struct StateFeedback {
 
     constexpr bool needs_current() const { return sought(current) || any(!(current == S(0.0))); }
     constexpr S act(const State&, const Command<S>& command, const Measurement<S>& measured) const {
-        const S of_input = input_angle * (command.ratio * command.value - measured.input_angle) +
-                           input_speed * (command.ratio * command.rate - measured.input_speed);
+        const S of_input = input_angle * (command.input_angle() - measured.input_angle) +
+                           input_speed * (command.input_speed() - measured.input_speed);
         const S of_output =
             output_angle * (command.value - measured.output_angle) + output_speed * (command.rate - measured.output_speed);
-        return measured.limits.within(limit).limited(of_input + of_output - current * measured.current - torque * measured.torque);
+        return measured.limits.within(limit).limited(of_input + of_output - current * measured.current - torque * measured.torque +
+                                                      command.feedforward);
     }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }

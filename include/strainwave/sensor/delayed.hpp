@@ -38,12 +38,12 @@ struct Delayed {
 
     struct State {
         Array<S, sections> section{};
-        typename Law::State own{};
+        typename Law::State law{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, section, "1", "What is under way, in the unit of what it measures"));
-            visit(SW_PART(m, own, "State of the sensor without delay"));
+            visit(SW_PART(m, law, "State of the sensor without delay"));
         }
     };
 
@@ -51,13 +51,13 @@ struct Delayed {
 
     constexpr State initial_state() const { return {}; }
     constexpr S shown(const State& x, const S& value) const {
-        S passing = law.shown(x.own, value);
+        S passing = law.shown(x.law, value);
         for (int i = 0; i < sections; ++i) passing = S(2.0) * x.section[i] - passing;
         return passing;
     }
     constexpr State rate(const State& x, const S& value) const {
-        State rate{{}, law.rate(x.own, value)};
-        S passing = law.shown(x.own, value);
+        State rate{{}, law.rate(x.law, value)};
+        S passing = law.shown(x.law, value);
         for (int i = 0; i < sections; ++i) {
             rate.section[i] = (passing - x.section[i]) * per_second();
             passing = S(2.0) * x.section[i] - passing;
@@ -71,7 +71,7 @@ struct Delayed {
     constexpr S fastest() const { return max(strainwave::fastest<S>(law), per_second()); }
     constexpr State settled(const S& value) const {
         State x{{}, law.settled(value)};
-        for (int i = 0; i < sections; ++i) x.section[i] = law.shown(x.own, value);
+        for (int i = 0; i < sections; ++i) x.section[i] = law.shown(x.law, value);
         return x;
     }
 

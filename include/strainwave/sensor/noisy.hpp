@@ -42,12 +42,12 @@ struct Noisy {
 
     struct State {
         S clock{0.0};
-        typename Law::State own{};
+        typename Law::State law{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, clock, "s", "Time since the start"));
-            visit(SW_PART(m, own, "State of the sensor without noise"));
+            visit(SW_PART(m, law, "State of the sensor without noise"));
         }
     };
 
@@ -60,8 +60,8 @@ struct Noisy {
         Spectrum<S> spectrum{};
 
         constexpr State initial_state() const { return {}; }
-        constexpr S shown(const State& x, const S& value) const { return law.shown(x.own, value) + weight * spectrum.sum(x.clock); }
-        constexpr State rate(const State& x, const S& value) const { return {S(1.0), law.rate(x.own, value)}; }
+        constexpr S shown(const State& x, const S& value) const { return law.shown(x.law, value) + weight * spectrum.sum(x.clock); }
+        constexpr State rate(const State& x, const S& value) const { return {S(1.0), law.rate(x.law, value)}; }
         constexpr State relaxation_rate() const { return {S(0.0), law.relaxation_rate()}; }
         constexpr State settled(const S& value) const { return {S(0.0), law.settled(value)}; }
         constexpr S fastest() const { return strainwave::fastest<S>(law); }

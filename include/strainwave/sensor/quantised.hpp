@@ -35,11 +35,11 @@ struct Quantised {
     }
 
     struct State {
-        typename Law::State own{};
+        typename Law::State law{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_PART(m, own, "State of the sensor without steps"));
+            visit(SW_PART(m, law, "State of the sensor without steps"));
         }
     };
 
@@ -47,13 +47,13 @@ struct Quantised {
 
     constexpr State initial_state() const { return {}; }
     constexpr S shown(const State& x, const S& value) const {
-        const S exact = law.shown(x.own, value), read = resolution * rint(exact / resolution);
+        const S exact = law.shown(x.law, value), read = resolution * rint(exact / resolution);
         if constexpr (differentiates<S>)
             return exact + detached(read - exact);
         else
             return read;
     }
-    constexpr State rate(const State& x, const S& value) const { return {law.rate(x.own, value)}; }
+    constexpr State rate(const State& x, const S& value) const { return {law.rate(x.law, value)}; }
     constexpr State relaxation_rate() const { return {law.relaxation_rate()}; }
     constexpr State settled(const S& value) const { return {law.settled(value)}; }
     constexpr S fastest() const { return strainwave::fastest<S>(law); }

@@ -134,7 +134,8 @@ def _inner(path: str, model: Any) -> list[_Table]:
     tables = []
     for part in parts(model):
         default = default_of(model, part.name)
-        absent = None if list(all_paths("", default)) else default  # without numbers, so without a source
+        # one without numbers, so without a source, or that does nothing
+        absent = default if not (getattr(default, "active", True) and list(all_paths("", default))) else None
         tables.append(_Table(part.name, f"{path}.{part.name}", part.options or {}, type(default), absent, absent is None))
     return tables
 

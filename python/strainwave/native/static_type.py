@@ -14,6 +14,9 @@ PARAMETERS = {
         *("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis"),
         *("friction_input", "friction_mesh", "friction_output", "softening", "structure", "stiffness_variation"),
     ),
+    _core.control.Sampled: ("law", "compensation"),
+    _core.Compensation: ("feedforward", "learning", "observer"),
+    _core.compensation.ModelFeedforward: ("gear", "load"),
 }
 NAMESPACES = {"loads": "load"}  # the function `strainwave.load` takes that name in Python
 
@@ -63,8 +66,16 @@ def _differences(part: Any, default: Any) -> Iterator[str]:
 
 def _short(law: Any) -> str:
     """Return the model of a law with those of the laws that it varies: Thermal(LuGre)."""
-    inner = [_short(getattr(law, name)) for name in parameters(type(law))]
+    inner = [words for name in parameters(type(law)) for words in _inner(getattr(law, name))]
     return type(law).__name__ + (f"({', '.join(dict.fromkeys(inner))})" if inner else "")
+
+
+def _inner(part: Any) -> Iterator[str]:
+    """Yield the model of a law within another, or where parts of one kind differ from those by default."""
+    if type(part) in PARAMETERS and type(part) is not _core.control.Sampled:
+        yield from _differences(part, type(part)())
+    else:
+        yield _short(part)
 
 
 def _template(kind: type[Any]) -> str:

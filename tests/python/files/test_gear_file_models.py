@@ -74,8 +74,8 @@ def test_no_parameter_of_any_model_may_be_left_out(
     written = Path("whole.toml").read_text(encoding="utf-8")
     for parameter in model.fields:
         text = without(written, ".".join(keys), parameter["name"])
-        if parameter["kind"] == "part" and text == written:
-            continue  # a part that does nothing has no table
+        if parameter["kind"] == "part" and (text == written or not getattr(parameter["default"], "active", True)):
+            continue  # a part that does nothing has no table, or needs none
         Path("my.toml").write_text(text, encoding="utf-8")
         header = re.escape(f"[{'.'.join(keys)}]")
         with pytest.raises(ValueError, match=rf"^my\.toml {header} {parameter['name']} is missing; write "):

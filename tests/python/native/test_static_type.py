@@ -21,12 +21,14 @@ USE = "inline auto started_{number}() {{ return {drive}{{}}.compile().initial_st
 
 
 def laws(kind: Any) -> Iterator[Any]:
-    """A law of usual numbers with each law in turn that it may hold."""
-    held = [field for field in kind.fields if field["kind"] == "part" and field["options"]]
+    """A law of usual numbers with each law in turn that it may hold; of a gear in it, the usual ones."""
     yield made(kind)
-    for field in held:
-        for option in field["options"].values():
-            yield from (made(kind, **{field["name"]: law}) for law in laws(option))
+    for field in kind.fields:
+        name, options = field["name"], field["options"]
+        if field["kind"] == "part" and options:
+            yield from (made(kind, **{name: law}) for option in options.values() for law in laws(option))
+        elif field["kind"] == "part" and type(field["default"]) is not sw.Gear:
+            yield from (made(kind, **{name: part}) for part in with_part(type(field["default"]), field["default"]))
 
 
 def with_part(kind: Any, base: Any) -> Iterator[Any]:
@@ -69,7 +71,9 @@ def test_the_type_is_that_of_the_laws() -> None:
         meter=sw.meter.EnergyMeter(),
     )
     assert static_type(drive, "float") == (
-        "strainwave::Drive<float, strainwave::control::Sampled<float, strainwave::control::PID<float>>, "
+        "strainwave::Drive<float, strainwave::control::Sampled<float, strainwave::control::PID<float>, "
+        "strainwave::Compensation<float, strainwave::compensation::NoFeedforward<float>, "
+        "strainwave::compensation::NoLearning<float>, strainwave::compensation::NoObserver<float>>>, "
         "strainwave::motor::DC<float>, strainwave::Gear<float, strainwave::kinematics::StrainWave<float>, "
         "strainwave::kinematic_error::Fourier<float>, strainwave::kinematic_error::Stochastic<float>, "
         "strainwave::stiffness::Linear<float>, "

@@ -1,0 +1,94 @@
+#pragma once
+#include <strainwave/angle.hpp>
+#include <strainwave/compensation/compensator.hpp>
+
+namespace strainwave::compensation {
+
+template <class S>
+struct AdaptiveFourier {
+    static constexpr int capacity = 4;
+
+    Sequence<S, capacity> order{};
+    S gain{5.0};
+    S lag{0.0};
+    S slowest{1.0};
+    S fastest{100.0};
+    S limit{1e-3};
+
+    static constexpr auto name = "adaptive_fourier";
+    static constexpr auto source =
+        "BodsonSacksKhosla1994, adaptive feedforward cancellation, over the input angle in place of time; its rate by averaging "
+        "(SandersVerhulstMurdock2007)";
+    static constexpr auto doc = R"(
+        Learning of what repeats as the wave generator turns: one sine and one cosine for each order.
+
+        .. math:: \hat e = \sum_n a_n \sin n\theta + b_n \cos n\theta, \qquad
+                  \dot a_n = \gamma\, (r - \theta_{out}) \sin(n\theta - \varphi_n), \quad
+                  \dot b_n = \gamma\, (r - \theta_{out}) \cos(n\theta - \varphi_n), \qquad \varphi_n = n\, \omega\, t_{lag}
+
+        with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag, which the
+        position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
+        constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
+        grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``fastest``, and where omega is below
+        ``slowest``. No amplitude exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+
+        >>> from strainwave.compensation import AdaptiveFourier
+        >>> AdaptiveFourier(order=[1, 2]).gain
+        5.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input", smallest));
+        visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which the amplitudes follow the error", 0));
+        visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
+        visit(SW_FIELD(m, slowest, "rad/s", "Input speed below which it does not learn", 0));
+        visit(SW_FIELD(m, fastest, "rad/s", "Frequency n |omega| of a wave above which it does not learn", smallest));
+        visit(SW_FIELD(m, limit, "rad", "Largest amplitude at the output", 0));
+    }
+
+    struct State {
+        Array<S, capacity> sine{}, cosine{};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, sine, "rad", "Amplitude of the sine of each order"));
+            visit(SW_FIELD(m, cosine, "rad", "Amplitude of the cosine of each order"));
+        }
+    };
+
+    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
+        Asked<S> asked{};
+        for (int n = 0; n < order.count; ++n) {
+            const SinCos<S> at = wave(order[n], plan.measured.input_angle, S(0.0));
+            const S pace = order[n] * plan.input_speed();
+            asked.input_lead = asked.input_lead + x.sine[n] * at.sin + x.cosine[n] * at.cos;
+            asked.input_lead_rate = asked.input_lead_rate + pace * (x.sine[n] * at.cos - x.cosine[n] * at.sin);
+        }
+        asked.input_lead = plan.command.ratio * asked.input_lead;
+        asked.input_lead_rate = plan.command.ratio * asked.input_lead_rate;
+        return asked;
+    }
+    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
+        const S speed = plan.input_speed(), error = plan.command.value - plan.measured.output_angle;
+        State later = x;
+        for (int n = 0; n < order.count; ++n) {
+            const S pace = order[n] * speed;
+            const S learnt = select(abs(pace) < fastest, gain * period * error, S(0.0));
+            const S step = select(abs(speed) < slowest, S(0.0), learnt);
+            const SinCos<S> at = wave(order[n], plan.measured.input_angle, pace * lag);
+            later.sine[n] = clip(x.sine[n] + step * at.sin, -limit, limit);
+            later.cosine[n] = clip(x.cosine[n] + step * at.cos, -limit, limit);
+        }
+        return later;
+    }
+
+private:
+    /// Of an order, behind the angle by a phase.
+    static constexpr SinCos<S> wave(const S& order, const S& angle, const S& phase) {
+        const S turns = rint(angle * S(0.5 / pi)), turned = order * turns;
+        const S within = order * (angle - S(2.0 * pi) * turns);
+        return sincos(within - phase + S(2.0 * pi) * (turned - rint(turned)));
+    }
+};
+
+}  // namespace strainwave::compensation

@@ -1,0 +1,102 @@
+#pragma once
+#include <strainwave/compensation/compensator.hpp>
+#include <strainwave/compensation/none.hpp>
+
+namespace strainwave {
+
+/// The state of each compensator.
+template <class S, class Feedforward, class Learning, class Observer>
+struct CompensationStates {
+    Feedforward feedforward{};
+    Learning learning{};
+    Observer observer{};
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, feedforward, "State of the feed-forward"));
+        visit(SW_PART(m, learning, "What is learnt"));
+        visit(SW_PART(m, observer, "State of the observer"));
+    }
+};
+
+template <class S, class Feedforward = compensation::NoFeedforward<S>, class Learning = compensation::NoLearning<S>,
+          class Observer = compensation::NoObserver<S>>
+struct Compensation {
+    Feedforward feedforward{};
+    Learning learning{};
+    Observer observer{};
+    S actuation_per_torque{1.0};
+    S actuation_per_speed{0.0};
+
+    static constexpr auto name = "compensation";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        What a sampled controller is given beside the error: what a model, a learner and an observer know of the drive.
+
+        .. math:: \theta_r = i r + \theta_f + \theta_l, \qquad u_f = p\,(\tau_f + \tau_l + \tau_o) + q\,\dot\theta_r
+
+        with r the commanded output angle, theta_f, theta_l the leads of the input, tau_f, tau_l, tau_o the torques that feed-forward,
+        learner and observer ask for, one after the other; p = actuation_per_torque, q = actuation_per_speed. The controller
+        follows theta_r with the input and r with the output, and adds u_f to what it asks for, before any limit.
+
+        p is 1 N.m/(N.m) for a motor that takes a torque, 1 over the torque constant for one that takes a current and for a
+        Cascade, and the resistance over the torque constant for one that takes a voltage, with q the back-EMF constant.
+
+        >>> import strainwave as sw
+        >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))
+        >>> sw.control.Sampled(law=sw.control.PositionSpeed(), compensation=part).compensation.observer.limit
+        0.3)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, feedforward, "What a model of the drive asks for"));
+        visit(SW_PART(m, learning, "What is learnt of what repeats"));
+        visit(SW_PART(m, observer, "What is observed to be missing"));
+        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
+        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed q: its back-EMF"));
+    }
+
+    constexpr auto compile() const {
+        return Compensation<S, decltype(compiled(feedforward)), decltype(compiled(learning)), decltype(compiled(observer))>{
+            compiled(feedforward), compiled(learning), compiled(observer), actuation_per_torque, actuation_per_speed};
+    }
+
+    using State =
+        CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State>;
+    constexpr State initial_state() const {
+        return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer)};
+    }
+
+    /// All that is asked for at an instant, one after the other.
+    struct Instant {
+        typename Feedforward::State feedforward;  ///< a period later
+        compensation::Plan<S> planned, learnt;    ///< what learner and observer go by
+        compensation::Asked<S> learning, observer;
+
+        /// The command as the controller follows it.
+        constexpr control::Command<S> command(const Compensation& with) const {
+            const compensation::Asked<S> asked = learnt.asked + observer;
+            control::Command<S> command = learnt.command;
+            command.input_lead = asked.input_lead;
+            command.input_lead_rate = asked.input_lead_rate;
+            command.feedforward = with.actuation_per_torque * asked.torque + with.actuation_per_speed * command.input_speed();
+            return command;
+        }
+    };
+    constexpr Instant instant(const State& x, const control::Command<S>& command, const control::Measurement<S>& measured,
+                              const S& period) const {
+        const auto model = feedforward.planned(x.feedforward, command, period);
+        const compensation::Plan<S> planned{command, measured, model.asked};
+        const compensation::Asked<S> learning_asks = learning.added(x.learning, planned);
+        const compensation::Plan<S> learnt{command, measured, model.asked + learning_asks};
+        return {model.later, planned, learnt, learning_asks, observer.added(x.observer, learnt)};
+    }
+    /// The state a period later, where the motor was given an actuation.
+    constexpr State advance(const State& x, const Instant& now, const S& actuation, const S& period) const {
+        const S given = (actuation - actuation_per_speed * now.learnt.measured.input_speed) / actuation_per_torque;
+        return {now.feedforward, learning.advance(x.learning, now.planned, now.learning, given, period),
+                observer.advance(x.observer, now.learnt, now.observer, given, period)};
+    }
+};
+
+}  // namespace strainwave

@@ -1,0 +1,59 @@
+#pragma once
+#include <strainwave/compensation/compensator.hpp>
+
+namespace strainwave::compensation {
+
+template <class S>
+struct FrictionScale {
+    S gain{1.0};
+    S least{0.5};
+    S most{1.5};
+    S slowest{1.0};
+
+    static constexpr auto name = "friction_scale";
+    static constexpr auto source = "SlotineLi1991, section 8.2: gradient of a Lyapunov function, linear in the unknown";
+    static constexpr auto doc = R"(
+        Observer of how much more or less friction there is than a model has: it wears, warms up, cools down.
+
+        .. math:: \tau \leftarrow \tau + (\hat s - 1) F, \qquad \dot{\hat s} = \gamma F\, (\omega_r - \omega)
+                  \;\text{ where } |\omega_r| \ge \omega_{min}, \qquad \hat s \in [s_{min}, s_{max}]
+
+        with F the friction that the feed-forward asks for, omega_r and omega the input speed commanded and measured,
+        gamma = gain, omega_min = slowest, s_min, s_max = least, most. With J the inertia at the input and a speed loop that takes
+        energy away, J (omega_r - omega)^2 + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it must be
+        small. The motion determines s only while it moves, so below omega_min it stands still.
+
+        >>> from strainwave.compensation import FrictionScale
+        >>> FrictionScale(gain=5.0).most
+        1.5)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error of the input speed", 0));
+        visit(SW_FIELD(m, least, "1", "Least scale s_min, of the friction of the model", 0, 1));
+        visit(SW_FIELD(m, most, "1", "Largest scale s_max", 1, 10));
+        visit(SW_FIELD(m, slowest, "rad/s", "Slowest commanded input speed omega_min that determines the scale", 0));
+    }
+
+    struct State {
+        S scale{1.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, scale, "1", "Friction over that of the model"));
+        }
+    };
+
+    constexpr State initial_state() const { return {}; }
+    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
+        const S friction = (x.scale - S(1.0)) * plan.asked.friction;
+        return {S(0.0), S(0.0), friction, friction};
+    }
+    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
+        const S wanted = plan.input_speed(), error = wanted - plan.measured.input_speed;
+        const S moved = select(abs(wanted) < slowest, S(0.0), gain * plan.asked.friction * error * period);
+        return {clip(x.scale + moved, least, most)};
+    }
+};
+
+}  // namespace strainwave::compensation

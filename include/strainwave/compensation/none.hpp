@@ -1,0 +1,68 @@
+#pragma once
+#include <strainwave/compensation/compensator.hpp>
+
+namespace strainwave::compensation {
+
+template <class S>
+struct NoFeedforward {
+    static constexpr auto name = "no_feedforward";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        No feed-forward of a model: the controller acts on the error alone.
+
+        .. math:: \tau_f = 0
+
+        >>> from strainwave.compensation import NoFeedforward
+        >>> NoFeedforward()
+        NoFeedforward())";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    using State = Stateless<S>;
+    constexpr Planned<S, State> planned(const State&, const control::Command<S>&, const S&) const { return {}; }
+};
+
+template <class S>
+struct NoObserver {
+    static constexpr auto name = "no_observer";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        No observer: what disturbs the drive is not estimated.
+
+        .. math:: \hat d = 0
+
+        >>> from strainwave.compensation import NoObserver
+        >>> NoObserver()
+        NoObserver())";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    using State = Stateless<S>;
+    constexpr Asked<S> added(const State&, const Plan<S>&) const { return {}; }
+    constexpr State advance(const State&, const Plan<S>&, const Asked<S>&, const S&, const S&) const { return {}; }
+};
+
+template <class S>
+struct NoLearning {
+    static constexpr auto name = "no_learning";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        No learning: what repeats with the angle is not corrected.
+
+        .. math:: \hat e = 0
+
+        >>> from strainwave.compensation import NoLearning
+        >>> NoLearning()
+        NoLearning())";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    using State = Stateless<S>;
+    constexpr Asked<S> added(const State&, const Plan<S>&) const { return {}; }
+    constexpr State advance(const State&, const Plan<S>&, const Asked<S>&, const S&, const S&) const { return {}; }
+};
+
+}  // namespace strainwave::compensation

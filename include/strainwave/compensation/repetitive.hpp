@@ -1,0 +1,95 @@
+#pragma once
+#include <strainwave/compensation/compensator.hpp>
+
+namespace strainwave::compensation {
+
+template <class S>
+struct Repetitive {
+    static constexpr int cells = 32;
+
+    S gain{5.0};
+    S smoothing{0.0};
+    S lag{0.0};
+    S slowest{1.0};
+    S fastest{30.0};
+    S limit{1e-3};
+
+    static constexpr auto name = "repetitive";
+    static constexpr auto source =
+        "HaraYamamotoOmataNakano1988, repetitive control with a filter Q, over the input angle in place of time and with local "
+        "functions in place of a delay";
+    static constexpr auto doc = R"(
+        Learning of whatever repeats with every turn of the wave generator, of any shape: a table over the input angle.
+
+        .. math:: \hat e(\theta) = \sum_j c_j\, w_j(\theta), \qquad \dot c_j = \gamma\, w_j(\theta - \omega\, t_{lag})\,
+                  (r - \theta_{out}) - \sigma\, w_j(\theta)\,\big(c_j - \tfrac{1}{2}(c_{j-1} + c_{j+1})\big)
+
+        with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing: the filter Q, which takes away what
+        changes from cell to cell, t_lag = lag of the position loop. The input leads by i e^. It learns where the input speed lies
+        between ``slowest`` and ``fastest``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
+        exceeds ``limit``. Orders above 8 are learnt in part only, and what does not repeat with the input, as the second harmonic
+        of the other spline, not at all: AdaptiveFourier takes any order.
+
+        >>> from strainwave.compensation import Repetitive
+        >>> Repetitive(gain=10.0).limit
+        0.001)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which a cell follows the error", 0));
+        visit(SW_FIELD(m, smoothing, "1/s", "Rate sigma at which a cell follows its neighbours", 0));
+        visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
+        visit(SW_FIELD(m, slowest, "rad/s", "Input speed below which it does not learn", 0));
+        visit(SW_FIELD(m, fastest, "rad/s", "Input speed above which it does not learn", smallest));
+        visit(SW_FIELD(m, limit, "rad", "Largest value at the output", 0));
+    }
+
+    struct State {
+        Array<S, cells> value{};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, value, "rad", "Value at the begin of each cell"));
+        }
+    };
+
+    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
+        const S place = placed(plan.measured.input_angle);
+        S value(0.0), slope(0.0);
+        for (int j = 0; j < cells; ++j) {
+            const S apart = distance(place, j);
+            value = value + weight(apart) * x.value[j];
+            slope = slope - select(abs(apart) < S(1.0), sign(apart), S(0.0)) * x.value[j];
+        }
+        const S ratio = plan.command.ratio, per_angle = S(cells / (2.0 * pi));
+        return {ratio * value, ratio * slope * per_angle * plan.input_speed(), S(0.0), S(0.0)};
+    }
+    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
+        const S speed = plan.input_speed(), error = plan.command.value - plan.measured.output_angle;
+        const S learnt = select(abs(speed) < fastest, period, S(0.0)), step = select(abs(speed) < slowest, S(0.0), learnt);
+        const S place = placed(plan.measured.input_angle), late = placed(plan.measured.input_angle - speed * lag);
+        const S taken = min(smoothing * step, S(1.0));
+        State later = x;
+        for (int j = 0; j < cells; ++j) {
+            const S even = S(0.5) * (x.value[(j + cells - 1) % cells] + x.value[(j + 1) % cells]);
+            const S moved = gain * step * weight(distance(late, j)) * error - taken * weight(distance(place, j)) * (x.value[j] - even);
+            later.value[j] = clip(x.value[j] + moved, -limit, limit);
+        }
+        return later;
+    }
+
+private:
+    /// Where an angle stands in the table, in cells.
+    static constexpr S placed(const S& angle) {
+        const S turns = angle * S(0.5 / pi);
+        return S(cells) * (turns - rint(turns));
+    }
+    /// From the begin of cell j, within half a turn, in cells.
+    static constexpr S distance(const S& place, int j) {
+        const S apart = place - S(j);
+        return apart - S(cells) * rint(apart * S(1.0 / cells));
+    }
+    static constexpr S weight(const S& apart) { return max(S(1.0) - abs(apart), S(0.0)); }
+};
+
+}  // namespace strainwave::compensation

@@ -1,0 +1,91 @@
+#include "compensation.hpp"
+
+#include <strainwave/compensation/models.hpp>
+
+#include "drive.hpp"
+#include "laws.hpp"
+
+namespace strainwave::general {
+
+/// Stands for the gear and the load that a feed-forward knows.
+struct ModelWithin {};
+
+namespace detail {
+
+template <class S>
+struct AroundModel {
+    using type = compensation::ModelFeedforward<S, GeneralGear<S>, general::Load<S>>;
+};
+template <>
+struct Around<compensation::ModelFeedforward<double>, ModelWithin> : AroundModel<double> {};
+template <>
+struct Around<compensation::ModelFeedforward<Slope>, ModelWithin> : AroundModel<Slope> {};
+
+template <Corrections list>
+struct CorrectionList {
+    using type = compensation::Learners;
+};
+template <>
+struct CorrectionList<Corrections::observer> {
+    using type = compensation::Observers;
+};
+
+}  // namespace detail
+
+template <class S>
+using FeedforwardLaws = Laws<S, compensation::Feedforwards, ModelWithin>;
+template <class S, Corrections list>
+using CorrectionLaws = Laws<S, typename detail::CorrectionList<list>::type>;
+
+template <class S>
+void Feedforward<S>::read(kernel::Reader<S>& from) {
+    FeedforwardLaws<S>::read(*this, from);
+}
+template <class S>
+void Feedforward<S>::places(Places& found) const {
+    FeedforwardLaws<S>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
+}
+template <class S>
+auto Feedforward<S>::initial_state() const -> State {
+    return FeedforwardLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+}
+template <class S>
+auto Feedforward<S>::planned(const State& x, const control::Command<S>& command, const S& period) const
+    -> compensation::Planned<S, State> {
+    return FeedforwardLaws<S>::visit(*this, [&](const auto& law) -> compensation::Planned<S, State> {
+        const auto found = law.planned(own<S>(law, x), command, period);
+        return {found.asked, packed<State>(found.later)};
+    });
+}
+
+template <class S, Corrections list>
+void Correction<S, list>::read(kernel::Reader<S>& from) {
+    CorrectionLaws<S, list>::read(*this, from);
+}
+template <class S, Corrections list>
+void Correction<S, list>::places(Places& found) const {
+    CorrectionLaws<S, list>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
+}
+template <class S, Corrections list>
+auto Correction<S, list>::initial_state() const -> State {
+    return CorrectionLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+}
+template <class S, Corrections list>
+auto Correction<S, list>::added(const State& x, const compensation::Plan<S>& plan) const -> compensation::Asked<S> {
+    return CorrectionLaws<S, list>::visit(*this, [&](const auto& law) { return law.added(own<S>(law, x), plan); });
+}
+template <class S, Corrections list>
+auto Correction<S, list>::advance(const State& x, const compensation::Plan<S>& plan, const compensation::Asked<S>& asked,
+                                  const S& given, const S& period) const -> State {
+    return CorrectionLaws<S, list>::visit(
+        *this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), plan, asked, given, period)); });
+}
+
+SW_GENERAL(Feedforward)
+#define SW_CORRECTIONS(list)                  \
+    template struct Correction<double, list>; \
+    template struct Correction<Slope, list>;
+SW_CORRECTIONS(Corrections::learning)
+SW_CORRECTIONS(Corrections::observer)
+
+}  // namespace strainwave::general

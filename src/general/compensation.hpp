@@ -1,0 +1,41 @@
+#pragma once
+#include <strainwave/compensation/compensation.hpp>
+
+#include "part.hpp"
+
+namespace strainwave::general {
+
+/// A feed-forward by any law.
+template <class S>
+struct Feedforward : Part {
+    using State = Storage<S, 96, 0>;
+
+    void read(kernel::Reader<S>& from);
+    void places(Places& found) const;
+
+    State initial_state() const;
+    compensation::Planned<S, State> planned(const State& x, const control::Command<S>& command, const S& period) const;
+};
+
+/// Lists of compensators that go by what is measured.
+enum class Corrections { learning, observer };
+
+/// A learner or an observer by any law.
+template <class S, Corrections list>
+struct Correction : Part {
+    using State = Storage<S, 32, 0>;
+
+    void read(kernel::Reader<S>& from);
+    void places(Places& found) const;
+
+    State initial_state() const;
+    compensation::Asked<S> added(const State& x, const compensation::Plan<S>& plan) const;
+    State advance(const State& x, const compensation::Plan<S>& plan, const compensation::Asked<S>& asked, const S& given,
+                  const S& period) const;
+};
+
+template <class S>
+using AnyCompensation =
+    Compensation<S, Feedforward<S>, Correction<S, Corrections::learning>, Correction<S, Corrections::observer>>;
+
+}  // namespace strainwave::general
