@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
     from strainwave.simulation.run import Run, simulate, simulate_adaptively
     from strainwave.simulation.scenario_file import ScenarioFile
+    from strainwave.tuning.compensate import Compensated, compensate
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
@@ -107,6 +108,8 @@ _LAZY = {
     "check_ratings": "files.ratings",
     "combinations": "identification.fitting.combinations",
     "compare": "analysis.compare",
+    "compensate": "tuning.compensate",
+    "Compensated": "tuning.compensate",
     "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
     "equilibrium": "analysis.steady",
@@ -140,6 +143,7 @@ __all__ = [
     "BearingOrders",
     "Bootstrap",
     "Combination",
+    "Compensated",
     "Compensation",
     "Compilation",
     "Derivatives",
@@ -178,6 +182,7 @@ __all__ = [
     "check_ratings",
     "combinations",
     "compare",
+    "compensate",
     "compensation",
     "compile",
     "control",

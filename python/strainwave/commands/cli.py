@@ -13,6 +13,7 @@ import typer
 
 from strainwave.commands.cache import cache
 from strainwave.commands.compare import compare
+from strainwave.commands.compensate import compensate
 from strainwave.commands.compile import compile
 from strainwave.commands.demo import demo
 from strainwave.commands.drives import drives
@@ -36,6 +37,7 @@ VERBS = (
     rank,
     orders,
     plan_experiments,
+    compensate,
     demo,
     simulate,
     compare,

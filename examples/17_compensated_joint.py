@@ -1,0 +1,48 @@
+"""A joint that swings an arm to and fro, with and without compensation, and with a model that is wrong.
+
+The controller is the tuned cascade of `sw.compensate`, with feed-forward of inertia, weight, Coulomb and viscous friction and
+a disturbance observer. What a model of friction, torsion and kinematic error gains over it depends on how right the model is:
+each number of the gear is made larger or smaller than the model has it, all that belong to one part together.
+"""
+
+import numpy as np
+import strainwave as sw
+from matplotlib.figure import Figure
+from strainwave.parameters import every
+
+joint = sw.GearSet.read("robot-joint")
+found = sw.compensate(joint, encoder="output", members=4, travel=0.1)
+before, after = (1e6 * each.median("tracking error") for each in (found.baseline, found.chosen))
+print(f"{found.chosen.candidate.name}:")
+print(f"tracking error {before:.0f} urad with the cascade, {after:.0f} urad with it")
+
+command = found.goal.command
+whole = next(each for each in found.others if len(each.candidate.effects) == 3 and "output" in each.candidate.name)
+controllers = {"cascade": found.baseline.candidate.drive, "with the whole model": whole.candidate.drive}
+parts = ("gear.friction_input", "gear.stiffness", "gear.hysteresis", "gear.kinematic_error.amplitude")
+changed = (0.7, 0.9, 1.0, 1.1, 1.3)
+
+
+def errors(drive: sw.Drive) -> np.ndarray:
+    """Error of the output [rad] for each change, shape (changes, samples)."""
+    units = ("N.m", "N.m/rad", "N.m.s/rad", "rad")
+    numbers = {path: each.value for path, each in every(drive).items() if path.startswith(parts) and each.unit in units}
+    values = {path: value * np.array(changed) for path, value in numbers.items()}
+    runs = sw.simulate_many(drive, command, values, record=["output_angle"], sample=1e-3)
+    return np.asarray(command.value(runs.time) - runs["output_angle"])
+
+
+later = slice(int(500 * command.duration), None)
+traces = {name: errors(drive) for name, drive in controllers.items()}
+print("the gear has of what the model has".ljust(40), "  ".join(f"{factor:.0%}".rjust(6) for factor in changed))
+for name, trace in traces.items():
+    print(f"{name}: error [urad]".ljust(40), "  ".join(f"{1e6 * np.sqrt(np.mean(row[later] ** 2)):6.1f}" for row in trace))
+
+figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+axes = figure.add_subplot()
+time = np.linspace(0.0, command.duration, traces["cascade"].shape[1])
+for (name, trace), color in zip(traces.items(), ("#2166ac", "#c2410c"), strict=True):
+    axes.plot(time[later], 1e6 * trace[changed.index(1.0)][later], color=color, label=name)
+axes.set(xlabel="time [s]", ylabel="error of the output [µrad]")
+axes.legend()
+figure.savefig("compensated_joint.png")

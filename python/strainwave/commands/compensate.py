@@ -1,0 +1,42 @@
+"""The command `strainwave compensate`: a controller that takes away what the gear does to the motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from strainwave.commands.progress import progress
+
+
+def compensate(
+    drive: Annotated[str, typer.Argument(help="A drive with motor and load: a set by name, or a file as identify writes it.")],
+    goal: Annotated[str, typer.Option(help="position (to and fro), speed (constant) or smooth (creeping).")] = "position",
+    period: Annotated[float, typer.Option(help="Period of the controller [s].")] = 1e-3,
+    delay: Annotated[float, typer.Option(help="From a sample to the output of the controller [s].")] = 0.0,
+    encoder: Annotated[str, typer.Option(help="output if the controller sees the output angle too.")] = "input",
+    travel: Annotated[float, typer.Option(help="Travel of the output, for position [rad].")] = 0.2,
+    speed: Annotated[float | None, typer.Option(help="Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
+    members: Annotated[int, typer.Option(help="Number of drawn gears.")] = 40,
+    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder for the drive, its controller and report.html.")] = Path("out/compensate"),
+) -> None:
+    """Find the compensation that gains most over a tuned cascade, judged on gears that the drive may have."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import write_folder
+    from strainwave.report.compensate import compensate_files, compensate_summary
+    from strainwave.report.provenance import Provenance
+    from strainwave.tuning.compensate import compensate as compensated
+
+    gear_set = GearSet.read(drive)
+    with progress(None) as turn:
+        found = compensated(
+            gear_set, goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed, members=members,
+            seed=seed, progress=turn,
+        )  # fmt: skip
+        turn("report")
+        files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))
+        write_folder(out, files)
+    print(compensate_summary(found))
+    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")

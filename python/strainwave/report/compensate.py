@@ -1,0 +1,154 @@
+"""Report of a compensation: what it gains over a tuned cascade, which effect each part removes, and what remains."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from strainwave.files import gear_file
+from strainwave.report import figures, typeset
+from strainwave.report.page import render
+from strainwave.report.provenance import Provenance
+from strainwave.report.rig_files import results_json
+from strainwave.simulation.run import simulate
+from strainwave.tuning.candidates import EFFECTS
+from strainwave.tuning.compensate import Compensated, Judged
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+MAX_LISTED = 8  # controllers on a terminal
+
+
+def verdict(found: Compensated) -> str:
+    """Return in one sentence what the compensation gains over the baseline."""
+    figure, unit = found.goal.judged_by, found.goal.units[found.goal.judged_by]
+    before = typeset.quantity(found.baseline.median(figure), unit)
+    after = typeset.quantity(found.chosen.median(figure), unit)
+    if found.chosen is found.baseline:
+        cascade = f"the {found.baseline.candidate.name}, whose {figure} is {before}"
+        return f"{found.gear_set.name}: no compensation gains over {cascade} in the median of {found.members} drawn gears."
+    return (
+        f"{found.gear_set.name}: {found.chosen.candidate.name} brings the {figure} from {before} to {after} "
+        f"(−{100.0 * found.gain:.0f} %), in the median of {found.members} drawn gears."
+    )
+
+
+def compensate_summary(found: Compensated) -> str:
+    """Return the result as lines of text, the verdict first."""
+    return "\n".join(_lines(found)).replace(NO_BREAK_SPACE, " ")
+
+
+def _lines(found: Compensated) -> Iterator[str]:
+    yield verdict(found)
+    figure = found.goal.judged_by
+    yield f"  {figure + ': the gear as it is stated, median, 95 % below':70}"
+    for judged in (found.baseline, *found.others[:MAX_LISTED]):
+        yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}"
+    yield from (f"  {line}" for line in removed(found))
+    yield from (f"  note: {remark}" for remark in found.remarks)
+
+
+def _figures(judged: Judged, found: Compensated) -> list[str]:
+    figure, unit = found.goal.judged_by, found.goal.units[found.goal.judged_by]
+    return [typeset.quantity(value, unit) for value in (judged.nominal[figure], judged.median(figure), judged.upper(figure))]
+
+
+def removed(found: Compensated) -> Iterator[str]:
+    """Yield for each effect what its model removes: all effects in the model, beside all but this one."""
+    present = tuple(effect for effect in EFFECTS if any(effect in each.candidate.effects for each in found.others))
+    whole, figure = found.model_of(present), found.goal.judged_by
+    for effect in present:
+        rest = found.model_of(tuple(each for each in present if each != effect)) or found.baseline
+        if whole is not None:
+            without, with_it = (typeset.quantity(each.median(figure), found.goal.units[figure]) for each in (rest, whole))
+            yield f"{effect}: {figure} {without} without it in the model, {with_it} with it"
+
+
+def compensate_files(found: Compensated, provenance: Provenance | None = None) -> dict[str, str]:
+    """Return the drive, its controller, the figures and the page, by file name."""
+    whole = gear_file.text(found.saved)
+    return {
+        "drive.toml": whole,
+        "compensation.toml": _table(whole, "control"),
+        "results.json": results_json(_results(found)),
+        "report.html": compensate_report(found, provenance),
+    }
+
+
+def _table(document: str, name: str) -> str:
+    import tomlkit
+
+    return tomlkit.dumps({name: tomllib.loads(document)[name]})
+
+
+def _results(found: Compensated) -> dict[str, Any]:
+    return {
+        "made_by": f"strainwave {metadata.version('strainwave')}",
+        "verdict": verdict(found).replace(NO_BREAK_SPACE, " "),
+        "goal": found.goal.name,
+        "judged_by": found.goal.judged_by,
+        "units": dict(found.goal.units),
+        "members": found.members,
+        "chosen": found.chosen.candidate.name,
+        "remarks": list(found.remarks),
+        "controllers": [
+            {
+                "name": each.candidate.name,
+                "effects": list(each.candidate.effects),
+                "failures": each.failures,
+                "nominal": dict(each.nominal),
+                "median": {name: each.median(name) for name in each.figures},
+                "upper_95": {name: each.upper(name) for name in each.figures},
+            }
+            for each in (found.baseline, *found.others)
+        ],
+    }
+
+
+def compensate_report(found: Compensated, provenance: Provenance | None = None) -> str:
+    """Return the page of a compensation, as one HTML file that needs nothing else."""
+    figure, units = found.goal.judged_by, found.goal.units
+    return render(
+        "compensate.html.jinja",
+        {
+            "name": found.gear_set.name,
+            "verdict": verdict(found),
+            "figure": figure,
+            "rows": [
+                (each.candidate.name, *_figures(each, found), each.failures, each is found.chosen)
+                for each in (found.baseline, *found.others)
+            ],
+            "others": [
+                (name, typeset.quantity(found.baseline.median(name), unit), typeset.quantity(found.chosen.median(name), unit))
+                for name, unit in units.items()
+            ],
+            "removed": list(removed(found)),
+            "remarks": found.remarks,
+            "members": found.members,
+            "picture": figures.inline(lambda canvas: _errors(canvas, found), (figures.WIDTH, 3.0), "errors", _title(found)),
+        },
+        provenance,
+    )
+
+
+def _title(found: Compensated) -> str:
+    return f"Error of the output of {found.gear_set.name}: cascade, and with the compensation chosen"
+
+
+def _errors(canvas: Figure, found: Compensated) -> None:
+    """Draw the error of the output over time, of the gear as it is stated."""
+    axes = canvas.add_subplot()
+    command = found.goal.command
+    runs = {"cascade": found.baseline} | ({} if found.chosen is found.baseline else {"compensated": found.chosen})
+    for (label, judged), (colour, line, width) in zip(runs.items(), (figures.RUNS[1], figures.RUNS[0]), strict=False):
+        run = simulate(judged.candidate.drive, command, sample=command.duration / 2000.0)
+        error = np.asarray(command.value(run.time) - run["output_angle"])
+        figures.curve(axes, run.time, error, color=figures.LIGHT[colour], linestyle=line, linewidth=width, label=label)
+    figures.label_axes(axes, "error of the output", "rad", "time", "s")
+    figures.legend(canvas, axes)

@@ -1,0 +1,157 @@
+"""A tuned cascade: position around speed, with the feed-forward that every servo drive has, and a disturbance observer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from strainwave import Compensation, Drive, Gear, compensation, control, loads, motor, stiffness
+from strainwave.files.gear_set import GearSet
+
+RIGID = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
+PHASE_OF_DELAY = 0.5  # rad that the delay takes where the speed loop crosses over: 60 degrees are left
+POSITION_SHARE = 0.25  # bandwidth of the position loop over that of the speed loop, so that it does not overshoot
+INTEGRAL_SHARE = 0.25  # likewise of the integral of the speed
+FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose friction the line of Coulomb and viscous friction goes
+DEFAULT_LIMIT = 20.0  # times the Coulomb friction: torque of a motor that states no limit
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A drive as its controller knows it, its own current loop taken as ideal.
+
+    Attributes:
+        drive: with a motor that takes a current or a torque
+        actuation_per_torque: what the motor takes, per torque [A/(N.m)] or [1]
+        limit: largest actuation
+        period: of the controller [s]
+        delay: from a sample to the output [s]
+    """
+
+    drive: Drive
+    actuation_per_torque: float
+    limit: float
+    period: float
+    delay: float
+
+    @classmethod
+    def of(cls, gear_set: GearSet, period: float, delay: float) -> Plant:
+        """Return the plant of a set.
+
+        Raises:
+            ValueError: the set has no motor or no load, the load prescribes the motion, or the motor takes neither a current, a
+                torque nor a voltage
+        """
+        drive = gear_set.drive
+        if type(drive.load) is loads.Prescribed:
+            raise ValueError(f"{gear_set.name}: the load prescribes the motion of the output; give one with an inertia")
+        constant = _torque_constant(drive.motor)
+        inertia = drive.motor.inertia
+        ideal = motor.TorqueSource(inertia=inertia) if constant is None else motor.CurrentSource(
+            torque_constant=constant, inertia=inertia)  # fmt: skip
+        per_torque = 1.0 if constant is None else 1.0 / constant
+        limit = getattr(drive.motor, "current_limit", None) or per_torque * _usual_limit(drive)
+        return cls(drive.replace(motor=ideal, control=control.OpenLoop()), per_torque, float(limit), period, delay)
+
+    @property
+    def ratio(self) -> float:
+        """Signed ratio of the gear."""
+        return float(self.drive.gear.kinematics.ratio)
+
+    @property
+    def effort_unit(self) -> str:
+        """Unit of what the motor takes."""
+        return "A" if type(self.drive.motor) is motor.CurrentSource else "N.m"
+
+    @property
+    def input_inertia(self) -> float:
+        """Inertia of rotor and wave generator [kg.m2]."""
+        return float(self.drive.motor.inertia + self.drive.gear.input_inertia)
+
+    @property
+    def total_inertia(self) -> float:
+        """The same with that of the load over the ratio squared [kg.m2]."""
+        load: Any = self.drive.load
+        return float(self.input_inertia + load.inertia / self.ratio**2)
+
+    def controlled(self, law: Any, added: Compensation) -> Drive:
+        """Return the drive under a sampled law with a compensation."""
+        sampled = control.Sampled(law=law, compensation=added, period=self.period, delay=self.delay)
+        return self.drive.replace(control=sampled)
+
+
+def _torque_constant(part: Any) -> float | None:
+    """Return the torque per current of a motor [N.m/A]; None if it takes a torque."""
+    if type(part) is motor.TorqueSource:
+        return None
+    if type(part) is motor.PMSM:
+        return float(1.5 * part.pole_pairs * part.flux_linkage)
+    if (constant := getattr(part, "torque_constant", None)) is None:
+        raise ValueError(
+            f"a motor that takes {type(part).__name__} is not compensated; give one that takes a current or a torque"
+        )
+    return float(constant)
+
+
+def _usual_limit(drive: Drive) -> float:
+    coulomb, _ = line_of_friction(drive.gear)
+    load = getattr(drive.load, "gravity_torque", 0.0) / abs(drive.gear.kinematics.ratio)
+    return DEFAULT_LIMIT * max(coulomb + load, 1e-3)
+
+
+def line_of_friction(gear: Gear) -> tuple[float, float]:
+    """Return Coulomb [N.m] and viscous friction [N.m.s/rad] at the input: the line through that at two speeds."""
+    slow, fast = (_steady_friction(gear, speed) for speed in (SLOW_SPEED, FAST_SPEED))
+    viscous = max((fast - slow) / (FAST_SPEED - SLOW_SPEED), 0.0)
+    return max(slow - viscous * SLOW_SPEED, 0.0), viscous
+
+
+def _steady_friction(gear: Gear, speed: float) -> float:
+    """Return the friction [N.m] of all places at the input, which turns at a speed [rad/s], without load."""
+    ratio = abs(gear.kinematics.ratio)
+    behind = sum(float(law.steady(speed / ratio)) for law in (gear.friction_mesh, gear.friction_output))
+    return float(gear.friction_input.steady(speed)) + behind / ratio
+
+
+def bare(gear: Gear) -> Gear:
+    """Return a gear of which only the ratio and the inertia are known."""
+    return Gear(kinematics=gear.kinematics, stiffness=stiffness.Linear(k=RIGID), input_inertia=gear.input_inertia)
+
+
+def tuned_law(plant: Plant, sharpness: float, *, feedback: str = "input", friction: bool = True) -> Any:
+    """Return position around speed, as fast as the delay lets it be times a sharpness in (0, 1].
+
+    The speed loop crosses over on the inertia of the input alone, as it does above the vibration of the load, where the delay
+    takes 0.5 rad times the sharpness. Coulomb and viscous friction are fed forward by constant gains if `friction`.
+    """
+    late = plant.delay + 0.5 * plant.period
+    gain = sharpness * PHASE_OF_DELAY / late * plant.input_inertia
+    bandwidth = gain / plant.total_inertia
+    coulomb, viscous = line_of_friction(plant.drive.gear) if friction else (0.0, 0.0)
+    per_torque = plant.actuation_per_torque
+    return control.PositionSpeed(
+        position_gain=POSITION_SHARE * bandwidth,
+        speed_proportional=per_torque * gain,
+        speed_integral=per_torque * gain * INTEGRAL_SHARE * bandwidth,
+        speed_feedforward=1.0,
+        viscous_feedforward=per_torque * viscous,
+        coulomb_feedforward=per_torque * coulomb,
+        limit=plant.limit,
+        speed_limit=1e4,
+        feedback=feedback,
+    )
+
+
+def observer_of(plant: Plant, sharpness: float) -> compensation.DisturbanceObserver:
+    """Return a disturbance observer half as fast as the speed loop."""
+    late = plant.delay + 0.5 * plant.period
+    bandwidth = 0.5 * sharpness * PHASE_OF_DELAY / late * plant.input_inertia / plant.total_inertia
+    return compensation.DisturbanceObserver(
+        inertia=plant.total_inertia, bandwidth=bandwidth, limit=plant.limit / plant.actuation_per_torque
+    )
+
+
+def model_of(plant: Plant, gear: Gear, load: Any = None) -> compensation.ModelFeedforward:
+    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate."""
+    carried = load if load is not None else plant.drive.load
+    return compensation.ModelFeedforward(gear=gear, load=carried, motor_inertia=float(plant.drive.motor.inertia))

@@ -1,0 +1,258 @@
+"""Compensation designed from a model of a drive, and judged on gears that it may be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments
+from strainwave.files.gear_set import GearSet
+from strainwave.messages import listed
+from strainwave.parameters import every
+from strainwave.simulation.ensemble import simulate_many
+from strainwave.tuning import goals
+from strainwave.tuning.candidates import EFFECTS, Candidate, baseline, candidates
+from strainwave.tuning.cascade import Plant
+from strainwave.tuning.drawn import drawn_gears
+from strainwave.tuning.goals import Goal
+
+Array = NDArray[np.float64]
+
+SHARPNESSES = (1.0, 0.5, 0.25, 0.125)  # of the cascade, of which the best one is taken
+MIN_MEMBERS = 3
+QUANTILE = 0.95
+MIN_GAIN = 0.05  # relative: what gains less is not worth another part
+USUAL_SPEED = 20.0  # rad/s of the input, if none is given
+CREEPING = 0.01  # of that
+MAX_STEP = 2e-4  # s, of the simulation
+STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a stiffer gear is followed, too
+TURNS = 8.0  # of the input, over which the speed is judged
+DURATION_OF_CREEPING = 4.0  # s
+MIN_BANDWIDTH_RATIO = 5.0  # of the position loop over the pace of the motion
+MEASUREMENTS = {
+    "friction": "a friction table or a log of motion determines it",
+    "torsion": "a torsion loop determines it",
+    "kinematic error": "a record of both encoders over whole turns of the output determines it",
+}  # by the effect
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A controller, and its figures on drawn gears.
+
+    Attributes:
+        candidate: the controller
+        figures: on each drawn gear, shape (members,), by name; not a number where a run did not end
+        nominal: on the gear as its numbers have it, by name
+    """
+
+    candidate: Candidate
+    figures: Mapping[str, Array]
+    nominal: Mapping[str, float]
+
+    @property
+    def failures(self) -> int:
+        """Runs that did not end."""
+        return int(np.isnan(next(iter(self.figures.values()))).sum())
+
+    def median(self, name: str) -> float:
+        """Return the median of a figure; infinite if half of the runs did not end."""
+        return float(np.median(np.nan_to_num(self.figures[name], nan=np.inf)))
+
+    def upper(self, name: str) -> float:
+        """Return what 95 % of the drawn gears stay below."""
+        return float(np.quantile(np.nan_to_num(self.figures[name], nan=np.inf), QUANTILE, method="higher"))
+
+
+@dataclass(frozen=True)
+class Compensated:
+    """What was found for a drive.
+
+    Attributes:
+        gear_set: the drive
+        goal: what was to be reached
+        baseline: the tuned cascade with feed-forward and disturbance observer
+        others: with compensations, best first
+        chosen: the best one of all whose gain over the baseline is worth a part more
+        members: number of drawn gears
+        remarks: what was assumed
+    """
+
+    gear_set: GearSet
+    goal: Goal
+    baseline: Judged
+    others: tuple[Judged, ...]
+    chosen: Judged
+    members: int
+    remarks: tuple[str, ...]
+
+    @property
+    def drive(self) -> Drive:
+        """The drive under the controller chosen."""
+        return self.chosen.candidate.drive
+
+    @property
+    def saved(self) -> GearSet:
+        """The set with the motor as the controller sees it, and the controller chosen."""
+        source = f"compensate, goal {self.goal.name}: {self.chosen.candidate.name}"
+        return self.gear_set.with_parts(motor=self.drive.motor, control=self.drive.control, source=source)
+
+    @property
+    def gain(self) -> float:
+        """By how much the median of the goal's figure is smaller than that of the baseline, relative."""
+        before, after = (each.median(self.goal.judged_by) for each in (self.baseline, self.chosen))
+        return 1.0 - after / before
+
+    def model_of(self, effects: tuple[str, ...]) -> Judged | None:
+        """Return the controller with the plain model of these effects; None if it was not tried."""
+        plain = (each for each in self.others if each.candidate.is_plain and each.candidate.effects == effects)
+        return next(plain, None)
+
+
+def compensate(
+    drive: GearSet | Drive | str,
+    *,
+    goal: str = "position",
+    period: float = 1e-3,
+    delay: float = 0.0,
+    encoder: str = "input",
+    travel: float = 0.2,
+    speed: float | None = None,
+    members: int = 40,
+    seed: int = 0,
+    progress: Callable[[str], None] = lambda stage: None,
+) -> Compensated:
+    """Return the compensation that gains most over a tuned cascade, judged on gears that a drive may have.
+
+    Args:
+        drive: with motor and load: a set, a drive, or the name or path of a file
+        goal: "position" (tracking of a motion to and fro), "speed" (ripple at constant speed) or "smooth" (creeping)
+        period, delay: of the controller [s]
+        encoder: "output" if the controller sees the output angle, too
+        travel: of the output for the goal of position [rad]
+        speed: of the output [rad/s]; if not given, that of 20 rad/s of the input, for "smooth" a hundredth of it
+        members: number of drawn gears
+        seed: of the draw
+        progress: called with what is done next
+
+    Raises:
+        TypeError: `drive` is no drive
+        ValueError: it has no motor or no load, its motor cannot be given a torque, or a number is out of its range
+
+    >>> import strainwave as sw
+    >>> found = compensate("robot-joint", members=3, travel=0.05)
+    >>> found.chosen.candidate.effects, found.gain > 0.5
+    (('friction', 'torsion'), True)
+    """
+    gear_set = _gear_set(drive)
+    arguments.one_of("encoder", encoder, ("input", "output"))
+    arguments.whole("members", members, MIN_MEMBERS)
+    plant = Plant.of(
+        gear_set, arguments.number("period", period, "s", low=0.0), arguments.number("delay", delay, "s", "[]", 0.0, period)
+    )
+    wanted = goal_of(goal, plant, travel, speed)
+    draws = drawn_gears(gear_set, members, seed)
+    feedbacks = ("input", "output") if encoder == "output" else ("input",)
+    tried = []
+    for sharpness in SHARPNESSES:
+        for feedback in feedbacks:
+            progress(f"cascade, {feedback} encoder, sharpness {sharpness:g}")
+            tried.append((sharpness, judged(baseline(plant, sharpness, feedback), wanted, draws, plant.period)))
+    best_sharpness, best = min(tried, key=lambda found: found[1].upper(wanted.judged_by))
+    others = []
+    for candidate in candidates(plant, best_sharpness, has_output_encoder=encoder == "output"):
+        progress(candidate.name)
+        others.append(judged(candidate, wanted, draws, plant.period))
+    others.sort(key=lambda found: found.median(wanted.judged_by))
+    remarks = tuple(_remarks(gear_set, plant, wanted, best))
+    return Compensated(gear_set, wanted, best, tuple(others), _chosen(best, others, wanted), members, remarks)
+
+
+def _chosen(best: Judged, others: Sequence[Judged], goal: Goal) -> Judged:
+    """Return the controller of the fewest parts of those that gain about as much as the best; the baseline if none gains."""
+    figure = goal.judged_by
+    limit = (1.0 - MIN_GAIN) * best.median(figure)
+    better = [each for each in others if each.median(figure) < limit and each.upper(figure) <= best.upper(figure)]
+    if not better:
+        return best
+    enough = (1.0 + MIN_GAIN) * min(each.median(figure) for each in better)
+    return min(
+        (each for each in better if each.median(figure) <= enough), key=lambda each: (each.candidate.parts, each.median(figure))
+    )
+
+
+def _gear_set(drive: GearSet | Drive | str) -> GearSet:
+    if isinstance(drive, GearSet):
+        return drive
+    if isinstance(drive, Drive):
+        return GearSet.of(drive, name="the drive", source="given")
+    return GearSet.read(drive)
+
+
+def goal_of(name: str, plant: Plant, travel: float, speed: float | None) -> Goal:
+    """Return a goal by its name.
+
+    Raises:
+        ValueError: there is none of that name
+    """
+    arguments.one_of("goal", name, ("position", "speed", "smooth"))
+    usual = USUAL_SPEED / abs(plant.ratio) * (CREEPING if name == "smooth" else 1.0)
+    given = usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0)
+    unit = plant.effort_unit
+    if name == "position":
+        return goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit)
+    if name == "speed":
+        return goals.speed(given, TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
+    return goals.smooth(given, DURATION_OF_CREEPING, unit)
+
+
+def judged(candidate: Candidate, goal: Goal, draws: Mapping[str, Array], sample: float) -> Judged:
+    """Return a controller with its figures on drawn gears; the gear as its numbers have it is run first among them."""
+    nominal = _numbers(candidate.drive, draws)
+    whole = {path: np.concatenate(([nominal[path]], values)) for path, values in draws.items()}
+    step = min(MAX_STEP, STEP_OF_VIBRATION / _core.max_rate(candidate.drive, 0.0))
+    effort = "current" if candidate.drive.motor.name == "current_source" else "motor_torque"
+    runs = simulate_many(
+        candidate.drive,
+        goal.command,
+        whole,
+        step,
+        record=["output_angle", "output_speed", effort],
+        sample=sample,
+    )
+    figures = goal.figures(runs, goal.command)
+    return Judged(
+        candidate,
+        {name: values[1:] for name, values in figures.items()},
+        {name: float(values[0]) for name, values in figures.items()},
+    )
+
+
+def _numbers(drive: Drive, paths: Mapping[str, Array]) -> dict[str, float]:
+    known = every(drive)
+    return {path: known[path].value for path in paths}
+
+
+def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
+    """Yield what was assumed, and what cannot be gained."""
+    if type(gear_set.motor) is not type(plant.drive.motor):
+        yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
+    for effect, parts in EFFECTS.items():
+        paths = [path for part in parts for path in gear_set.sources if path.startswith(f"gear.{part}.")]
+        if not any(every(plant.drive)[path].value for path in paths):
+            yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
+        elif assumed := [path for path in paths if gear_set.sources[path].assumed and every(plant.drive)[path].value]:
+            names = listed(sorted({path.removeprefix("gear.").split("[")[0] for path in assumed}))
+            spread = "any phase and 30 % more or less of it" if effect == "kinematic error" else "30 % more or less of it"
+            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
+    bandwidth = best.candidate.law.position_gain
+    if bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
+        yield (
+            f"the position loop reaches {bandwidth:.3g} rad/s with period {plant.period:g} s and delay {plant.delay:g} s, and "
+            f"the motion has {goal.pace:.3g} rad/s: a shorter delay gains more than a model"
+        )
+    if best.failures:
+        yield f"{best.failures} of the drawn gears did not run to their end under the cascade"

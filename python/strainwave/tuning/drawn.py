@@ -1,0 +1,77 @@
+"""Gears that a set of numbers may be: drawn by what is known of each number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.gear_set import GearSet
+from strainwave.parameters import every
+
+Array = NDArray[np.float64]
+
+SPREAD = 0.3  # relative, either way, of gears about a number that is assumed, or whose spread is not stated
+SPREAD_OF_LOAD = 0.2  # likewise of inertia and weight of a load whose spread is not stated
+SCALED = {"N.m", "N.m/rad", "N.m.s/rad", "rad", "kg.m2"}  # units of numbers that a gear may have more or less of
+PARTS = ("gear.stiffness", "gear.hysteresis", "gear.kinematic_error", "gear.friction_input", "gear.friction_mesh",
+         "gear.friction_output", "load")  # fmt: skip
+
+
+def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Array]:
+    """Return numbers of drives that a set may be, as `simulate_many` takes them.
+
+    Identified numbers are drawn from their covariance. All other numbers of a part are multiplied by one factor, as a stiffer
+    gear is stiffer at every twist: by up to the spread that the set states, 30 % if it states none, 20 % for the load. A phase
+    that is assumed may be any.
+
+    Args:
+        gear_set: a drive with the sources of its numbers
+        members: how many are drawn
+        seed: of the random numbers; the same seed draws the same drives
+
+    Returns:
+        the values of each number that differs, by path, shape (members,)
+
+    >>> import strainwave as sw
+    >>> draws = drawn_gears(sw.GearSet.read("robot-joint"), 3)
+    >>> sorted({path.split(".")[1] for path in draws})
+    ['friction_input', 'gravity_torque', 'hysteresis', 'inertia', 'kinematic_error', 'stiffness']
+    """
+    chance = np.random.default_rng(seed)
+    numbers = every(gear_set.drive)
+    identified = dict(_identified(gear_set, members, chance))
+    draws: dict[str, Array] = {}
+    for part in PARTS:
+        spread = _spread(gear_set, part)
+        factor = (1.0 + spread) ** chance.uniform(-1.0, 1.0, members)
+        for path, number in numbers.items():
+            if not path.startswith(f"{part}."):
+                continue
+            if path in identified:
+                draws[path] = np.clip(identified[path], number.low, number.high)
+            elif path.split("[")[0].endswith("phase"):
+                if gear_set.sources[path].assumed and part != "load":
+                    draws[path] = chance.uniform(-np.pi, np.pi, members)
+            elif number.unit in SCALED and number.value != 0.0:
+                draws[path] = np.clip(number.value * factor, number.low, number.high)
+    return draws
+
+
+def _identified(gear_set: GearSet, members: int, chance: np.random.Generator) -> Iterator[tuple[str, Array]]:
+    """Yield draws of the numbers of a covariance, by path."""
+    if gear_set.covariance is None:
+        return
+    numbers = every(gear_set.drive)
+    paths = gear_set.covariance.paths
+    offsets = chance.multivariate_normal(np.zeros(len(paths)), gear_set.covariance.array, members, method="eigh")
+    for path, offset in zip(paths, offsets.T, strict=True):
+        if path in numbers:
+            yield path, numbers[path].value + offset
+
+
+def _spread(gear_set: GearSet, part: str) -> float:
+    """Return the largest spread that a set states of the numbers of a part; that of numbers without one if it states none."""
+    stated = [entry.spread for path, entry in gear_set.sources.items() if path.startswith(f"{part}.") and entry.spread]
+    return max(stated, default=SPREAD_OF_LOAD if part == "load" else SPREAD)

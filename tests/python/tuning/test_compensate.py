@@ -1,0 +1,78 @@
+"""Compensations judged on drawn gears: what is known gains, what is assumed does not, and what cannot be gained is stated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.files.entries import Entry
+
+STATED = sw.GearSet.read("robot-joint")
+KNOWN = STATED.replace(sources=dict.fromkeys(STATED.sources, Entry("measured", spread=0.01)))
+
+
+@pytest.fixture(scope="module")
+def known() -> sw.Compensated:
+    return sw.compensate(KNOWN, members=4, travel=0.1)
+
+
+def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated) -> None:
+    assert known.gain > 0.4
+    assert set(known.chosen.candidate.effects) >= {"friction", "torsion"}
+    assert known.chosen.upper("tracking error") < known.baseline.median("tracking error")
+
+
+def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: Path) -> None:
+    known.saved.save(tmp_path / "drive.toml")
+    drive = sw.load(tmp_path / "drive.toml")
+    assert drive.control == known.drive.control
+    command = known.goal.command
+    run = sw.simulate(drive, command, sample=1e-3, method="exponential")
+    later = run.time >= 0.5 * command.duration
+    error = (command.value(run.time) - run["output_angle"])[later]
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(known.chosen.nominal["tracking error"], rel=0.05)
+
+
+def test_an_error_of_unknown_phase_is_not_fed_forward() -> None:
+    """It adds to the error as often as it takes away."""
+    found = sw.compensate(STATED, goal="speed", members=12, seed=3)
+    with_error = [each for each in found.others if each.candidate.is_plain and "kinematic error" in each.candidate.effects]
+    assert all(each.median("speed ripple") > each.nominal["speed ripple"] for each in with_error)
+    assert any("kinematic error is assumed" in remark and "both encoders" in remark for remark in found.remarks)
+
+
+def test_a_gear_without_effects_needs_none() -> None:
+    gear = sw.Gear(kinematics=STATED.gear.kinematics, stiffness=sw.stiffness.Linear(k=1e9), input_inertia=4e-5)
+    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=5e-5), load=sw.loads.Inertia(inertia=1.0))
+    found = sw.compensate(drive, members=3, travel=0.05)
+    assert found.chosen is found.baseline
+    assert [remark for remark in found.remarks if "the gear has no friction" in remark]
+
+
+def test_a_delay_beyond_the_motion_is_stated() -> None:
+    found = sw.compensate(KNOWN, members=3, travel=0.02, period=0.05, delay=0.05)
+    assert any("a shorter delay gains more than a model" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"goal": "torque"}, "goal"),
+        ({"encoder": "both"}, "encoder"),
+        ({"period": 0.0}, "period"),
+        ({"delay": 2e-3}, "delay"),
+        ({"travel": -1.0}, "travel"),
+        ({"speed": 0.0}, "speed"),
+        ({"members": 1}, "members"),
+    ],
+)
+def test_what_is_out_of_range_is_refused(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        sw.compensate(STATED, **changes)  # type: ignore[arg-type]
+
+
+def test_a_gear_alone_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"no \[motor\] and no \[load\]"):
+        sw.compensate("csg-20-100")
