@@ -33,10 +33,9 @@ struct GearMemory {
 };
 
 template <class S>
-using PlainGear =
-    Gear<S, kinematics::StrainWave<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>, stiffness::Linear<S>,
-         hysteresis::MaxwellSlip<S>, friction::Coulomb<S>, friction::Coulomb<S>, friction::Coulomb<S>,
-         softening::ThermalSoftening<S>>;
+using PlainGear = Gear<S, kinematics::StrainWave<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
+                       stiffness::Linear<S>, hysteresis::MaxwellSlip<S>, friction::Coulomb<S>, friction::Coulomb<S>,
+                       friction::Coulomb<S>, softening::ThermalSoftening<S>>;
 
 template <class S, class Gear_ = PlainGear<S>, class Load_ = load::Inertia<S>>
 struct ModelFeedforward {
@@ -95,11 +94,16 @@ struct ModelFeedforward {
     }
 
     constexpr Contradiction<S> problem() const {
+        if (moves_output(load))
+            return {
+                "load must not be Prescribed, which moves the output by itself and needs no torque; give the load that a motor "
+                "moves"};
         const S contraction = abs(gear.kinematics.ratio()) * kinematic_error::steepest<S>(gear.kinematic_error);
         if (rounds == 0 || all(contraction < S(1.0))) return {};
-        return {"the kinematic error cannot be fed forward: |ratio| times its steepest slope is {}, and must be less than 1; set "
-                "rounds = 0 to leave it out",
-                contraction};
+        return {
+            "the kinematic error cannot be fed forward: |ratio| times its steepest slope is {}, and must be less than 1; set "
+            "rounds = 0 to leave it out",
+            contraction};
     }
 
     constexpr auto compile() const {
@@ -177,6 +181,14 @@ struct ModelFeedforward {
 
 private:
     using Contact = friction::Contact<S>;
+    /// True if the output moves as its load says, whatever the torque; asked of a choice, of the load chosen.
+    template <class Carried>
+    static constexpr bool moves_output(const Carried& carried) {
+        if constexpr (requires { carried.model; })
+            return carried.visit([](const auto& chosen) { return moves_output(chosen); });
+        else
+            return prescribes(carried);
+    }
     static constexpr double least_follow = 0.1;  ///< share of the commanded speed that the input keeps where the error is steep
 
     /// The torque of a friction, in the state that the motion left it in; `later` is that a period on.

@@ -49,6 +49,13 @@ struct Fourier {
 
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
 
+    /// Where all its waves are steepest at once, without sign [rad/rad].
+    constexpr S steepest() const {
+        S sum(0.0);
+        for (int h = 0; h < order.count; ++h) sum = sum + abs(order[h] * amplitude[h]);
+        return sum;
+    }
+
     /// The same sum, arranged for speed.
     constexpr Compiled compile() const { return {Harmonics<S, capacity>::of(order, amplitude, phase)}; }
 };
