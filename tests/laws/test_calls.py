@@ -118,6 +118,7 @@ NUMBER_VERBS = [
     for argument in sorted(set(scalars(getattr(law, name))))
 ]
 PATHS = {"time": [0.0, 1.0], "displacement": [0.0, 1.0]}
+MOTION = {"angle": [0.0, 1.0], "speed": [1.0, 1.0], "ratio": -100.0, "period": 1e-3}
 
 
 @each(("verb", "argument"), NUMBER_VERBS)
@@ -126,6 +127,7 @@ def test_a_number_at_the_end_of_all_is_answered_with_a_number_or_refused(verb: A
     takes = verb.__doc__.splitlines()
     first = next(name for line in takes if "(self, " in line for name in [line.partition("(self, ")[2].partition(":")[0]])
     given: dict[str, Any] = {first: PATHS.get(first, 1.0)} | ({"speed": [1.0, 1.0]} if first == "time" else {})
+    given |= MOTION if verb.__name__ == "planned" else {}
     answer: Any = None
     refused = ""
     try:
