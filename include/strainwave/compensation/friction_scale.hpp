@@ -6,6 +6,7 @@ namespace strainwave::compensation {
 template <class S>
 struct FrictionScale {
     S gain{1.0};
+    S position_gain{20.0};
     S least{0.5};
     S most{1.5};
     S slowest{1.0};
@@ -15,13 +16,16 @@ struct FrictionScale {
     static constexpr auto doc = R"(
         Observer of how much more or less friction there is than a model has: it wears, warms up, cools down.
 
-        .. math:: \tau \leftarrow \tau + (\hat s - 1) F, \qquad \dot{\hat s} = \gamma F\, (\omega_r - \omega)
-                  \;\text{ where } |\omega_r| \ge \omega_{min}, \qquad \hat s \in [s_{min}, s_{max}]
+        .. math:: \tau \leftarrow \tau + (\hat s - 1) F, \qquad \dot{\hat s} = \gamma F \sigma
+                  \;\text{ where } |\omega_r| \ge \omega_{min}, \qquad \hat s \in [s_{min}, s_{max}], \qquad
+                  \sigma = \omega_r - \omega + \lambda\, (\theta_r - \theta)
 
-        with F the friction that the feed-forward asks for, omega_r and omega the input speed commanded and measured,
-        gamma = gain, omega_min = slowest, s_min, s_max = least, most. With J the inertia at the input and a speed loop that takes
-        energy away, J (omega_r - omega)^2 + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it must be
-        small. The motion determines s only while it moves, so below omega_min it stands still.
+        with F the friction that the feed-forward asks for, theta_r, omega_r and theta, omega the input angle and speed that the
+        controller is to follow and as measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = slowest,
+        s_min, s_max = least, most. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
+        J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it
+        must be small. By the speed alone, lambda = 0, a motion of one sense under a position loop does not determine s. Below
+        omega_min it stands still: rest does not determine s, and around a reversal the error is that of the presliding.
 
         >>> from strainwave.compensation import FrictionScale
         >>> FrictionScale(gain=5.0).most
@@ -29,7 +33,8 @@ struct FrictionScale {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error of the input speed", 0));
+        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error sigma", 0));
+        visit(SW_FIELD(m, position_gain, "1/s", "Weight lambda of the error of the input angle", 0));
         visit(SW_FIELD(m, least, "1", "Least scale s_min, of the friction of the model", 0, 1));
         visit(SW_FIELD(m, most, "1", "Largest scale s_max", 1, 10));
         visit(SW_FIELD(m, slowest, "rad/s", "Slowest commanded input speed omega_min that determines the scale", 0));
@@ -50,7 +55,8 @@ struct FrictionScale {
         return {S(0.0), S(0.0), friction, friction};
     }
     constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
-        const S wanted = plan.input_speed(), error = wanted - plan.measured.input_speed;
+        const S wanted = plan.input_speed();
+        const S error = wanted - plan.measured.input_speed + position_gain * (plan.input_angle() - plan.measured.input_angle);
         const S moved = select(abs(wanted) < slowest, S(0.0), gain * plan.asked.friction * error * period);
         return {clip(x.scale + moved, least, most)};
     }

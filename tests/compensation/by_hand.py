@@ -1,0 +1,203 @@
+"""Compensators as a computer would run them, written by hand from their equations: around a PID with a limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+import strainwave as sw
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Instant:
+    """What is known at an instant: what is seen, what it is multiplied by, and what is asked for so far."""
+
+    seen: sw.Seen
+    ratio: float
+    period: float
+    lead: float = 0.0
+    lead_rate: float = 0.0
+    torque: float = 0.0
+    friction: float = 0.0
+
+    @property
+    def speed(self) -> float:
+        """Input speed that the controller is to follow [rad/s]."""
+        return self.ratio * self.seen.command_rate + self.lead_rate
+
+    @property
+    def error(self) -> float:
+        """Of the output angle [rad]."""
+        return self.seen.command - self.seen.output_angle
+
+
+class Compensator(Protocol):
+    """It adds to what is asked for, and learns of it once the motor was given a torque [N.m]."""
+
+    def add(self, now: Instant) -> None: ...
+    def learn(self, now: Instant, given: float) -> None: ...
+
+
+@dataclass
+class LostMotionMap:
+    law: sw.compensation.LostMotionMap
+    angle: float | None = None
+    sense: float = 0.0
+    lead: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        law, at = self.law, now.seen.command
+        moved = 0.0 if self.angle is None else at - self.angle
+        if moved != 0.0:
+            self.sense = np.sign(moved) + (self.sense - np.sign(moved)) * np.exp(-abs(moved) / law.reach)
+        forward, backward = (np.interp(at, law.angle, line) for line in (law.forward, law.backward))
+        lead = float(0.5 * (1.0 + self.sense) * forward + 0.5 * (1.0 - self.sense) * backward)
+        now.lead += now.ratio * lead
+        now.lead_rate += 0.0 if self.angle is None else now.ratio * (lead - self.lead) / now.period
+        self.angle, self.lead = at, lead
+
+    def learn(self, now: Instant, given: float) -> None: ...
+
+
+@dataclass
+class AdaptiveFourier:
+    law: sw.compensation.AdaptiveFourier
+    waves: Array = field(default_factory=lambda: np.zeros((2, 4)))  # of sines and of cosines
+    speed: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        order = np.array(self.law.order)
+        (sine, cosine), angle = self.waves[:, : order.size], order * now.seen.input_angle
+        self.speed = now.speed  # before its own rate
+        now.lead += now.ratio * float((sine * np.sin(angle) + cosine * np.cos(angle)).sum())
+        rate = order * self.speed * (sine * np.cos(angle) - cosine * np.sin(angle))
+        now.lead_rate += now.ratio * float(rate.sum())
+
+    def learn(self, now: Instant, given: float) -> None:
+        law, order = self.law, np.array(self.law.order)
+        late = order * now.seen.input_angle - order * self.speed * law.lag
+        step = law.gain * now.period * now.error * (abs(order * self.speed) < law.fastest) * (abs(self.speed) >= law.slowest)
+        self.waves[:, : order.size] += step * np.array([np.sin(late), np.cos(late)])
+        self.waves = np.clip(self.waves, -law.limit, law.limit)
+
+
+def hats(angle: float, cells: int = 32) -> Array:
+    """Hat functions of equal cells of a turn."""
+    apart = np.mod(angle * cells / (2.0 * np.pi) - np.arange(cells) + cells / 2, cells) - cells / 2
+    return np.maximum(1.0 - np.abs(apart), 0.0)
+
+
+@dataclass
+class Repetitive:
+    law: sw.compensation.Repetitive
+    values: Array = field(default_factory=lambda: np.zeros(32))
+    speed: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        self.speed = now.speed
+        place = now.seen.input_angle * 32 / (2.0 * np.pi)
+        cell = int(np.floor(place))
+        slope = (self.values[(cell + 1) % 32] - self.values[cell % 32]) * 32 / (2.0 * np.pi)
+        now.lead += now.ratio * float(hats(now.seen.input_angle) @ self.values)
+        now.lead_rate += now.ratio * float(slope) * self.speed
+
+    def learn(self, now: Instant, given: float) -> None:
+        law = self.law
+        if not law.slowest <= abs(self.speed) < law.fastest:
+            return
+        even = 0.5 * (np.roll(self.values, 1) + np.roll(self.values, -1))
+        moved = law.gain * now.error * hats(now.seen.input_angle - self.speed * law.lag)
+        moved -= law.smoothing * hats(now.seen.input_angle) * (self.values - even)
+        self.values = np.clip(self.values + now.period * moved, -law.limit, law.limit)
+
+
+@dataclass
+class DisturbanceObserver:
+    law: sw.compensation.DisturbanceObserver
+    filtered: float = 0.0
+    expected: float = 0.0
+    momentum: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        law = self.law
+        self.expected = now.torque
+        self.momentum = law.bandwidth * law.inertia * (now.seen.input_speed - now.speed)
+        now.torque += float(np.clip(self.filtered - self.momentum, -law.limit, law.limit))
+
+    def learn(self, now: Instant, given: float) -> None:
+        law = self.law
+        torque = law.torque_constant * now.seen.current if law.torque_constant else given
+        towards = torque - self.expected + self.momentum
+        self.filtered = towards + float(np.exp(-law.bandwidth * now.period)) * (self.filtered - towards)
+
+
+@dataclass
+class FrictionScale:
+    law: sw.compensation.FrictionScale
+    scale: float = 1.0
+    modelled: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        self.modelled = now.friction
+        now.torque += (self.scale - 1.0) * now.friction
+        now.friction *= self.scale
+
+    def learn(self, now: Instant, given: float) -> None:
+        law = self.law
+        if abs(now.speed) >= law.slowest:
+            error = now.speed - now.seen.input_speed
+            error += law.position_gain * (now.ratio * now.seen.command + now.lead - now.seen.input_angle)
+            moved = law.gain * self.modelled * error * now.period
+            self.scale = float(np.clip(self.scale + moved, law.least, law.most))
+
+
+@dataclass
+class DryFriction:
+    """A feed-forward of Coulomb's friction at the input of a rigid gear, and of nothing else."""
+
+    coulomb: float
+    presliding: float
+    sense: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        now.friction += self.coulomb * self.sense
+        now.torque += self.coulomb * self.sense
+        moved = now.ratio * now.seen.command_rate * now.period
+        if moved != 0.0:
+            self.sense = np.sign(moved) + (self.sense - np.sign(moved)) * np.exp(-abs(moved) / self.presliding)
+
+    def learn(self, now: Instant, given: float) -> None: ...
+
+
+@dataclass
+class Compensated:
+    """A PID with a limit, and what compensates around it.
+
+    Attributes:
+        law: the PID, on the input
+        part: what is added, for the factors of torque and speed
+        compensators: in the order in which they are asked
+    """
+
+    law: sw.control.PID
+    part: sw.Compensation
+    compensators: list[Any]
+    ratio: float
+    period: float
+
+    def __call__(self, seen: sw.Seen) -> float:
+        now = Instant(seen, self.ratio, self.period)
+        for compensator in self.compensators:
+            compensator.add(now)
+        per_torque, per_speed = self.part.actuation_per_torque, self.part.actuation_per_speed
+        asked = self.law.proportional * (self.ratio * seen.command + now.lead - seen.input_angle)
+        asked += self.law.derivative * (now.speed - seen.input_speed)
+        asked += per_torque * now.torque + per_speed * now.speed
+        actuation = float(np.clip(asked, -self.law.limit, self.law.limit))
+        for compensator in self.compensators:
+            compensator.learn(now, (actuation - per_speed * seen.input_speed) / per_torque)
+        return actuation

@@ -1,0 +1,96 @@
+"""Compensation around a controller in a computer against the same by hand; and what it adds, one part after the other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave import _core, compensation
+
+from tests.compensation import by_hand
+from tests.compensation.ideal import KINEMATICS, RATIO
+
+PERIOD, DURATION = 1e-3, 1.2  # s
+COMMAND = sw.scenario.sine(0.15, 1.3, DURATION) + sw.scenario.ramp(0.1, DURATION)
+GEAR = sw.Gear(
+    kinematics=KINEMATICS,
+    stiffness=sw.stiffness.Linear(k=1e4),
+    damping=20.0,
+    kinematic_error=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 3e-4], phase=[0.2, -1.0]),
+    friction_input=sw.friction.Coulomb(coulomb=0.03, breakaway=0.04, viscous=5e-4),
+    input_inertia=1e-4,
+)
+DRY = sw.Gear(
+    kinematics=KINEMATICS,
+    stiffness=sw.stiffness.Linear(k=1e15),
+    friction_input=sw.friction.Coulomb(coulomb=0.025, breakaway=0.025),
+)
+NO_LOAD = sw.loads.Inertia(inertia=1e-15)
+DC = sw.motor.DC(resistance=0.5, inductance=0.0, torque_constant=0.1, back_emf=0.12, inertia=1e-4)
+PARTS: dict[str, Any] = {
+    "lost_motion_map": compensation.LostMotionMap(
+        angle=[-0.1, 0.05, 0.2], forward=[3e-4, 1e-4, 4e-4], backward=[-2e-4, -3e-4, 1e-4], reach=0.02
+    ),
+    "model_feedforward": compensation.ModelFeedforward(gear=DRY, load=NO_LOAD, presliding=0.5),
+    "adaptive_fourier": compensation.AdaptiveFourier(order=[1.0, 2.0, 2.02], gain=20.0, lag=0.01, fastest=130.0, limit=2e-4),
+    "repetitive": compensation.Repetitive(gain=30.0, smoothing=5.0, lag=0.01, slowest=5.0, fastest=100.0, limit=2e-4),
+    "disturbance_observer": compensation.DisturbanceObserver(inertia=2.1e-4, bandwidth=120.0, limit=0.1),
+    "friction_scale": compensation.FrictionScale(gain=3.0, most=1.2, slowest=2.0),
+}
+HANDS = {
+    "lost_motion_map": by_hand.LostMotionMap,
+    "model_feedforward": lambda law: by_hand.DryFriction(law.gear.friction_input.coulomb, law.presliding),
+    "adaptive_fourier": by_hand.AdaptiveFourier,
+    "repetitive": by_hand.Repetitive,
+    "disturbance_observer": by_hand.DisturbanceObserver,
+    "friction_scale": by_hand.FrictionScale,
+}
+ALONE = [{place: name} for place in ("feedforward", "learning", "observer") for name in _core.families[place] if name != "none"]
+TOGETHER = [
+    {"feedforward": "model_feedforward", "learning": "adaptive_fourier", "observer": "friction_scale"},
+    {"feedforward": "model_feedforward", "learning": "repetitive", "observer": "disturbance_observer"},
+    {"feedforward": "lost_motion_map", "learning": "adaptive_fourier", "observer": "disturbance_observer"},
+]
+# A motor, and what it takes per torque and per input speed.
+MOTORS = {
+    "torque": (sw.motor.TorqueSource(inertia=1e-4), 1.0, 0.0),
+    "current": (sw.motor.CurrentSource(torque_constant=0.1, inertia=1e-4), 10.0, 0.0),
+    "voltage": (DC, DC.resistance / DC.torque_constant, DC.back_emf),
+}
+
+
+@pytest.mark.parametrize("motor", list(MOTORS))
+@pytest.mark.parametrize("chosen", [*ALONE, *TOGETHER], ids=lambda chosen: "+".join(chosen.values()))
+def test_it_is_the_recursion_by_hand(chosen: dict[str, str], motor: str) -> None:
+    plant, per_torque, per_speed = MOTORS[motor]
+    law = sw.control.PID(proportional=2.0 * per_torque, derivative=0.04 * per_torque, limit=0.12 * per_torque)
+    part = sw.Compensation(
+        **{place: PARTS[name] for place, name in chosen.items()}, actuation_per_torque=per_torque, actuation_per_speed=per_speed
+    )
+    drive = sw.Drive(gear=GEAR, motor=plant, load=sw.loads.Inertia(inertia=0.1))
+    control = sw.control.Sampled(law=law, period=PERIOD, compensation=part)
+    hands = [HANDS[name](PARTS[name]) for name in chosen.values()]
+    found = sw.simulate(drive.replace(control=control), COMMAND, sample=PERIOD)
+    wanted = sw.simulate_controlled(
+        drive, by_hand.Compensated(law, part, hands, RATIO, PERIOD), COMMAND, period=PERIOD, sample=PERIOD
+    )
+    for column in ("input_angle", "input_speed", "output_angle"):
+        assert found[column] == pytest.approx(wanted[column], abs=1e-9 * np.abs(wanted[column]).max())
+
+
+def test_every_compensator_is_written_by_hand() -> None:
+    listed = {name for place in ("feedforward", "learning", "observer") for name in _core.families[place]} - {"none"}
+    assert listed == set(HANDS) == set(PARTS)
+
+
+def test_without_parts_it_is_the_controller_alone() -> None:
+    """Whatever the motor is said to take."""
+    drive = sw.Drive(gear=GEAR, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.1))
+    law = sw.control.PID(proportional=2.0, derivative=0.04, limit=0.12)
+    runs = [
+        sw.simulate(drive.replace(control=sw.control.Sampled(law=law, **part)), COMMAND, sample=PERIOD)["output_angle"]
+        for part in ({}, {"compensation": sw.Compensation(actuation_per_torque=3.0)})
+    ]
+    assert np.array_equal(*runs)
