@@ -60,7 +60,7 @@ class NoFeedforward:
 
     def planned(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, or if `period` is not positive.
+        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
 class ModelFeedforward:
@@ -167,7 +167,7 @@ class ModelFeedforward:
 
     def planned(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, or if `period` is not positive.
+        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
 class LostMotionMap:
@@ -245,7 +245,7 @@ class LostMotionMap:
 
     def planned(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, or if `period` is not positive.
+        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
 class NoLearning:
@@ -598,13 +598,16 @@ class FrictionScale:
     """
     Observer of how much more or less friction there is than a model has: it wears, warms up, cools down.
 
-    .. math:: \\tau \\leftarrow \\tau + (\\hat s - 1) F, \\qquad \\dot{\\hat s} = \\gamma F\\, (\\omega_r - \\omega)
-              \\;\\text{ where } |\\omega_r| \\ge \\omega_{min}, \\qquad \\hat s \\in [s_{min}, s_{max}]
+    .. math:: \\tau \\leftarrow \\tau + (\\hat s - 1) F, \\qquad \\dot{\\hat s} = \\gamma F \\sigma
+              \\;\\text{ where } |\\omega_r| \\ge \\omega_{min}, \\qquad \\hat s \\in [s_{min}, s_{max}], \\qquad
+              \\sigma = \\omega_r - \\omega + \\lambda\\, (\\theta_r - \\theta)
 
-    with F the friction that the feed-forward asks for, omega_r and omega the input speed commanded and measured,
-    gamma = gain, omega_min = slowest, s_min, s_max = least, most. With J the inertia at the input and a speed loop that takes
-    energy away, J (omega_r - omega)^2 + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it must be
-    small. The motion determines s only while it moves, so below omega_min it stands still.
+    with F the friction that the feed-forward asks for, theta_r, omega_r and theta, omega the input angle and speed that the
+    controller is to follow and as measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = slowest,
+    s_min, s_max = least, most. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
+    J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it
+    must be small. By the speed alone, lambda = 0, a motion of one sense under a position loop does not determine s. Below
+    omega_min it stands still: rest does not determine s, and around a reversal the error is that of the presliding.
 
     >>> from strainwave.compensation import FrictionScale
     >>> FrictionScale(gain=5.0).most
@@ -612,7 +615,8 @@ class FrictionScale:
 
     Parameters
     ----------
-    gain: Rate gamma of the scale per friction and error of the input speed [1/(N.m.rad)], in [0, inf); default 1.0
+    gain: Rate gamma of the scale per friction and error sigma [1/(N.m.rad)], in [0, inf); default 1.0
+    position_gain: Weight lambda of the error of the input angle [1/s], in [0, inf); default 20.0
     least: Least scale s_min, of the friction of the model, in [0, 1]; default 0.5
     most: Largest scale s_max, in [1, 10]; default 1.5
     slowest: Slowest commanded input speed omega_min that determines the scale [rad/s], in [0, inf); default 1.0
@@ -627,18 +631,20 @@ class FrictionScale:
     SlotineLi1991, section 8.2: gradient of a Lyapunov function, linear in the unknown
     """
 
-    def __init__(self, *, gain: float = ..., least: float = ..., most: float = ..., slowest: float = ...) -> None: ...
+    def __init__(self, *, gain: float = ..., position_gain: float = ..., least: float = ..., most: float = ..., slowest: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., least: float = ..., most: float = ..., slowest: float = ...) -> FrictionScale:
+    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., position_gain: float = ..., least: float = ..., most: float = ..., slowest: float = ...) -> FrictionScale:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
     def gain(self) -> float:
-        """
-        Rate gamma of the scale per friction and error of the input speed [1/(N.m.rad)]
-        """
+        """Rate gamma of the scale per friction and error sigma [1/(N.m.rad)]"""
+
+    @property
+    def position_gain(self) -> float:
+        """Weight lambda of the error of the input angle [1/s]"""
 
     @property
     def least(self) -> float:

@@ -47,7 +47,9 @@ HANDS = {
     "disturbance_observer": by_hand.DisturbanceObserver,
     "friction_scale": by_hand.FrictionScale,
 }
-ALONE = [{place: name} for place in ("feedforward", "learning", "observer") for name in _core.families[place] if name != "none"]
+PLACES = ("feedforward", "learning", "observer")
+NAMES = [(place, name) for place in PLACES for name in _core.families[place] if name != f"no_{place}"]
+ALONE = [{place: name} for place, name in NAMES]
 TOGETHER = [
     {"feedforward": "model_feedforward", "learning": "adaptive_fourier", "observer": "friction_scale"},
     {"feedforward": "model_feedforward", "learning": "repetitive", "observer": "disturbance_observer"},
@@ -81,7 +83,7 @@ def test_it_is_the_recursion_by_hand(chosen: dict[str, str], motor: str) -> None
 
 
 def test_every_compensator_is_written_by_hand() -> None:
-    listed = {name for place in ("feedforward", "learning", "observer") for name in _core.families[place]} - {"none"}
+    listed = {name for _, name in NAMES}
     assert listed == set(HANDS) == set(PARTS)
 
 

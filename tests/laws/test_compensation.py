@@ -104,7 +104,7 @@ def test_the_opposite_command_gives_the_opposite_motion(place: str, name: str) -
 def test_it_changes_what_the_motor_is_given(place: str, name: str) -> None:
     """So that the other tests are of something."""
     with_it, without = (sw.simulate(one, COMMAND, sample=PERIOD)["motor_torque"] for one in (alone(place, name), drive_of({})))
-    assert np.array_equal(with_it, without) == (name == "none")
+    assert np.array_equal(with_it, without) == name.startswith("no_")
 
 
 @every_compensator
@@ -185,7 +185,7 @@ def test_all_numbers_of_its_state_have_names_of_their_own(place: str, name: str)
     names = [each for each, _, _ in _core.state(drive_of(TOGETHER | {place: name}))[0]]
     assert len(set(names)) == len(names)
     own = [each for each in names if each.startswith(f"control.compensation.{place}.")]
-    assert bool(own) == (name != "none")
+    assert bool(own) == (not name.startswith("no_"))
 
 
 @settings(max_examples=sample(15, 60), suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])

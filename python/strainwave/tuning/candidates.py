@@ -81,7 +81,9 @@ def _with_model(
     if feedback == "output":
         name += ", position by the output encoder"
     if scaling:
-        added = added.replace(observer=compensation.FrictionScale(gain=_scale_gain(plant, law)))
+        added = added.replace(
+            observer=compensation.FrictionScale(gain=_scale_gain(plant, law), position_gain=law.position_gain)
+        )
         name += ", scale of friction observed in place of the disturbance"
     if orders:
         lag = 1.0 / law.position_gain
