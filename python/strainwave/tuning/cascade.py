@@ -13,7 +13,8 @@ PHASE_OF_DELAY = 0.5  # rad that the delay takes where the speed loop crosses ov
 POSITION_SHARE = 0.25  # bandwidth of the position loop over that of the speed loop, so that it does not overshoot
 INTEGRAL_SHARE = 0.25  # likewise of the integral of the speed
 FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose friction the line of Coulomb and viscous friction goes
-DEFAULT_LIMIT = 20.0  # times the Coulomb friction: torque of a motor that states no limit
+LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor that states no limit, beside that of acceleration
+LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
 
 
 @dataclass(frozen=True)
@@ -94,9 +95,13 @@ def _torque_constant(part: Any) -> float | None:
 
 
 def _usual_limit(drive: Drive) -> float:
+    """Return the torque of a motor that states no limit [N.m]."""
     coulomb, _ = line_of_friction(drive.gear)
-    load = getattr(drive.load, "gravity_torque", 0.0) / abs(drive.gear.kinematics.ratio)
-    return DEFAULT_LIMIT * max(coulomb + load, 1e-3)
+    load: Any = drive.load
+    ratio = abs(drive.gear.kinematics.ratio)
+    inertia = drive.motor.inertia + drive.gear.input_inertia + load.inertia / ratio**2
+    levels = coulomb + getattr(load, "gravity_torque", 0.0) / ratio
+    return float(LIMIT_OF_LEVELS * levels + LIMIT_OF_ACCELERATION * inertia)
 
 
 def line_of_friction(gear: Gear) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -12,11 +13,11 @@ from strainwave import Drive, _core, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
 from strainwave.parameters import every
-from strainwave.simulation.ensemble import simulate_many
+from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, Candidate, baseline, candidates
 from strainwave.tuning.cascade import Plant
-from strainwave.tuning.drawn import drawn_gears
+from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 
 Array = NDArray[np.float64]
@@ -215,14 +216,13 @@ def judged(candidate: Candidate, goal: Goal, draws: Mapping[str, Array], sample:
     whole = {path: np.concatenate(([nominal[path]], values)) for path, values in draws.items()}
     step = min(MAX_STEP, STEP_OF_VIBRATION / _core.max_rate(candidate.drive, 0.0))
     effort = "current" if candidate.drive.motor.name == "current_source" else "motor_torque"
-    runs = simulate_many(
-        candidate.drive,
-        goal.command,
-        whole,
-        step,
-        record=["output_angle", "output_speed", effort],
-        sample=sample,
-    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EnsembleWarning)  # failures are counted
+        runs = simulate_many(
+            candidate.drive, goal.command, whole, step, record=["output_angle", "output_speed", effort], sample=sample
+        )
+    if len(runs.failures) == len(runs):
+        raise ValueError(f"no run of the {candidate.name} came to its end: {next(iter(runs.failures.values()))}")
     figures = goal.figures(runs, goal.command)
     return Judged(
         candidate,
@@ -240,19 +240,24 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
     """Yield what was assumed, and what cannot be gained."""
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
+    numbers = every(plant.drive)
     for effect, parts in EFFECTS.items():
-        paths = [path for part in parts for path in gear_set.sources if path.startswith(f"gear.{part}.")]
-        if not any(every(plant.drive)[path].value for path in paths):
+        own = [each for each in numbers.values() if each.path.startswith(tuple(f"gear.{part}." for part in parts))]
+        present = [each for each in own if each.value and scales(each.path, each.unit)]
+        assumed = sorted(
+            {each.path.removeprefix("gear.").split("[")[0] for each in present if gear_set.sources[each.path].assumed}
+        )
+        if not present:
             yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
-        elif assumed := [path for path in paths if gear_set.sources[path].assumed and every(plant.drive)[path].value]:
-            names = listed(sorted({path.removeprefix("gear.").split("[")[0] for path in assumed}))
-            spread = "any phase and 30 % more or less of it" if effect == "kinematic error" else "30 % more or less of it"
-            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
+        elif assumed:
+            phases = [each for each in own if is_phase(each.path) and gear_set.sources[each.path].assumed]
+            spread = f"{'any phase and ' if phases else ''}30 % more or less of it"
+            yield f"{effect} is assumed ({listed(assumed)}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
     bandwidth = best.candidate.law.position_gain
     if bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
         yield (
             f"the position loop reaches {bandwidth:.3g} rad/s with period {plant.period:g} s and delay {plant.delay:g} s, and "
-            f"the motion has {goal.pace:.3g} rad/s: a shorter delay gains more than a model"
+            f"the motion has {goal.pace:.3g} rad/s: a shorter period or delay would gain, too"
         )
     if best.failures:
         yield f"{best.failures} of the drawn gears did not run to their end under the cascade"

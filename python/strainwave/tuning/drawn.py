@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 SPREAD = 0.3  # relative, either way, of gears about a number that is assumed, or whose spread is not stated
 SPREAD_OF_LOAD = 0.2  # likewise of inertia and weight of a load whose spread is not stated
+SHAPES = {"pressure_angle", "reference_temperature"}  # numbers that the gear has more than once, or that scale nothing
 SCALED = {"N.m", "N.m/rad", "N.m.s/rad", "rad", "kg.m2"}  # units of numbers that a gear may have more or less of
 PARTS = ("gear.stiffness", "gear.hysteresis", "gear.kinematic_error", "gear.friction_input", "gear.friction_mesh",
          "gear.friction_output", "load")  # fmt: skip
@@ -51,12 +52,22 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
                 continue
             if path in identified:
                 draws[path] = np.clip(identified[path], number.low, number.high)
-            elif path.split("[")[0].endswith("phase"):
+            elif is_phase(path):
                 if gear_set.sources[path].assumed and part != "load":
                     draws[path] = chance.uniform(-np.pi, np.pi, members)
-            elif number.unit in SCALED and number.value != 0.0:
+            elif scales(path, number.unit) and number.value != 0.0:
                 draws[path] = np.clip(number.value * factor, number.low, number.high)
     return draws
+
+
+def is_phase(path: str) -> bool:
+    """True for the phase of a wave over an angle."""
+    return path.split("[")[0].endswith("phase")
+
+
+def scales(path: str, unit: str) -> bool:
+    """True if a gear may have more or less of a number."""
+    return unit in SCALED and path.rpartition(".")[2] not in SHAPES and not is_phase(path)
 
 
 def _identified(gear_set: GearSet, members: int, chance: np.random.Generator) -> Iterator[tuple[str, Array]]:
