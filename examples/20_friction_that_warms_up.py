@@ -1,0 +1,59 @@
+"""A joint that warms up: the scale of its friction is observed while it works, and the compensation stays right.
+
+The feed-forward knows the friction of the cold joint. As its grease warms up, friction falls, and what is fed forward becomes
+too much. The observer of the scale follows by the error of speed and angle. It has no thermometer; the dashed line is the truth,
+the friction of the warm joint over that of the cold one at the mean speed of the motion. The heat capacities are small, so that
+three minutes stand for an hour.
+"""
+
+import numpy as np
+import strainwave as sw
+from matplotlib.figure import Figure
+from strainwave.tuning.candidates import EFFECTS, with_effects
+from strainwave.tuning.cascade import Plant, model_of, tuned_law
+
+joint = sw.GearSet.read("robot-joint")
+plant = Plant.of(joint, period=1e-3, delay=0.0)
+gear = plant.drive.gear.replace({"friction_input.dry_fall": 0.02})  # its dry friction falls, too
+heat = sw.thermal.Heating(winding_capacity=50.0, winding_resistance=1.0, gear_capacity=20.0, gear_resistance=2.0)
+law = tuned_law(plant, 0.25, friction=False)
+swing = sw.scenario.sine(0.5, 0.5, 4.0, phase=-np.pi / 2, offset=0.5)
+
+
+def worked(observer: object, rounds: int = 40) -> np.ndarray:
+    """Temperature [K], tracking error [rad], observed and true scale of friction after each round of four seconds."""
+    model = model_of(plant, with_effects(gear, tuple(EFFECTS)))
+    added = sw.Compensation(feedforward=model, observer=observer, actuation_per_torque=plant.actuation_per_torque)
+    drive = plant.controlled(law, added).replace(gear=gear, thermal=heat, sensors=sw.Sensors())
+    state, rows = None, []
+    for _ in range(rounds):
+        run = sw.simulate(drive, swing, sample=4e-3, **({} if state is None else {"start": state}))
+        state, warm, error = run.end, float(run["temperature"][-1]), run["command"] - run["output_angle"]
+        speed = float(np.mean(np.abs(run["input_speed"])))
+        true = gear.friction_input.steady(speed, temperature=warm) / gear.friction_input.steady(speed)
+        scale = state["control.compensation.observer.scale"] if hasattr(observer, "gain") else 1.0
+        rows.append((warm, float(np.sqrt(np.mean(error[100:] ** 2))), scale, float(true)))
+    return np.array(rows).T
+
+
+observer = sw.compensation.FrictionScale(gain=2.0, position_gain=law.position_gain, slowest=30.0)
+cold, observed = worked(sw.compensation.NoObserver()), worked(observer)
+print(f"the gear warms up from 20 degC to {observed[0, -1] - 273.15:.0f} degC")
+print(f"scale of friction: observed {observed[2, -1]:.2f}, true {observed[3, -1]:.2f}")
+print(
+    f"tracking error at the end: {1e6 * cold[1, -1]:.0f} urad by the cold model, {1e6 * observed[1, -1]:.0f} urad with the scale"
+)
+
+figure = Figure(figsize=(8.0, 3.6), layout="constrained")
+scales, errors = figure.subplots(1, 2)
+time = 4.0 * np.arange(1, 1 + observed.shape[1])
+scales.plot(time, observed[2], color="#c2410c", label="observed")
+scales.plot(time, observed[3], "--", color="#1c2127", label="true")
+errors.plot(time, 1e6 * cold[1], color="#2166ac", label="model of the cold joint")
+errors.plot(time, 1e6 * observed[1], color="#c2410c", label="with the scale observed")
+scales.set(xlabel="time [s]", ylabel="friction over that of the cold joint [1]")
+errors.set(xlabel="time [s]", ylabel="tracking error [µrad]")
+for axes in (scales, errors):
+    axes.legend()
+    axes.grid(alpha=0.3)
+figure.savefig("warming.png", dpi=110)
