@@ -1,7 +1,7 @@
 """A joint that warms up: the scale of its friction is observed while it works, and the compensation stays right.
 
 The feed-forward knows the friction of the cold joint. As its grease warms up, friction falls, and what is fed forward becomes
-too much. The observer of the scale follows by the error of speed and angle. It has no thermometer; the dashed line is the truth,
+too much. The observer of the scale follows by the error of speed and angle, without a thermometer. The dashed line is true:
 the friction of the warm joint over that of the cold one at the mean speed of the motion. The heat capacities are small, so that
 three minutes stand for an hour.
 """
@@ -40,9 +40,7 @@ observer = sw.compensation.FrictionScale(gain=2.0, position_gain=law.position_ga
 cold, observed = worked(sw.compensation.NoObserver()), worked(observer)
 print(f"the gear warms up from 20 degC to {observed[0, -1] - 273.15:.0f} degC")
 print(f"scale of friction: observed {observed[2, -1]:.2f}, true {observed[3, -1]:.2f}")
-print(
-    f"tracking error at the end: {1e6 * cold[1, -1]:.0f} urad by the cold model, {1e6 * observed[1, -1]:.0f} urad with the scale"
-)
+print(f"tracking error: {1e6 * cold[1, -1]:.0f} urad by the cold model, {1e6 * observed[1, -1]:.0f} urad with the scale")
 
 figure = Figure(figsize=(8.0, 3.6), layout="constrained")
 scales, errors = figure.subplots(1, 2)
