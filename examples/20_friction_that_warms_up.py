@@ -20,14 +20,14 @@ law = tuned_law(plant, 0.25, friction=False)
 swing = sw.scenario.sine(0.5, 0.5, 4.0, phase=-np.pi / 2, offset=0.5)
 
 
-def worked(observer: object, rounds: int = 40) -> np.ndarray:
+def worked(observer: sw.compensation.NoObserver | sw.compensation.FrictionScale, rounds: int = 40) -> np.ndarray:
     """Temperature [K], tracking error [rad], observed and true scale of friction after each round of four seconds."""
     model = model_of(plant, with_effects(gear, tuple(EFFECTS)))
     added = sw.Compensation(feedforward=model, observer=observer, actuation_per_torque=plant.actuation_per_torque)
     drive = plant.controlled(law, added).replace(gear=gear, thermal=heat, sensors=sw.Sensors())
-    state, rows = None, []
+    state, rows = drive.rest(), []
     for _ in range(rounds):
-        run = sw.simulate(drive, swing, sample=4e-3, **({} if state is None else {"start": state}))
+        run = sw.simulate(drive, swing, sample=4e-3, start=state)
         state, warm, error = run.end, float(run["temperature"][-1]), run["command"] - run["output_angle"]
         speed = float(np.mean(np.abs(run["input_speed"])))
         true = gear.friction_input.steady(speed, temperature=warm) / gear.friction_input.steady(speed)

@@ -11,9 +11,8 @@ void bind_drive_parts(nb::module_& core) {
     bind_list<NoVerbs>(core, compensation, "observer", strainwave::compensation::Observers{});
     const Bound<ParameterCompensation> whole{bind<ParameterCompensation>(core, "Compensation", "compensation"),
                                              description_of<ParameterCompensation>()};
-    property(whole, "active", "bool", "Whether it makes any difference.", [](const ParameterCompensation& m) {
-        return m.feedforward.model.index() > 0 || m.learning.model.index() > 0 || m.observer.model.index() > 0;
-    });
+    property(whole, "active", "bool", "Whether it makes any difference.",
+             [](const ParameterCompensation& m) { return m.active(); });
     bind_family<NoVerbs>(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
     bind_family<NoVerbs>(core, "sensor", "What a controller sees a quantity by.", sensor::Models{});
     bind_family<NoVerbs>(core, "thermal", "Temperatures of a drive.", thermal::Models{});

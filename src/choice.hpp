@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/compensation/compensator.hpp>
 #include <strainwave/control/law.hpp>
 #include <strainwave/field.hpp>
 #include <strainwave/load/load.hpp>
@@ -56,6 +57,12 @@ struct Choice {
     }
     constexpr bool needs_current() const {
         return visit([](const auto& law) { return control::needs_current(law); });
+    }
+    constexpr bool follows_angle() const {
+        return visit([](const auto& law) { return control::follows_angle(law); });
+    }
+    constexpr bool active() const {
+        return visit([](const auto& law) { return compensation::active(law); });
     }
     constexpr const char* actuation() const {
         return visit([](const auto& law) { return motor::taken_by(law); });

@@ -75,10 +75,10 @@ struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
 }  // namespace detail
 
 template <class S>
-using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
-                     AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,
-                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>, AnyOf<S, softening::Models>,
-                     AnyOf<S, structure::Models>, AnyOf<S, variation::Models>>;
+using AnyGear =
+    Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
+         AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>, AnyOf<S, friction::Models>,
+         AnyOf<S, friction::Models>, AnyOf<S, softening::Models>, AnyOf<S, structure::Models>, AnyOf<S, variation::Models>>;
 
 namespace detail {
 
@@ -88,9 +88,9 @@ struct AtRunTime<S, compensation::ModelFeedforward<S, Gear, Load>> {
 };
 template <class S, class Law, class Compensation_>
 struct AtRunTime<S, control::Sampled<S, Law, Compensation_>> {
-    using type = control::Sampled<S, AnyOf<S, control::Continuous>,
-                                  Compensation<S, AnyOf<S, compensation::Feedforwards>, AnyOf<S, compensation::Learners>,
-                                               AnyOf<S, compensation::Observers>>>;
+    using type = control::Sampled<
+        S, AnyOf<S, control::Continuous>,
+        Compensation<S, AnyOf<S, compensation::Feedforwards>, AnyOf<S, compensation::Learners>, AnyOf<S, compensation::Observers>>>;
 };
 
 }  // namespace detail

@@ -151,37 +151,37 @@ void variation_verbs(const BoundLaw& of) {
 
 void feedforward_verbs(const BoundLaw& of) {
     using Part = general::Feedforward<double>;
-    define_verb(of.type, of.description, "planned",
-                {{"angle", SW_NUMBERS}, {"speed", SW_NUMBERS}, {"ratio", "float"}, {"period", "float"}},
-                "tuple[" SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY "]",
-                "What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` "
-                "[s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how "
-                "fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape "
-                "(n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign "
-                "outside of [1e-6, 1e6].",
-                [of](const void* model, const Call& call) -> nb::object {
-                    const auto angle = path_of(call["angle"], "angle"), speed = path_of(call["speed"], "speed");
-                    const double period = call.number("period"), ratio = call.number("ratio");
-                    if (angle.size() != speed.size()) throw nb::value_error("angle and speed must have the same length");
-                    check_domain(of.description.name, {"period", period, 1e-9, 1e6, "s", ""});
-                    check_domain(of.description.name, {"ratio", std::abs(ratio), 1e-6, 1e6, "1", "it may have either sign"});
-                    const auto law = single_law<Part>(of, model);
-                    auto x = law.part.initial_state();
-                    auto [lead, a] = like(angle);
-                    auto [lead_rate, b] = like(angle);
-                    auto [torque, c] = like(angle);
-                    auto [friction, d] = like(angle);
-                    for (std::size_t i = 0; i < angle.size(); ++i) {
-                        let_interrupt(i);
-                        const auto found = law.part.planned(x, {angle.data()[i], speed.data()[i], ratio}, period);
-                        x = found.later;
-                        a[i] = found.asked.input_lead;
-                        b[i] = found.asked.input_lead_rate;
-                        c[i] = found.asked.torque;
-                        d[i] = found.asked.friction;
-                    }
-                    return nb::make_tuple(lead, lead_rate, torque, friction);
-                });
+    define_verb(
+        of.type, of.description, "planned", {{"angle", SW_NUMBERS}, {"speed", SW_NUMBERS}, {"ratio", "float"}, {"period", "float"}},
+        "tuple[" SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY "]",
+        "What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` "
+        "[s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how "
+        "fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape "
+        "(n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign "
+        "outside of [1e-6, 1e6].",
+        [of](const void* model, const Call& call) -> nb::object {
+            const auto angle = path_of(call["angle"], "angle"), speed = path_of(call["speed"], "speed");
+            const double period = call.number("period"), ratio = call.number("ratio");
+            if (angle.size() != speed.size()) throw nb::value_error("angle and speed must have the same length");
+            check_domain(of.description.name, {"period", period, 1e-9, 1e6, "s", ""});
+            check_domain(of.description.name, {"ratio", std::abs(ratio), 1e-6, 1e6, "1", "it may have either sign"});
+            const auto law = single_law<Part>(of, model);
+            auto x = law.part.initial_state();
+            auto [lead, a] = like(angle);
+            auto [lead_rate, b] = like(angle);
+            auto [torque, c] = like(angle);
+            auto [friction, d] = like(angle);
+            for (std::size_t i = 0; i < angle.size(); ++i) {
+                let_interrupt(i);
+                const auto found = law.part.planned(x, {angle.data()[i], speed.data()[i], ratio}, period);
+                x = found.later;
+                a[i] = found.asked.input_lead;
+                b[i] = found.asked.input_lead_rate;
+                c[i] = found.asked.torque;
+                d[i] = found.asked.friction;
+            }
+            return nb::make_tuple(lead, lead_rate, torque, friction);
+        });
 }
 
 namespace {

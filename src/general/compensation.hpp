@@ -35,7 +35,6 @@ struct Correction : Part {
 };
 
 template <class S>
-using AnyCompensation =
-    Compensation<S, Feedforward<S>, Correction<S, Corrections::learning>, Correction<S, Corrections::observer>>;
+using AnyCompensation = Compensation<S, Feedforward<S>, Correction<S, Corrections::learning>, Correction<S, Corrections::observer>>;
 
 }  // namespace strainwave::general

@@ -11,6 +11,8 @@ from strainwave import _core, compensation
 
 from tests.compensation import by_hand
 from tests.compensation.ideal import KINEMATICS, RATIO
+from tests.control.discrete import CURRENT
+from tests.control.discrete import DC as WOUND
 
 PERIOD, DURATION = 1e-3, 1.2  # s
 COMMAND = sw.scenario.sine(0.15, 1.3, DURATION) + sw.scenario.ramp(0.1, DURATION)
@@ -96,3 +98,45 @@ def test_without_parts_it_is_the_controller_alone() -> None:
         for part in ({}, {"compensation": sw.Compensation(actuation_per_torque=3.0)})
     ]
     assert np.array_equal(*runs)
+
+
+LAWS = {
+    "position_speed": (
+        sw.control.PositionSpeed(position_gain=20.0, speed_proportional=0.1, speed_feedforward=1.0), CURRENT, 10.0, 0.0),
+    "cascade": (
+        sw.control.Cascade(position_gain=20.0, speed_proportional=0.1, speed_feedforward=1.0, current_proportional=0.4,
+                           current_integral=100.0, back_emf_feedforward=0.12), WOUND, 10.0, 0.0),
+    "pid": (sw.control.PID(proportional=2.0, derivative=0.2), WOUND, 5.0, 0.12),
+    "lead_lag": (sw.control.LeadLag(gain=2.0, lead_numerator=0.05, lead_denominator=0.005), WOUND, 5.0, 0.12),
+    "state_feedback": (sw.control.StateFeedback(input_angle=2.0, input_speed=0.05), WOUND, 5.0, 0.12),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(LAWS))
+def test_it_serves_every_law_that_follows_an_angle(name: str) -> None:
+    """Each follows the input that the model leads, and adds what it asks for, in the unit of its motor."""
+    law, motor, per_torque, per_speed = LAWS[name]
+    gear = sw.Gear(
+        kinematics=sw.kinematics.PlainRatio(reduction=20.0),
+        stiffness=sw.stiffness.Linear(k=2e3),
+        damping=0.4,
+        kinematic_error=sw.kinematic_error.Fourier(order=[1.0], amplitude=[1e-3], phase=[0.4]),
+        friction_input=sw.friction.Coulomb(coulomb=0.05, viscous=1e-3),
+    )
+    arm = sw.loads.Pendulum(inertia=0.05, gravity_torque=2.0)
+    model = sw.compensation.ModelFeedforward(gear=gear, load=arm, motor_inertia=1e-4)
+    whole = sw.Compensation(feedforward=model, actuation_per_torque=per_torque, actuation_per_speed=per_speed)
+    command, errors = sw.scenario.sine(0.3, 0.5, 4.0, phase=-0.5 * np.pi, offset=0.3), []
+    for added in (sw.Compensation(), whole):
+        control = sw.control.Sampled(law=law, period=5e-4, compensation=added)
+        run = sw.simulate(sw.Drive(gear=gear, motor=motor, load=arm, control=control), command, 1e-4, sample=1e-3)
+        errors.append(np.sqrt(np.mean((command.value(run.time) - run["output_angle"])[2000:] ** 2)))
+    assert errors[1] < 0.1 * errors[0]
+
+
+@pytest.mark.parametrize("law", [sw.control.PI(), sw.control.OpenLoop()])
+def test_a_law_that_follows_no_angle_is_refused(law: sw.control.PI | sw.control.OpenLoop) -> None:
+    observer = sw.compensation.DisturbanceObserver(inertia=1e-4, limit=1.0)
+    with pytest.raises(ValueError, match="law must follow an angle"):
+        sw.control.Sampled(law=law, compensation=sw.Compensation(observer=observer))
+    assert not sw.control.Sampled(law=law).compensation.active

@@ -61,8 +61,12 @@ struct Compensation {
             compiled(feedforward), compiled(learning), compiled(observer), actuation_per_torque, actuation_per_speed};
     }
 
-    using State =
-        CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State>;
+    /// Whether it makes any difference.
+    constexpr bool active() const {
+        return compensation::active(feedforward) || compensation::active(learning) || compensation::active(observer);
+    }
+
+    using State = CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State>;
     constexpr State initial_state() const {
         return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer)};
     }

@@ -15,6 +15,15 @@
 ///     advance(state, plan, asked, given, period) -> State, a period later; `given` is the torque of the motor [N.m]
 namespace strainwave::compensation {
 
+/// Whether a compensator makes any difference; asked of a choice, the one chosen.
+template <class Compensator>
+constexpr bool active(const Compensator& compensator) {
+    if constexpr (requires { compensator.active(); })
+        return compensator.active();
+    else
+        return true;
+}
+
 /// What is asked for beside the controller.
 template <class S>
 struct Asked {

@@ -32,7 +32,8 @@ struct DisturbanceObserver {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_REQUIRED(m, inertia, "kg.m2", "Inertia J at the input: rotor, wave generator, and load over ratio squared", smallest));
+        visit(SW_REQUIRED(m, inertia, "kg.m2", "Inertia J at the input: rotor, wave generator, and load over ratio squared",
+                          smallest));
         visit(SW_FIELD(m, bandwidth, "rad/s", "Bandwidth g of the filter", smallest));
         visit(SW_REQUIRED(m, limit, "N.m", "Largest torque that it adds", 0));
         visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current measured; 0: by what the motor is given", 0));

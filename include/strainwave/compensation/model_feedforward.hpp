@@ -52,7 +52,8 @@ struct ModelFeedforward {
 
     static constexpr auto name = "model_feedforward";
     static constexpr auto source =
-        "the equations of the drive, solved for the input along the commanded motion; fixed point of the kinematic error: Banach1922; "
+        "the equations of the drive, solved for the input along the commanded motion; fixed point of the kinematic error: "
+        "Banach1922; "
         "presliding of the sense of friction: Dahl1968";
     static constexpr auto doc = R"(
         What a model of the drive asks for so that the output moves as it is commanded, before any error.

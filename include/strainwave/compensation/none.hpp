@@ -20,6 +20,7 @@ struct NoFeedforward {
     static constexpr void fields(Self&, Visit&&) {}
 
     using State = Stateless<S>;
+    static constexpr bool active() { return false; }
     constexpr Planned<S, State> planned(const State&, const control::Command<S>&, const S&) const { return {}; }
 };
 
@@ -40,6 +41,7 @@ struct NoObserver {
     static constexpr void fields(Self&, Visit&&) {}
 
     using State = Stateless<S>;
+    static constexpr bool active() { return false; }
     constexpr Asked<S> added(const State&, const Plan<S>&) const { return {}; }
     constexpr State advance(const State&, const Plan<S>&, const Asked<S>&, const S&, const S&) const { return {}; }
 };
@@ -61,6 +63,7 @@ struct NoLearning {
     static constexpr void fields(Self&, Visit&&) {}
 
     using State = Stateless<S>;
+    static constexpr bool active() { return false; }
     constexpr Asked<S> added(const State&, const Plan<S>&) const { return {}; }
     constexpr State advance(const State&, const Plan<S>&, const Asked<S>&, const S&, const S&) const { return {}; }
 };

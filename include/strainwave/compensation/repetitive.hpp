@@ -72,7 +72,8 @@ struct Repetitive {
         State later = x;
         for (int j = 0; j < cells; ++j) {
             const S even = S(0.5) * (x.value[(j + cells - 1) % cells] + x.value[(j + 1) % cells]);
-            const S moved = gain * step * weight(distance(late, j)) * error - taken * weight(distance(place, j)) * (x.value[j] - even);
+            const S moved =
+                gain * step * weight(distance(late, j)) * error - taken * weight(distance(place, j)) * (x.value[j] - even);
             later.value[j] = clip(x.value[j] + moved, -limit, limit);
         }
         return later;

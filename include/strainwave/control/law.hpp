@@ -107,6 +107,17 @@ constexpr const char* given_by(const Law& law) {
         return "";
 }
 
+/// Whether a law is given an angle of the output to follow.
+template <class Law>
+constexpr bool follows_angle(const Law& law) {
+    if constexpr (requires { law.follows_angle(); })
+        return law.follows_angle();
+    else if constexpr (requires { Law::command_unit; })
+        return same(Law::command_unit, "rad");
+    else
+        return false;
+}
+
 /// Whether a law acts at once by the current it measures: then the current must not follow the actuation at once.
 template <class Law>
 constexpr bool needs_current(const Law& law) {

@@ -29,7 +29,9 @@ struct OpenLoop {
 
     using State = Stateless<S>;
 
-    constexpr S act(const State&, const Command<S>& command, const Measurement<S>&) const { return gain * command.value + command.feedforward; }
+    constexpr S act(const State&, const Command<S>& command, const Measurement<S>&) const {
+        return gain * command.value + command.feedforward;
+    }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
 };

@@ -47,7 +47,13 @@ struct Sampled {
         visit(SW_FIELD(m, delay, "s", "Time from a sample to the output that is worked out from it", 0));
     }
 
-    constexpr const char* problem() const { return all(delay <= period) ? nullptr : "delay must not exceed period"; }
+    constexpr const char* problem() const {
+        if (!all(delay <= period)) return "delay must not exceed period";
+        return !compensation.active() || follows_angle(law)
+                   ? nullptr
+                   : "compensation is that of a motion: law must follow an angle, as PositionSpeed, Cascade, PID, LeadLag and "
+                     "StateFeedback do";
+    }
 
     using State = Stateless<S>;
     constexpr State initial_state() const { return {}; }
@@ -98,8 +104,8 @@ struct Sampled {
         const S actuation = law.act(x.law, asked, measured), pending = select(now, actuation, x.pending);
         const auto compensated = compensation.advance(x.compensation, instant, actuation, period);
         const S until_sample = select(now, x.until_sample + period, x.until_sample);
-        return with_output({refilled(x.law, numbers), chosen<S>(now, compensated, x.compensation), x.actuation, pending, until_sample},
-                           within);
+        return with_output(
+            {refilled(x.law, numbers), chosen<S>(now, compensated, x.compensation), x.actuation, pending, until_sample}, within);
     }
     constexpr Schedule<S> schedule(const Discrete& x) const { return {x.until_sample, period, delay}; }
 

@@ -53,7 +53,7 @@ struct StateFeedback {
         const S of_output =
             output_angle * (command.value - measured.output_angle) + output_speed * (command.rate - measured.output_speed);
         return measured.limits.within(limit).limited(of_input + of_output - current * measured.current - torque * measured.torque +
-                                                      command.feedforward);
+                                                     command.feedforward);
     }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
