@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from strainwave.simulation.run import Run, simulate, simulate_adaptively
     from strainwave.simulation.scenario_file import ScenarioFile
     from strainwave.tuning.compensate import Compensated, compensate
+    from strainwave.tuning.regulator import regulator
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
@@ -125,6 +126,7 @@ _LAZY = {
     "plan_experiments": "identification.excitation.plan",
     "predict": "identification.predict",
     "profile": "identification.fitting.profile",
+    "regulator": "tuning.regulator",
     "rig": "rig",
     "ripple": "orders.ripple",
     "save": "files.gear_set",
@@ -208,6 +210,7 @@ __all__ = [
     "plan_experiments",
     "predict",
     "profile",
+    "regulator",
     "rig",
     "ripple",
     "save",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from strainwave import Compensation, Drive, Gear, compensation, control, loads, motor, stiffness
@@ -15,6 +16,15 @@ INTEGRAL_SHARE = 0.25  # likewise of the integral of the speed
 FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose friction the line of Coulomb and viscous friction goes
 LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor that states no limit, beside that of acceleration
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
+
+
+def gear_set_of(drive: GearSet | Drive | str | Path) -> GearSet:
+    """Return the set of a drive, which may be named."""
+    if isinstance(drive, GearSet):
+        return drive
+    if isinstance(drive, Drive):
+        return GearSet.of(drive, name="the drive", source="given")
+    return GearSet.read(drive)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from strainwave.parameters import every
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, Candidate, baseline, candidates
-from strainwave.tuning.cascade import Plant
+from strainwave.tuning.cascade import Plant, gear_set_of
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 
@@ -114,7 +115,7 @@ class Compensated:
 
 
 def compensate(
-    drive: GearSet | Drive | str,
+    drive: GearSet | Drive | str | Path,
     *,
     goal: str = "position",
     period: float = 1e-3,
@@ -148,7 +149,7 @@ def compensate(
     >>> found.chosen.candidate.effects, found.gain > 0.5
     (('friction', 'torsion'), True)
     """
-    gear_set = _gear_set(drive)
+    gear_set = gear_set_of(drive)
     arguments.one_of("encoder", encoder, ("input", "output"))
     arguments.whole("members", members, MIN_MEMBERS)
     plant = Plant.of(
@@ -183,14 +184,6 @@ def _chosen(best: Judged, others: Sequence[Judged], goal: Goal) -> Judged:
     return min(
         (each for each in better if each.median(figure) <= enough), key=lambda each: (each.candidate.parts, each.median(figure))
     )
-
-
-def _gear_set(drive: GearSet | Drive | str) -> GearSet:
-    if isinstance(drive, GearSet):
-        return drive
-    if isinstance(drive, Drive):
-        return GearSet.of(drive, name="the drive", source="given")
-    return GearSet.read(drive)
 
 
 def goal_of(name: str, plant: Plant, travel: float, speed: float | None) -> Goal:
