@@ -113,6 +113,6 @@ def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:
     radius = float(np.abs(np.linalg.eigvals(loop)).max())
     if not radius < 1.0:
         raise ValueError(
-            f"the loop is not stable with a delay of {plant.delay:g} s: its poles reach {radius:.4f} of the unit circle; take a "
-            "larger error, a smaller effort or a shorter delay"
+            f"the loop is not stable with a delay of {plant.delay:g} s: its poles reach {radius:.4f} of the unit circle; "
+            "take a larger error, a smaller effort or a shorter delay"
         )
