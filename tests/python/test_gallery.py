@@ -333,3 +333,13 @@ def test_a_worn_joint_contradicts_the_saved_one(gallery: Callable[[str], dict[st
     (dry,) = found["worn"].changed
     assert dry.name == "dry friction"
     assert abs(dry.value - 1.3) < 0.03
+
+
+def test_pulses_and_paths_reach_where_friction_and_lost_motion_leave(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """A load that breaks away jumps by 2 (F_s - F_c) / K = 93 urad; the pulses are corrected to about half of that."""
+    found = gallery("18")
+    planned, measured = found["spreads"]["planned"], found["spreads"]["measured"]
+    assert measured.median_error < 0.5 * 2.0 * (0.186984 - 0.18) / 150.0 < planned.median_error
+    for name in ("document T's gear", "CSG-20-100"):
+        assert found["apart"][name, "plain"] == pytest.approx(-1.0, abs=0.03)
+        assert abs(found["apart"][name, "one side"]) < 0.002
