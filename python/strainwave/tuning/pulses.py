@@ -303,7 +303,8 @@ def _corrected(plan: PulsePlan, rest: _Resting, tolerance: float, max_pulses: in
         if at_input > 0.0:
             per_square, share = at_input / width**2, 1.0
         if at_output > rest.max_drift:
-            lost, wind_up = lost + (at_input - at_output - wind_up if wind_up > 0.0 else 0.0), 0.0
+            shown = lost + at_input - at_output - wind_up if wind_up > 0.0 else lost
+            lost, wind_up = max(shown, 0.0), 0.0
         wind_up = max(wind_up - at_input, 0.0)
         widths.append(sense * width)
     return widths
