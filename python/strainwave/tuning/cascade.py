@@ -91,15 +91,6 @@ class Plant:
         return self.drive.replace(control=sampled)
 
 
-def gear_set_of(drive: GearSet | Drive | str) -> GearSet:
-    """Return a drive as a set, if it is none yet; one of a name or path is read."""
-    if isinstance(drive, GearSet):
-        return drive
-    if isinstance(drive, Drive):
-        return GearSet.of(drive, name="the drive", source="given")
-    return GearSet.read(drive)
-
-
 def _torque_constant(part: Any) -> float | None:
     """Return the torque per current of a motor [N.m/A]; None if it takes a torque."""
     if type(part) is motor.TorqueSource:
