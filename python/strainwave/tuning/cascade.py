@@ -6,14 +6,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from strainwave import Compensation, Drive, Gear, compensation, control, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
+from strainwave.tuning.steady_torque import steady_torque
 
 RIGID = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
 PHASE_OF_DELAY = 0.5  # rad that the delay takes where the speed loop crosses over: 60 degrees are left
 POSITION_SHARE = 0.25  # bandwidth of the position loop over that of the speed loop, so that it does not overshoot
 INTEGRAL_SHARE = 0.25  # likewise of the integral of the speed
 FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose friction the line of Coulomb and viscous friction goes
+ANGLES = 64  # of a turn of the input, over which friction is averaged
 LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor that states no limit, beside that of acceleration
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
 
@@ -56,7 +60,7 @@ class Plant:
         drive = gear_set.drive
         if type(drive.load) is loads.Prescribed:
             raise ValueError(f"{gear_set.name}: the load prescribes the motion of the output; give one with an inertia")
-        constant = _torque_constant(drive.motor)
+        constant = torque_constant(drive.motor)
         inertia = drive.motor.inertia
         ideal = motor.TorqueSource(inertia=inertia) if constant is None else motor.CurrentSource(
             torque_constant=constant, inertia=inertia)  # fmt: skip
@@ -91,7 +95,7 @@ class Plant:
         return self.drive.replace(control=sampled)
 
 
-def _torque_constant(part: Any) -> float | None:
+def torque_constant(part: Any) -> float | None:
     """Return the torque per current of a motor [N.m/A]; None if it takes a torque."""
     if type(part) is motor.TorqueSource:
         return None
@@ -115,17 +119,11 @@ def _usual_limit(drive: Drive) -> float:
 
 
 def line_of_friction(gear: Gear) -> tuple[float, float]:
-    """Return Coulomb [N.m] and viscous friction [N.m.s/rad] at the input: the line through that at two speeds."""
-    slow, fast = (_steady_friction(gear, speed) for speed in (SLOW_SPEED, FAST_SPEED))
+    """Return Coulomb [N.m] and viscous friction [N.m.s/rad] at the input: the line through its mean at two speeds."""
+    turn = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    slow, fast = (float(steady_torque(gear, speed, turn).friction.mean()) for speed in (SLOW_SPEED, FAST_SPEED))
     viscous = max((fast - slow) / (FAST_SPEED - SLOW_SPEED), 0.0)
     return max(slow - viscous * SLOW_SPEED, 0.0), viscous
-
-
-def _steady_friction(gear: Gear, speed: float) -> float:
-    """Return the friction [N.m] of all places at the input, which turns at a speed [rad/s], without load."""
-    ratio = abs(gear.kinematics.ratio)
-    behind = sum(float(law.steady(speed / ratio)) for law in (gear.friction_mesh, gear.friction_output))
-    return float(gear.friction_input.steady(speed)) + behind / ratio
 
 
 def bare(gear: Gear) -> Gear:
