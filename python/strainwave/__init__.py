@@ -80,6 +80,7 @@ if TYPE_CHECKING:
         pulse_width,
     )
     from strainwave.tuning.regulator import regulator
+    from strainwave.tuning.slots import Slot, slot
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
@@ -118,6 +119,7 @@ _LAZY = {
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
+    "Slot": "tuning.slots",
     "TransmissionError": "orders.two_encoders",
     "bearing_orders": "orders.order_spectrum",
     "bootstrap": "identification.fitting.bootstrap",
@@ -160,6 +162,7 @@ _LAZY = {
     "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
+    "slot": "tuning.slots",
     "transmission_error": "orders.two_encoders",
 }
 
@@ -205,6 +208,7 @@ __all__ = [
     "ScenarioFile",
     "Seen",
     "Sensors",
+    "Slot",
     "TransmissionError",
     "bearing_orders",
     "bootstrap",
@@ -257,6 +261,7 @@ __all__ = [
     "simulate_controlled",
     "simulate_many",
     "simulate_to",
+    "slot",
     "softening",
     "stiffness",
     "structure",

@@ -107,7 +107,8 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     text = re.sub(r" \(in Python \w+=\{.*?\}\)", "", text)
     text = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", text)
     text = re.sub(r"^rtol = ", "--tolerance ", text)
-    text = re.sub(r"^(speed_limit|lowest_speed|torque_limit)\b", lambda found: "--" + found[1].replace("_", "-"), text)
+    options = r"^(speed_limit|lowest_speed|torque_limit|rated_torque|load(?= is needed))\b"
+    text = re.sub(options, lambda found: "--" + found[1].replace("_", "-"), text)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
     return text.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
 

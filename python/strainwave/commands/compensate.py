@@ -1,13 +1,16 @@
-"""The command `strainwave compensate`: a controller that takes away what the gear does to the motion."""
+"""The command `strainwave compensate`: a controller that takes away what the gear does to the motion, or numbers for it."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from strainwave.commands.progress import progress
+
+if TYPE_CHECKING:
+    from strainwave.files.gear_set import GearSet
 
 
 def compensate(
@@ -20,7 +23,21 @@ def compensate(
     speed: Annotated[float | None, typer.Option(help="Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
     members: Annotated[int, typer.Option(help="Number of drawn gears.")] = 40,
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for the drive, its controller and report.html.")] = Path("out/compensate"),
+    slot: Annotated[
+        str | None,
+        typer.Option(
+            help="Numbers for another controller instead: viscous-coulomb-scale, coulomb-viscous, speed-table, anticogging-map "
+            "or torque-offset."
+        ),
+    ] = None,
+    side: Annotated[str | None, typer.Option(help="Of a slot: the shaft of its speeds and torques, input or output.")] = None,
+    unit: Annotated[str | None, typer.Option(help="Of a slot: N.m or A.")] = None,
+    points: Annotated[int | None, typer.Option(help="Of a slot: number of points of its table.")] = None,
+    threshold: Annotated[float | None, typer.Option(help="Of a slot: lowest speed of the output [rad/s].")] = None,
+    load: Annotated[float | None, typer.Option(help="Of a slot: torque at the output against forward motion [N.m].")] = None,
+    rated_torque: Annotated[float | None, typer.Option(help="Of a slot: rated torque of the motor [N.m].")] = None,
+    temperature: Annotated[float | None, typer.Option(help="Of a slot: temperature of the gear [K].")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/compensate"),
 ) -> None:
     """Find the compensation that gains most over a tuned cascade, judged on gears that the drive may have."""
     from strainwave.files.gear_set import GearSet
@@ -29,7 +46,18 @@ def compensate(
     from strainwave.report.provenance import Provenance
     from strainwave.tuning.compensate import compensate as compensated
 
+    of_slot = {
+        "side": side, "unit": unit, "points": points, "threshold": threshold, "load": load, "rated_torque": rated_torque,
+        "temperature": temperature,
+    }  # fmt: skip
+    given: dict[str, Any] = {name: value for name, value in of_slot.items() if value is not None}
     gear_set = GearSet.read(drive)
+    if slot is not None:
+        given |= {"period": period, "travel": travel, "speed": speed, "members": members, "seed": seed}
+        _slot(gear_set, slot, out, given)
+        return
+    if given:
+        raise ValueError(f"--{next(iter(given)).replace('_', '-')} belongs to a slot; name one by --slot")
     with progress(None) as turn:
         found = compensated(
             gear_set, goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed, members=members,
@@ -40,3 +68,16 @@ def compensate(
         write_folder(out, files)
     print(compensate_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+
+
+def _slot(gear_set: GearSet, name: str, out: Path, options: dict[str, Any]) -> None:
+    """Write and print the numbers for a slot."""
+    from strainwave.files.writing import write_folder
+    from strainwave.report.slots import slot_files, slot_summary
+    from strainwave.tuning.slots import slot
+
+    found = slot(gear_set, name, **options)
+    files = slot_files(found)
+    write_folder(out, files)
+    print(slot_summary(found))
+    print(f"\nwrote {' and '.join(str(out / file) for file in files)}")

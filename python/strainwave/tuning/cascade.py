@@ -22,13 +22,18 @@ LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor that stat
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
 
 
-def gear_set_of(drive: GearSet | Drive | str | Path) -> GearSet:
-    """Return the set of a drive, which may be named."""
-    if isinstance(drive, GearSet):
-        return drive
-    if isinstance(drive, Drive):
-        return GearSet.of(drive, name="the drive", source="given")
-    return GearSet.read(drive)
+def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
+    """Return the set of a drive or a gear, or that of a file by its name or path.
+
+    Raises:
+        TypeError: it is none of these
+        ValueError: there is no such file, or what is wrong in it
+    """
+    if isinstance(model, GearSet):
+        return model
+    if isinstance(model, Drive | Gear):
+        return GearSet.of(model, name=f"the {type(model).__name__.lower()}", source="given")
+    return GearSet.read(model)
 
 
 @dataclass(frozen=True)

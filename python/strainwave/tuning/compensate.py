@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, Gear, _core, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
-from strainwave.parameters import every
+from strainwave.parameters import Parameter, every
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, Candidate, baseline, candidates
@@ -233,19 +233,12 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
     """Yield what was assumed, and what cannot be gained."""
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
-    numbers = every(plant.drive)
-    for effect, parts in EFFECTS.items():
-        own = [each for each in numbers.values() if each.path.startswith(tuple(f"gear.{part}." for part in parts))]
-        present = [each for each in own if each.value and scales(each.path, each.unit)]
-        assumed = sorted(
-            {each.path.removeprefix("gear.").split("[")[0] for each in present if gear_set.sources[each.path].assumed}
-        )
-        if not present:
+    for effect in EFFECTS:
+        if not numbers_of(gear_set, effect):
             yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
-        elif assumed:
-            phases = [each for each in own if is_phase(each.path) and gear_set.sources[each.path].assumed]
-            spread = f"{'any phase and ' if phases else ''}30 % more or less of it"
-            yield f"{effect} is assumed ({listed(assumed)}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
+        elif names := assumed_numbers(gear_set, effect):
+            spread = f"{'any phase and ' if _has_unknown_phase(gear_set, effect) else ''}30 % more or less of it"
+            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
     bandwidth = best.candidate.law.position_gain
     if bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
         yield (
@@ -254,3 +247,23 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
         )
     if best.failures:
         yield f"{best.failures} of the drawn gears did not run to their end under the cascade"
+
+
+def assumed_numbers(gear_set: GearSet, effect: str) -> str:
+    """Return the names of those numbers of an effect that are assumed; none if all are measured or published."""
+    assumed = [each.path for each in numbers_of(gear_set, effect) if gear_set.sources[f"gear.{each.path}"].assumed]
+    return listed(sorted({path.split("[")[0] for path in assumed}))
+
+
+def numbers_of(gear_set: GearSet, effect: str) -> list[Parameter]:
+    """Return the numbers that an effect has more or less of, those that are zero left out."""
+    return [each for each in _all_of(gear_set, effect) if each.value and scales(each.path, each.unit)]
+
+
+def _has_unknown_phase(gear_set: GearSet, effect: str) -> bool:
+    return any(is_phase(each.path) and gear_set.sources[f"gear.{each.path}"].assumed for each in _all_of(gear_set, effect))
+
+
+def _all_of(gear_set: GearSet, effect: str) -> list[Parameter]:
+    begins = tuple(f"{part}." for part in EFFECTS[effect])
+    return [each for path, each in every(gear_set.gear).items() if path.startswith(begins)]
