@@ -10,6 +10,7 @@ import numpy as np
 
 from strainwave import Compensation, Drive, Gear, compensation, control, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
+from strainwave.messages import shortened
 from strainwave.tuning.steady_torque import steady_torque
 
 RIGID = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
@@ -33,6 +34,8 @@ def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
         return model
     if isinstance(model, Drive | Gear):
         return GearSet.of(model, name=f"the {type(model).__name__.lower()}", source="given")
+    if not isinstance(model, str | Path):
+        raise TypeError(f"drive must be a gear, a drive, a set of one, a name or a path, not {shortened(model)}")
     return GearSet.read(model)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
+from strainwave.messages import shortened
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
@@ -33,7 +35,11 @@ MAX_TURNS = 200  # of the input, over which a map is averaged
 FINER = 4  # angles at which a map is compared, per point
 OVER_COMPENSATED = 0.05  # share of gears of which the scaled friction may exceed that of the gear
 MIN_MEMBERS = 19  # drawn gears, of which the weakest stands for that share
-MIN_POINTS, MAX_POINTS = 4, 65536
+MIN_POINTS, MAX_POINTS = 4, 4096  # of a table
+MAX_VALUES = 1_000_000  # of a torque offset along a motion
+MAX_SPEED = 1e6  # rad/s
+MAX_LOAD = 1e9  # N.m
+MIN_RATED_TORQUE = 1e-9  # N.m
 MAX_PERMILLE = 32767  # that a 16 bit number holds
 
 
@@ -153,7 +159,7 @@ class Request:
         """Return the threshold and the largest speed of the side [rad/s]."""
         at_side = 1.0 if self.side == "output" else abs(self.ratio)
         if self.speed is not None:
-            top = at_side * abs(arguments.sized("speed", self.speed, "rad/s", low=1e-9))
+            top = at_side * abs(arguments.sized("speed", self.speed, "rad/s", 1e-9, MAX_SPEED))
         else:
             rated = self.gear_set.ratings.get("average_input_speed")
             at_input = FAST_SPEED if rated is None else convert(rated.value, rated.unit, "rad/s")
@@ -191,7 +197,7 @@ class Request:
 
 
 def slot(
-    drive: GearSet | Drive | Gear | str,
+    drive: GearSet | Drive | Gear | str | Path,
     name: str,
     *,
     side: str = "input",
@@ -241,6 +247,8 @@ def slot(
     """
     arguments.one_of("slot", name, SLOTS)
     gear_set = gear_set_of(drive)
+    if motion is not None and not isinstance(motion, Scenario):
+        raise TypeError(f"motion must be a scenario, as sw.scenario.sine gives it, not {shortened(motion)}")
     arguments.one_of("side", side, ("input", "output"))
     arguments.one_of("unit", unit, ("N.m", "A"))
     if side == "output" and (unit == "A" or name in OF_THE_INPUT):
@@ -257,8 +265,8 @@ def slot(
             speed,
             threshold,
             points,
-            None if load is None else arguments.number("load", load, "N.m"),
-            None if rated_torque is None else arguments.number("rated_torque", rated_torque, "N.m", low=0.0),
+            None if load is None else arguments.number("load", load, "N.m", "[]", -MAX_LOAD, MAX_LOAD),
+            None if rated_torque is None else arguments.number("rated_torque", rated_torque, "N.m", "[)", MIN_RATED_TORQUE),
             motion,
             arguments.number("travel", travel, "rad", low=0.0),
             arguments.number("period", period, "s", low=0.0),
@@ -428,7 +436,7 @@ def anticogging_map(request: Request) -> Slot:
     fine = 2.0 * np.pi / (FINER * count) * np.arange(FINER * count)
     angle = fine[:, np.newaxis] + 2.0 * np.pi * np.arange(turns)
     slow = CREEPING * USUAL_SPEED / abs(request.ratio) if request.speed is None else request.speed
-    speed = arguments.sized("speed", slow, "rad/s", low=1e-9) * abs(request.ratio)
+    speed = arguments.sized("speed", slow, "rad/s", 1e-9, MAX_SPEED) * abs(request.ratio)
     there, back = (_over_turn(request, angle, each) for each in (speed, -speed))
     if not there.ripple.any():
         raise ValueError(
@@ -481,9 +489,12 @@ def torque_offset(request: Request) -> Slot:
     rated = _rated_torque(request)
     plant = Plant.of(request.gear_set, request.period, 0.0)
     motion = _to_and_fro(request) if request.motion is None else request.motion
-    time = request.period * np.arange(int(motion.duration / request.period * (1.0 + 1e-12)) + 1)
-    if time.size < 2:
-        raise ValueError(f"period = {request.period:g} s must be shorter than the motion, {motion.duration:g} s")
+    periods = motion.duration / request.period * (1.0 + 1e-12)
+    if not 1.0 <= periods <= MAX_VALUES:
+        raise ValueError(
+            f"period = {request.period:g} s must divide the motion, {motion.duration:g} s, into 1 to {MAX_VALUES} parts"
+        )
+    time = request.period * np.arange(int(periods) + 1)
     model = model_of(plant, request.gear).replace(temperature=request.temperature)
     _, _, torque, resisting = model.planned(motion.value(time), motion.rate(time), plant.ratio, request.period)
     begun = time >= (goals.SETTLED * motion.duration if request.motion is None else 0.0)  # at first it begins from rest

@@ -219,7 +219,10 @@ def test_what_is_assumed_is_remarked() -> None:
         ("robot-joint", "torque-offset", {}, "rated_torque is needed.*0x6076.*no rating motor_rated_torque"),
         ("robot-joint", "torque-offset", {"rated_torque": 1e-4}, "is too small"),
         ("robot-joint", "torque-offset", {"rated_torque": 1.0, "unit": "A"}, "permille"),
-        ("robot-joint", "torque-offset", {"rated_torque": 1.0, "period": 10.0}, "shorter than the motion"),
+        ("robot-joint", "torque-offset", {"rated_torque": 1.0, "period": 10.0}, "period = 10 s must divide the motion"),
+        ("robot-joint", "torque-offset", {"rated_torque": 1.0, "period": 1e-7}, "into 1 to 1000000 parts"),
+        ("robot-joint", "speed-table", {"speed": float("inf")}, "speed"),
+        ("robot-joint", "anticogging-map", {"load": 1.0, "points": 5000}, "points"),
         ("csg-20-100", "torque-offset", {"rated_torque": 1.0}, r"no \[motor\] and no \[load\]"),
         ("robot-joint", "anticogging-map", {}, "load is needed"),
         ("csg-20-100", "anticogging-map", {"load": 0.0}, "the map is zero"),
@@ -236,6 +239,13 @@ def test_what_is_assumed_is_remarked() -> None:
 def test_what_is_missing_is_stated(drive: str, name: str, changes: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         sw.slot(drive, name, **changes)  # type: ignore[arg-type]
+
+
+def test_a_motion_that_is_none_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"motion must be a scenario.*not 3"):
+        sw.slot("robot-joint", "torque-offset", rated_torque=1.0, motion=3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="drive must be a gear, a drive, a set of one, a name or a path, not 3"):
+        sw.slot(3, "speed-table")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", SLOTS)
