@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Gear, _core, arguments
+from strainwave import Drive, _core, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
 from strainwave.parameters import Parameter, every
