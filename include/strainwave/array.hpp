@@ -5,7 +5,7 @@ namespace strainwave {
 /// A fixed number of elements: what a state repeats. Zero only where it is declared with {}.
 template <class T, int n>
 struct Array {
-    T item[n];
+    T item[n > 0 ? n : 1];  // C++ has no array of no elements
 
     constexpr T& operator[](int i) { return item[i]; }
     constexpr const T& operator[](int i) const { return item[i]; }

@@ -18,18 +18,29 @@ using ::log;
 using ::rint;
 using ::sin;
 using ::sqrt;
+inline double abs(double x) { return fabs(x); }
+inline float abs(float x) { return fabs(x); }
 #else
 using std::atan;
 using std::fabs;
 using std::log;
-using std::rint;
 using std::sqrt;
-inline float exp(float x) { return std::exp(x); }
-inline float sin(float x) { return std::sin(x); }
-inline float cos(float x) { return std::cos(x); }
-inline double exp(double x) { return elementary::exp(x); }
-inline double sin(double x) { return fabs(x) < elementary::farthest ? elementary::sincos(x).sine : std::sin(x); }
-inline double cos(double x) { return fabs(x) < elementary::farthest ? elementary::sincos(x).cosine : std::cos(x); }
+// What a compiler works out beforehand, such as the numbers of firmware, is worked out by `elementary` in every scalar.
+constexpr double rint(double x) {
+    if (!__builtin_is_constant_evaluated()) return std::rint(x);
+    return __builtin_fabs(x) < 0x1p51 ? (x + elementary::rounder) - elementary::rounder : x;
+}
+constexpr float rint(float x) { return __builtin_is_constant_evaluated() ? float(rint(double(x))) : std::rint(x); }
+constexpr float exp(float x) { return __builtin_is_constant_evaluated() ? float(elementary::exp(double(x))) : std::exp(x); }
+constexpr float sin(float x) { return __builtin_is_constant_evaluated() ? float(elementary::sincos(double(x)).sine) : std::sin(x); }
+constexpr float cos(float x) {
+    return __builtin_is_constant_evaluated() ? float(elementary::sincos(double(x)).cosine) : std::cos(x);
+}
+constexpr double exp(double x) { return elementary::exp(x); }
+constexpr double sin(double x) { return __builtin_fabs(x) < elementary::farthest ? elementary::sincos(x).sine : std::sin(x); }
+constexpr double cos(double x) { return __builtin_fabs(x) < elementary::farthest ? elementary::sincos(x).cosine : std::cos(x); }
+constexpr double abs(double x) { return __builtin_fabs(x); }
+constexpr float abs(float x) { return __builtin_fabsf(x); }
 #endif
 
 inline constexpr double pi = 3.14159265358979323846;
@@ -40,9 +51,6 @@ constexpr double select(bool mask, double a, double b) { return mask ? a : b; }
 constexpr float select(bool mask, float a, float b) { return mask ? a : b; }
 constexpr bool any(bool mask) { return mask; }
 constexpr bool all(bool mask) { return mask; }
-
-inline double abs(double x) { return fabs(x); }
-inline float abs(float x) { return fabs(x); }
 
 /// Whether a scalar carries derivatives; `detached` drops them.
 template <class S>
@@ -84,14 +92,15 @@ struct SinCos {
 
 #if defined(__CUDACC_RTC__)
 inline SinCos<double> sincos(double x) { return {sin(x), cos(x)}; }
+inline SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
 #else
-inline SinCos<double> sincos(double x) {
-    if (!(fabs(x) < elementary::farthest)) return {std::sin(x), std::cos(x)};
+constexpr SinCos<double> sincos(double x) {
+    if (!(__builtin_fabs(x) < elementary::farthest)) return {std::sin(x), std::cos(x)};
     const auto found = elementary::sincos(x);
     return {found.sine, found.cosine};
 }
+constexpr SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
 #endif
-inline SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
 
 /// Each of `n` angles within some turns of zero becomes its cosine.
 template <class S>

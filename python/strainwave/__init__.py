@@ -36,7 +36,7 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
-    from strainwave import rig
+    from strainwave import export, rig
     from strainwave.analysis.agreement import Agreement
     from strainwave.analysis.compare import compare
     from strainwave.analysis.difference import Difference
@@ -132,6 +132,7 @@ _LAZY = {
     "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
     "equilibrium": "analysis.steady",
+    "export": "export",
     "fit": "identification.fitting.fit",
     "frequency_response": "analysis.response",
     "identify": "identification.identify",
@@ -223,6 +224,7 @@ __all__ = [
     "derivatives",
     "drives",
     "equilibrium",
+    "export",
     "fit",
     "frequency_response",
     "friction",
@@ -296,7 +298,7 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'strainwave' has no attribute {name!r}")
     module = import_module(f"strainwave.{_LAZY[name]}")
-    return module if name in ("rig", "scenario") else getattr(module, name)
+    return module if name in ("export", "rig", "scenario") else getattr(module, name)
 
 
 def __dir__() -> list[str]:

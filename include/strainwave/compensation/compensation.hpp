@@ -1,6 +1,7 @@
 #pragma once
 #include <strainwave/compensation/compensator.hpp>
 #include <strainwave/compensation/none.hpp>
+#include <strainwave/compiled.hpp>
 
 namespace strainwave {
 

@@ -61,11 +61,16 @@ def _differences(part: Any, default: Any) -> Iterator[str]:
         if type(own) is type(other) and parameters(type(own)):
             yield from _differences(own, other)
         elif type(own) is not type(other):
-            yield f"{name} {_short(own)}"
+            yield f"{name} {short_name(own)}"
 
 
-def _short(law: Any) -> str:
-    """Return the model of a law with those of the laws that it varies: Thermal(LuGre)."""
+def short_name(law: Any) -> str:
+    """Return the name of a model with those of the models that it is made of.
+
+    >>> import strainwave as sw
+    >>> short_name(sw.friction.Thermal(law=sw.friction.Viscous(viscous=0.1)))
+    'Thermal(Viscous)'
+    """
     inner = [words for name in parameters(type(law)) for words in _inner(getattr(law, name))]
     return type(law).__name__ + (f"({', '.join(dict.fromkeys(inner))})" if inner else "")
 
@@ -75,7 +80,7 @@ def _inner(part: Any) -> Iterator[str]:
     if type(part) in PARAMETERS and type(part) is not _core.control.Sampled:
         yield from _differences(part, type(part)())
     else:
-        yield _short(part)
+        yield short_name(part)
 
 
 def _template(kind: type[Any]) -> str:

@@ -1,0 +1,96 @@
+"""Parts of a drive as C++: their headers, and their numbers as literals."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import Any
+
+from strainwave.native.kernel import INCLUDE
+from strainwave.native.static_type import NAMESPACES, parameters
+
+
+def numbers(part: Any, path: str = "") -> Iterator[tuple[str, float]]:
+    """Yield each number of a part with its path.
+
+    >>> import strainwave as sw
+    >>> list(numbers(sw.friction.Coulomb(coulomb=0.05), "friction"))
+    [('friction.coulomb', 0.05), ('friction.breakaway', 0.05), ('friction.viscous', 0.0)]
+    """
+    for field in type(part).fields:
+        value, own = getattr(part, field["name"]), f"{path}.{field['name']}".removeprefix(".")
+        if field["kind"] == "part":
+            yield from numbers(value, own)
+        elif field["kind"] == "sequence":
+            yield from ((f"{own}[{i}]", each) for i, each in enumerate(value))
+        elif field["kind"] == "number":
+            yield own, value
+
+
+def assignments(part: Any, variable: str) -> Iterator[str]:
+    """Yield statements of C++ that give a variable the numbers of a part, in scalars S; the double is written exactly.
+
+    >>> import strainwave as sw
+    >>> print(*assignments(sw.kinematic_error.Fourier(order=[2], amplitude=[1e-4], phase=[0.5]), "error"), sep="\\n")
+    error.order = {{S(2.0)}, 1};  // 1
+    error.amplitude = {{S(0.0001)}, 1};  // rad
+    error.phase = {{S(0.5)}, 1};  // rad
+    """
+    for field in type(part).fields:
+        value, member = getattr(part, field["name"]), f"{variable}.{field['name']}"
+        match field["kind"]:
+            case "part":
+                yield from assignments(value, member)
+            case "sequence":
+                elements = ", ".join(f"S({each!r})" for each in value)
+                yield f"{member} = {{{{{elements}}}, {len(value)}}};  // {field['unit']}"
+            case "choice":
+                yield f"{member} = decltype({member})({field['options'].index(value)});  // {value}"
+            case "count":
+                yield f"{member} = decltype({member})({value!r});"
+            case _:
+                yield f"{member} = S({value!r});  // {field['unit']}"
+
+
+def headers_of(part: Any) -> list[str]:
+    """Return the headers that define the models of a part, as they are included.
+
+    >>> import strainwave as sw
+    >>> headers_of(sw.friction.Thermal(law=sw.friction.Viscous(viscous=0.1)))
+    ['strainwave/friction/thermal.hpp', 'strainwave/friction/viscous.hpp']
+    """
+    return sorted(set(_headers_of(part)))
+
+
+def _headers_of(part: Any) -> Iterator[str]:
+    yield _header_of(type(part))  # type: ignore[arg-type] # a type is hashable
+    for name in parameters(type(part)):
+        yield from _headers_of(getattr(part, name))
+
+
+@cache
+def _header_of(kind: type[Any]) -> str:
+    """Return the header that defines a model, which lies in the folder of its family if it has one."""
+    family = kind.__module__.rpartition(".")[2]
+    folders = NAMESPACES.get(family, family), ".", "*"
+    for path in (path for folder in folders for path in sorted(INCLUDE.glob(f"strainwave/{folder}/*.hpp"))):
+        if re.search(rf"^struct {kind.__name__} ", path.read_text("utf-8"), re.MULTILINE):
+            return path.relative_to(INCLUDE).as_posix()
+    raise LookupError(f"no header in {INCLUDE} defines {kind.__name__}")
+
+
+def headers(source: str) -> list[str]:
+    """Return the headers of the package that a source includes."""
+    return re.findall(r"^#include <(strainwave/[^>]+)>", source, re.MULTILINE)
+
+
+def closure(names: Iterable[str]) -> dict[str, str]:
+    """Return the texts of headers by name, with those that they include."""
+    texts: dict[str, str] = {}
+    waiting = list(names)
+    while waiting:
+        if (name := waiting.pop()) not in texts:
+            texts[name] = (INCLUDE / name).read_text("utf-8")
+            waiting += headers(texts[name])
+    return texts

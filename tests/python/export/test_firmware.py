@@ -1,0 +1,174 @@
+"""Exported controllers compile for firmware, and do the same as in the simulation: with the same bits in double precision."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave import _core
+from strainwave.export.firmware import FLAGS
+from strainwave.native.static_type import parameters
+from strainwave.simulation.controller import Seen
+
+from tests.cplusplus import compiler, zig
+from tests.firmware import STRICT, Loaded, run_with
+from tests.realtime.test_firmware import CORTEX, LIBM, printed, undefined
+from tests.strategies import made, suited
+
+PERIOD = 1e-3  # s
+COMMAND = sw.scenario.sine(amplitude=0.3, frequency=0.7, duration=2.0)
+INERTIA = 8e-5  # kg.m2, at the input
+LAW = sw.control.PositionSpeed(
+    position_gain=30.0, speed_proportional=0.02, speed_integral=0.3, speed_feedforward=1.0, limit=2.0
+)
+FRICTION = sw.friction.LuGre(
+    coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, bristle_stiffness=50.0, bristle_damping=1e-3, viscous=1e-3
+)
+ERROR = sw.kinematic_error.Fourier(order=[1, 2, 2.5], amplitude=[1e-4, 3e-4, 1e-5], phase=[0.0, 0.5, 1.0])
+GEAR = sw.load("csg-20-100").replace(friction_input=FRICTION, kinematic_error=ERROR)
+LOAD = sw.loads.Pendulum(inertia=0.5, gravity_torque=10.0)
+OBSERVER = sw.compensation.DisturbanceObserver(inertia=INERTIA, limit=0.5)
+FEEDFORWARD = sw.compensation.ModelFeedforward(gear=GEAR, load=LOAD, motor_inertia=2e-5)
+
+
+def drive(law: Any = LAW, delay: float = 0.0, motor: Any = None, **compensation: Any) -> sw.Drive:
+    control = sw.control.Sampled(law=law, period=PERIOD, delay=delay, compensation=sw.Compensation(**compensation))
+    return sw.Drive(gear=GEAR, load=LOAD, motor=motor or sw.motor.TorqueSource(inertia=2e-5), control=control)
+
+
+DC = sw.motor.DC(resistance=0.5, torque_constant=0.08, back_emf=0.08, inertia=2e-5)
+DRIVES = {
+    "model": drive(feedforward=FEEDFORWARD, observer=OBSERVER),
+    "delay": drive(delay=3e-4, feedforward=FEEDFORWARD),
+    "whole_period": drive(delay=PERIOD, observer=OBSERVER),
+    "fourier": drive(learning=sw.compensation.AdaptiveFourier(order=[1, 2.5], fastest=300.0)),
+    "table": drive(learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)),
+    "map": drive(feedforward=sw.compensation.LostMotionMap(angle=[0.0, 0.1], forward=[1e-4, 2e-4], backward=[-1e-4, 0.0])),
+    "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
+    "currents": drive(law=made(sw.control.Cascade), motor=DC.replace(inductance=5e-4)),
+}
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_a_run_with_the_firmware_has_the_bits_of_the_simulation(name: str, tmp_path: Path) -> None:
+    firmware, simulated = Loaded(DRIVES[name], tmp_path, "double"), sw.simulate(DRIVES[name], COMMAND, sample=PERIOD)
+    run = run_with(firmware, DRIVES[name], COMMAND)
+    assert [column for column in simulated.names if not np.array_equal(run[column], simulated[column])] == []
+
+
+FLOAT_SHARE = 1e-4  # error of single precision over the largest actuation, as the page on firmware states it
+CLOSED_LOOP_ERROR = 1e-7  # rad of the output, between the runs under both
+
+
+@pytest.mark.parametrize("name", ["model", "fourier", "table"])
+def test_single_precision_is_as_accurate_as_stated(name: str, tmp_path: Path) -> None:
+    chosen = DRIVES[name]
+    doubled, single = Loaded(chosen, tmp_path / "double", "double"), Loaded(chosen, tmp_path / "float", "float")
+    errors = list[float]()
+
+    def both(seen: Seen) -> float:
+        given = doubled(seen)
+        errors.append(abs(given - single(seen)))
+        return given
+
+    by_double = run_with(both, chosen, COMMAND)
+    assert max(errors) < FLOAT_SHARE * LAW.limit
+    single.start()
+    by_single = run_with(single, chosen, COMMAND)
+    assert np.max(np.abs(by_single["output_angle"] - by_double["output_angle"])) < CLOSED_LOOP_ERROR
+
+
+def every_controller() -> Iterator[sw.Drive]:
+    """As many drives as the longest list has models; shorter lists go round."""
+    in_gear = parameters(sw.Gear)
+    for number in range(max(map(len, _core.families.values()))):
+        gear = GEAR.replace(structure=sw.structure.Lumped())
+        for ahead, place in enumerate(in_gear):
+            if place not in ("kinematics", "structure"):
+                gear = gear.replace(**{place: suited(one_of(sw.Gear, place, number + ahead), gear.kinematics)})
+        feedforward = one_of(sw.Compensation, "feedforward", number)
+        if isinstance(feedforward, sw.compensation.ModelFeedforward):
+            load = one_of(sw.compensation.ModelFeedforward, "load", number)
+            feedforward = feedforward.replace(gear=gear, load=load, rounds=0)
+        learning, observer = (one_of(sw.Compensation, place, number) for place in ("learning", "observer"))
+        law = one_of(sw.control.Sampled, "law", number)
+        yield drive(law, motor=DC.replace(inductance=1e-4), feedforward=feedforward, learning=learning, observer=observer)
+
+
+def one_of(kind: Any, place: str, number: int) -> Any:
+    """The model of this number that may stand at a place, round and round."""
+    (field,) = (field for field in kind.fields if field["name"] == place)
+    kinds = list(field["options"].values()) if field["options"] else [type(field["default"])]
+    return made(kinds[number % len(kinds)])
+
+
+def compile_strictly(command: Sequence[str], folder: Path, source: str, *options: str) -> None:
+    subprocess.run([*command, *options, *STRICT, "-c", source], cwd=folder, check=True)
+
+
+def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: Path) -> None:
+    """No heap, no exception, no initialisation; all numbers are constants, and no variable outlives a step."""
+    for number, each in enumerate(every_controller()):
+        sw.export.firmware(each, tmp_path, name=f"c{number}")
+        compile_strictly(compiler("g++"), tmp_path, f"c{number}.cpp", *FLAGS.split(), "-Wdouble-promotion")
+    assert undefined(tmp_path) <= LIBM
+    assert not [line for line in printed("nm", *tmp_path.glob("*.o")) if line.split()[-2:-1] in (["b"], ["B"], ["d"], ["D"])]
+
+
+def test_a_microcontroller_computes_in_single_precision_throughout(tmp_path: Path) -> None:
+    """Clang copies and clears a state by calling memcpy and memset, which every freestanding environment has to provide."""
+    sw.export.firmware(DRIVES["model"], tmp_path)
+    subprocess.run(
+        [*zig(), *FLAGS.split(), *CORTEX, "-Wdouble-promotion", *STRICT, "-c", "controller.cpp"], cwd=tmp_path, check=True
+    )
+    assert undefined(tmp_path) <= LIBM | {"memcpy", "memset"}
+
+
+def test_the_header_is_in_c(tmp_path: Path) -> None:
+    sw.export.firmware(DRIVES["model"], tmp_path, name="joint")
+    (tmp_path / "main.c").write_text(
+        '#include "joint.h"\n'
+        "int main(void) { joint_state x; joint_inputs in = {0}; joint_start(&x); return joint_step(&x, &in) > 1; }\n"
+    )
+    compile_strictly(compiler("gcc"), tmp_path, "main.c", "-std=c99")
+    header = (tmp_path / "joint.h").read_text()
+    assert "    float compensation_feedforward_gear_hysteresis_torque[16];  /* N.m */\n" in header
+    assert "Return the motor_torque of the motor [N.m]" in header
+
+
+def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(tmp_path: Path) -> None:
+    chosen = DRIVES["model"]
+    firmware, simulated = Loaded(chosen, tmp_path, "double"), sw.simulate(chosen, COMMAND, sample=PERIOD)
+    run_with(firmware, chosen, COMMAND)
+    numbers = dict(zip((name for name, *_ in _core.state(chosen)[0]), simulated.end.numbers, strict=True))
+    of_control = [value for name, value in numbers.items() if name.startswith("control.")]
+    assert list(firmware.state.values())[:-1] == of_control[:-1]  # the last is the time to the next sample
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "message"),
+    [
+        ({"drive": drive().replace(control=LAW)}, TypeError, "drive.control = PositionSpeed"),
+        ({"drive": LAW}, TypeError, "drive = PositionSpeed"),
+        ({"name": "2nd"}, ValueError, 'name = "2nd" must be a name in C'),
+        ({"name": "float"}, ValueError, 'name = "float" must be a name in C'),
+        ({"scalar": "half"}, ValueError, 'scalar = "half" must be one of float, double'),
+        (
+            {"drive": drive(LAW.replace(speed_limit=1e300))},
+            ValueError,
+            r"law.speed_limit = 1e\+300 is too large",
+        ),
+    ],
+)
+def test_a_wrong_argument_is_refused_in_one_line(
+    changed: dict[str, Any], error: type[Exception], message: str, tmp_path: Path
+) -> None:
+    given = {"drive": DRIVES["model"], "folder": tmp_path / "new"} | changed
+    with pytest.raises(error, match=message):
+        sw.export.firmware(**given)
+    assert not (tmp_path / "new").exists()
