@@ -16,6 +16,7 @@ loop_fit     a torsion loop fitted, beside SciPy with finite differences; and th
 drive_fit    a whole drive fitted to a log, beside SciPy with finite differences around strainwave's simulation and solve_ivp
 mujoco_fit   a drive with two inertias fitted, beside MuJoCo's own identification
 marker_angle the angle of a target from pictures of its markers: error, bias, stated uncertainty, time of a picture
+instructions a step of exported controllers on microcontrollers: instructions, code and stack
 peak         operations a second, beside the most that the processor does
 
 At the end stands what is to be reached and what of it was, by the tables there are (targets.json).
@@ -33,6 +34,7 @@ import actuator
 import drive_fit
 import ensemble
 import files
+import instructions
 import loop_fit
 import marker_angle
 import mujoco_fit
@@ -57,6 +59,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "drive_fit": lambda console, peers, quick: drive_fit.run(console),
     "mujoco_fit": lambda console, peers, quick: mujoco_fit.run(console),
     "marker_angle": lambda console, peers, quick: marker_angle.run(console, quick),
+    "instructions": lambda console, peers, quick: instructions.run(console),
     "peak": lambda console, peers, quick: peak.run(console),
 }
 

@@ -13,15 +13,18 @@ constexpr S inverse_twist(const Gear& gear, const Memory& memory, const S& held,
     const auto excess = [&](const S& twist) { return gear.held_torque(twist, memory, twist - held, temperature) - torque; };
     S twist = held, left = excess(twist), low = -far, high = far;
     const S away = select(left < none, S(1.0), S(-1.0));
-    for (int i = 0; i == 0 || (i < rounds && any(!(left == none))); ++i) {  // once at least, for derivatives
+    auto moves = !(left == none);
+    for (int i = 0; i == 0 || (i < rounds && any(moves)); ++i) {  // once at least, for derivatives
         low = select(left < none, max(low, twist), low);
         high = select(left > none, min(high, twist), high);
         const S little = away * max(abs(twist - held) * S(1e-4), S(1e-9));
         const S slope = max((excess(twist + little) - left) / little, S(smallest));
         const S newton = twist - left / slope, middle = low + S(0.5) * (high - low);
         const S inside = select(newton > low, select(newton < high, newton, middle), middle);
-        twist = select(newton == twist, newton, inside);  // a twist that is found is an end of the bracket
-        left = excess(twist);
+        const S next = select(newton == twist, newton, inside);  // a twist that is found is an end of the bracket
+        left = excess(next);
+        moves = !(left == none) & !(next == twist);  // where it does not, no round changes anything any more
+        twist = next;
     }
     return twist;
 }
