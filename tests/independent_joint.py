@@ -1,6 +1,6 @@
 """From measurement files of a joint to a controller that runs in it: `python -m tests.independent_joint seed=3`.
 
-The joint and its measurement files are those of another program, `independent-rig` (STRAINWAVE_JOINT is its folder), which
+The joint and its measurement files are those of another program, `independent-rig` (STRAINWAVE_RIG is its folder), which
 shares nothing with this package. One command identifies the joint. The controller compensates by the identified drive; it is
 written as firmware, compiled, and takes the place of the joint's own. The reference is a cascade with constant feed-forward
 whose gains were tuned on this joint. Arguments are those of the rig's `measure.py`.
@@ -8,7 +8,6 @@ whose gains were tuned on this joint. Arguments are those of the rig's `measure.
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -25,9 +24,10 @@ from strainwave.export.firmware import FLAGS
 
 from tests.cplusplus import compiler
 from tests.python.command import strainwave
+from tests.rig import RIG
+from tests.rig import START as START_SET
 
 Array = NDArray[np.float64]
-RIG = Path(os.environ.get("STRAINWAVE_JOINT", Path(__file__).parents[2] / "shared" / "independent-rig"))
 FILES = ("friction.csv", "torsion_output.csv", "log_full.csv")
 RESISTANCE, TORQUE_CONSTANT = 0.42, 0.0755  # Ohm, N.m/A, of the motor's data sheet
 ROTOR = 7.5e-5  # kg.m2: that of the joint's input without the wave generator of the catalogue set
@@ -74,7 +74,7 @@ def measure(folder: Path, words: Sequence[str]) -> None:
 def identify(folder: Path) -> sw.Drive:
     """Return the drive that one command identifies from measurement files."""
     constants = [word for name, value in CONSTANTS.items() for word in ("--constant", f"{name}={value}")]
-    done = strainwave("identify", "csg-20-80", *FILES, *constants, "--out", "found", folder=folder)
+    done = strainwave("identify", START_SET, *FILES, *constants, "--out", "found", folder=folder)
     assert done.returncode == 0, done.stderr
     drive = sw.load(str(folder / "found" / "gear.toml"))
     assert isinstance(drive, sw.Drive)

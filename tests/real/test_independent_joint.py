@@ -10,7 +10,7 @@ from tests import independent_joint
 
 pytestmark = pytest.mark.skipif(
     not (independent_joint.RIG / "joint.c").is_file(),
-    reason=f"the joint of another program was not found: {independent_joint.RIG} (set STRAINWAVE_JOINT)",
+    reason=f"the joint of another program was not found: {independent_joint.RIG} (set STRAINWAVE_RIG)",
 )
 MAX_SHARE = 0.1  # of the error of the tuned cascade with constant feed-forward
 

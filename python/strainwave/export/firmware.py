@@ -21,7 +21,7 @@ from strainwave.simulation.signals import actuation, command_unit
 
 Scalar = Literal["float", "double"]
 SCALARS: tuple[Scalar, ...] = get_args(Scalar)
-FLAGS = "-std=c++20 -Os -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti -I include"
+FLAGS = "-std=c++20 -O2 -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti -I include"
 MAX_NAME = 40  # letters
 MAX_FLOAT = float(np.finfo(np.float32).max)
 RESERVED = {*SCALARS, "int", "long", "short", "char", "void", "static", "const", "struct", "switch", "return", "main"}

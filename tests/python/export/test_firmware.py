@@ -83,6 +83,12 @@ def test_single_precision_is_as_accurate_as_stated(name: str, tmp_path: Path) ->
     assert np.max(np.abs(by_single["output_angle"] - by_double["output_angle"])) < CLOSED_LOOP_ERROR
 
 
+@pytest.mark.parametrize("statement", [FLAGS, "less than 1e-4 of the limit", "less than 1e-7 rad"])
+def test_the_page_states_these_numbers(statement: str) -> None:
+    page = Path(__file__).parents[3] / "docs" / "firmware.md"
+    assert statement in " ".join(page.read_text(encoding="utf-8").split())
+
+
 def every_controller() -> Iterator[sw.Drive]:
     """As many drives as the longest list has models; shorter lists go round."""
     in_gear = parameters(sw.Gear)
