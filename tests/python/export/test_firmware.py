@@ -90,27 +90,34 @@ def test_the_page_states_these_numbers(statement: str) -> None:
 
 
 def every_controller() -> Iterator[sw.Drive]:
-    """As many drives as the longest list has models; shorter lists go round."""
-    in_gear = parameters(sw.Gear)
-    for number in range(max(map(len, _core.families.values()))):
-        gear = GEAR.replace(structure=sw.structure.Lumped())
-        for ahead, place in enumerate(in_gear):
+    """Yield drives that hold every law, compensator and law of a compensated gear between them."""
+    motor, model = DC.replace(inductance=1e-4), sw.compensation.ModelFeedforward
+    loads = [each for each in models(model, "load") if each is not sw.loads.Prescribed]  # which needs no torque
+    feedforwards = [each for each in models(sw.Compensation, "feedforward") if each is not model]
+    for number in range(len(feedforwards) + max(map(len, _core.families.values()))):
+        law = one_of(sw.control.Sampled, "law", number)
+        if _core.command_unit(sw.Drive(control=sw.control.Sampled(law=law))) != "rad":
+            yield drive(law, motor=motor)
+            law = LAW
+        gear = GEAR
+        for ahead, place in enumerate(parameters(sw.Gear)):
             if place not in ("kinematics", "structure"):
                 gear = gear.replace(**{place: suited(one_of(sw.Gear, place, number + ahead), gear.kinematics)})
-        feedforward = one_of(sw.Compensation, "feedforward", number)
-        if isinstance(feedforward, sw.compensation.ModelFeedforward):
-            load = one_of(sw.compensation.ModelFeedforward, "load", number)
-            feedforward = feedforward.replace(gear=gear, load=load, rounds=0)
+        whole = model(gear=gear, load=made(loads[number % len(loads)]), rounds=0)
+        feedforward = made(feedforwards[number]) if number < len(feedforwards) else whole
         learning, observer = (one_of(sw.Compensation, place, number) for place in ("learning", "observer"))
-        law = one_of(sw.control.Sampled, "law", number)
-        yield drive(law, motor=DC.replace(inductance=1e-4), feedforward=feedforward, learning=learning, observer=observer)
+        yield drive(law, motor=motor, feedforward=feedforward, learning=learning, observer=observer)
+
+
+def models(kind: Any, place: str) -> list[Any]:
+    """The models that may stand at a place."""
+    (field,) = (field for field in kind.fields if field["name"] == place)
+    return list(field["options"].values()) if field["options"] else [type(field["default"])]
 
 
 def one_of(kind: Any, place: str, number: int) -> Any:
     """The model of this number that may stand at a place, round and round."""
-    (field,) = (field for field in kind.fields if field["name"] == place)
-    kinds = list(field["options"].values()) if field["options"] else [type(field["default"])]
-    return made(kinds[number % len(kinds)])
+    return made(models(kind, place)[number % len(models(kind, place))])
 
 
 def compile_strictly(command: Sequence[str], folder: Path, source: str, *options: str) -> None:
@@ -129,9 +136,7 @@ def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: 
 def test_a_microcontroller_computes_in_single_precision_throughout(tmp_path: Path) -> None:
     """Clang copies and clears a state by calling memcpy and memset, which every freestanding environment has to provide."""
     sw.export.firmware(DRIVES["model"], tmp_path)
-    subprocess.run(
-        [*zig(), *FLAGS.split(), *CORTEX, "-Wdouble-promotion", *STRICT, "-c", "controller.cpp"], cwd=tmp_path, check=True
-    )
+    compile_strictly(zig(), tmp_path, "controller.cpp", *FLAGS.split(), *CORTEX, "-Wdouble-promotion")
     assert undefined(tmp_path) <= LIBM | {"memcpy", "memset"}
 
 
