@@ -63,6 +63,10 @@ class NoFeedforward:
         What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
+    @property
+    def active(self) -> bool:
+        """Whether it makes any difference."""
+
 class ModelFeedforward:
     """
     What a model of the drive asks for so that the output moves as it is commanded, before any error.
@@ -296,6 +300,10 @@ class NoLearning:
 
     fields: tuple[dict[str, Any], ...]
 
+    @property
+    def active(self) -> bool:
+        """Whether it makes any difference."""
+
 class AdaptiveFourier:
     """
     Learning of what repeats as the wave generator turns: one sine and one cosine for each order.
@@ -514,6 +522,10 @@ class NoObserver:
     source: str = 'definition'
 
     fields: tuple[dict[str, Any], ...]
+
+    @property
+    def active(self) -> bool:
+        """Whether it makes any difference."""
 
 class DisturbanceObserver:
     """

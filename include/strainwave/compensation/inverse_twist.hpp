@@ -13,8 +13,8 @@ constexpr S inverse_twist(const Gear& gear, const Memory& memory, const S& held,
     const auto excess = [&](const S& twist) { return gear.held_torque(twist, memory, twist - held, temperature) - torque; };
     S twist = held, left = excess(twist), low = -far, high = far;
     const S away = select(left < none, S(1.0), S(-1.0));
-    auto moves = !(left == none);
-    for (int i = 0; i == 0 || (i < rounds && any(moves)); ++i) {  // once at least, for derivatives
+    S moved(1.0);                                                // where it is 0, no round changes anything any more
+    for (int i = 0; i < rounds && any(!(moved == none)); ++i) {  // once at least, for derivatives
         low = select(left < none, max(low, twist), low);
         high = select(left > none, min(high, twist), high);
         const S little = away * max(abs(twist - held) * S(1e-4), S(1e-9));
@@ -23,7 +23,7 @@ constexpr S inverse_twist(const Gear& gear, const Memory& memory, const S& held,
         const S inside = select(newton > low, select(newton < high, newton, middle), middle);
         const S next = select(newton == twist, newton, inside);  // a twist that is found is an end of the bracket
         left = excess(next);
-        moves = !(left == none) & !(next == twist);  // where it does not, no round changes anything any more
+        moved = select(left == none, none, next - twist);
         twist = next;
     }
     return twist;

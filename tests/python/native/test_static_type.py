@@ -28,7 +28,8 @@ def laws(kind: Any) -> Iterator[Any]:
         if field["kind"] == "part" and options:
             yield from (made(kind, **{name: law}) for option in options.values() for law in laws(option))
         elif field["kind"] == "part" and type(field["default"]) is not sw.Gear:
-            yield from (made(kind, **{name: part}) for part in with_part(type(field["default"]), field["default"]))
+            law = {"law": sw.control.PID()}  # which follows an angle, as a compensation needs it
+            yield from (made(kind, **law, **{name: part}) for part in with_part(type(field["default"]), field["default"]))
 
 
 def with_part(kind: Any, base: Any) -> Iterator[Any]:
