@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,10 @@ def laws(kind: Any) -> Iterator[Any]:
     for field in kind.fields:
         name, options = field["name"], field["options"]
         if field["kind"] == "part" and options:
-            yield from (made(kind, **{name: law}) for option in options.values() for law in laws(option))
+            for option in options.values():
+                for law in laws(option):
+                    with suppress(ValueError):  # parts that do not go together, as a feed-forward and a prescribed load
+                        yield made(kind, **{name: law})
         elif field["kind"] == "part" and type(field["default"]) is not sw.Gear:
             law = {"law": sw.control.PID()}  # which follows an angle, as a compensation needs it
             yield from (made(kind, **law, **{name: part}) for part in with_part(type(field["default"]), field["default"]))
