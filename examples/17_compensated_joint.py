@@ -17,7 +17,7 @@ print(f"{found.chosen.candidate.name}:")
 print(f"tracking error {before:.0f} urad with the cascade, {after:.0f} urad with it")
 
 command = found.goal.command
-whole = next(each for each in found.others if len(each.candidate.effects) == 3 and "output" in each.candidate.name)
+whole = next(each for each in found.tried if len(each.candidate.effects) == 3 and "output" in each.candidate.name)
 controllers = {"cascade": found.baseline.candidate.drive, "with the whole model": whole.candidate.drive}
 parts = ("gear.friction_input", "gear.stiffness", "gear.hysteresis", "gear.kinematic_error.amplitude")
 changed = (0.7, 0.9, 1.0, 1.1, 1.3)

@@ -30,7 +30,7 @@ def verdict(found: Compensated) -> str:
     figure, unit = found.goal.judged_by, found.goal.units[found.goal.judged_by]
     before = typeset.quantity(found.baseline.median(figure), unit)
     after = typeset.quantity(found.chosen.median(figure), unit)
-    if found.chosen is found.baseline:
+    if not found.is_compensated:
         cascade = f"the {found.baseline.candidate.name}, whose {figure} is {before}"
         return f"{found.gear_set.name}: no compensation gains over {cascade} in the median of {found.members} drawn gears."
     return (
@@ -48,7 +48,7 @@ def _lines(found: Compensated) -> Iterator[str]:
     yield verdict(found)
     figure = found.goal.judged_by
     yield f"  {figure + ': the gear as it is stated, median, 95 % below':70}"
-    for judged in (found.baseline, *found.others[:MAX_LISTED]):
+    for judged in found.tried[: 1 + MAX_LISTED]:
         yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}"
     yield from (f"  {line}" for line in removed(found))
     yield from (f"  note: {remark}" for remark in found.remarks)
@@ -61,10 +61,10 @@ def _figures(judged: Judged, found: Compensated) -> list[str]:
 
 def removed(found: Compensated) -> Iterator[str]:
     """Yield for each effect what its model removes: all effects in the model, beside all but this one."""
-    present = tuple(effect for effect in EFFECTS if any(effect in each.candidate.effects for each in found.others))
+    present = tuple(effect for effect in EFFECTS if any(effect in each.candidate.effects for each in found.tried))
     whole, figure = found.model_of(present), found.goal.judged_by
     for effect in present:
-        rest = found.model_of(tuple(each for each in present if each != effect)) or found.baseline
+        rest = found.model_of(tuple(each for each in present if each != effect)) or found.tried[0]
         if whole is not None:
             without, with_it = (typeset.quantity(each.median(figure), found.goal.units[figure]) for each in (rest, whole))
             yield f"{effect}: {figure} {without} without it in the model, {with_it} with it"
@@ -106,7 +106,7 @@ def _results(found: Compensated) -> dict[str, Any]:
                 "median": {name: each.median(name) for name in each.figures},
                 "upper_95": {name: each.upper(name) for name in each.figures},
             }
-            for each in (found.baseline, *found.others)
+            for each in found.tried
         ],
     }
 
@@ -121,8 +121,8 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "verdict": verdict(found),
             "figure": figure,
             "rows": [
-                (each.candidate.name, *_figures(each, found), each.failures, each is found.chosen)
-                for each in (found.baseline, *found.others)
+                (each.candidate.name, *_figures(each, found), each.failures, each.candidate is found.chosen.candidate)
+                for each in found.tried
             ],
             "others": [
                 (name, typeset.quantity(found.baseline.median(name), unit), typeset.quantity(found.chosen.median(name), unit))
@@ -145,7 +145,7 @@ def _errors(canvas: Figure, found: Compensated) -> None:
     """Draw the error of the output over time, of the gear as it is stated."""
     axes = canvas.add_subplot()
     command = found.goal.command
-    runs = {"cascade": found.baseline} | ({} if found.chosen is found.baseline else {"compensated": found.chosen})
+    runs = {"cascade": found.baseline} | ({"compensated": found.chosen} if found.is_compensated else {})
     for (label, judged), (colour, line, width) in zip(runs.items(), (figures.RUNS[1], figures.RUNS[0]), strict=False):
         run = simulate(judged.candidate.drive, command, sample=command.duration / 2000.0)
         error = np.asarray(command.value(run.time) - run["output_angle"])
