@@ -101,7 +101,7 @@ class ModelFeedforward:
     gear: What is known of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
     load: What the output carries; default Inertia(inertia=0.01)
     motor_inertia: Inertia of the motor's rotor [kg.m2], in [0, inf); default 0.0
-    presliding: Input angle within which set-valued friction turns its sense [rad], in (0, inf); default 0.002
+    presliding: Input angle over which the old sense of set-valued friction falls to 1/e [rad], in (0, inf); default 0.002
     friction_share: Share of the friction that is asked for, in [0, 1]; default 1.0
     rounds: Rounds in which the kinematic error is found; 0 leaves it out, in [0, 8]; default 4
     temperature: Temperature of the gear [K], in (0, inf); default 293.15
@@ -137,7 +137,9 @@ class ModelFeedforward:
 
     @property
     def presliding(self) -> float:
-        """Input angle within which set-valued friction turns its sense [rad]"""
+        """
+        Input angle over which the old sense of set-valued friction falls to 1/e [rad]
+        """
 
     @property
     def friction_share(self) -> float:
@@ -182,8 +184,8 @@ class LostMotionMap:
               ds = (\\operatorname{sgn}(dr) - s)\\, \\frac{|dr|}{r_0}
 
     with r the commanded output angle, f and b the lines through forward and backward over angle, which rises; beyond its ends
-    they stay as they are there. s is the sense of motion, r_0 = reach, within which the lost motion is taken up after a
-    reversal; before the first motion s = 0, the middle of both. It needs no model, and knows nothing of load and speed.
+    they stay as they are there. s is the sense of motion, r_0 = reach: so far after a reversal 1/e of the lost motion is
+    left to take up; before the first motion s = 0, the middle of both. It needs no model, and knows nothing of load and speed.
 
     >>> from strainwave.compensation import LostMotionMap
     >>> LostMotionMap(angle=[0.0], forward=[2e-4], backward=[-2e-4]).reach
@@ -194,7 +196,7 @@ class LostMotionMap:
     angle: Output angles, rising [rad]; default ()
     forward: Lead at the output where it moves forwards [rad]; default ()
     backward: Lead at the output where it moves backwards [rad]; default ()
-    reach: Output angle r_0 within which the lost motion is taken up [rad], in (0, inf); default 0.001
+    reach: Output angle r_0 over which what is left to take up falls to 1/e [rad], in (0, inf); default 0.001
 
     Raises
     ------
@@ -227,7 +229,7 @@ class LostMotionMap:
 
     @property
     def reach(self) -> float:
-        """Output angle r_0 within which the lost motion is taken up [rad]"""
+        """Output angle r_0 over which what is left to take up falls to 1/e [rad]"""
 
     def __repr__(self) -> str: ...
 
@@ -316,7 +318,7 @@ class AdaptiveFourier:
     position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
     constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
     grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``fastest``, and where omega is below
-    ``slowest``. No amplitude exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+    ``slowest``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
 
     >>> from strainwave.compensation import AdaptiveFourier
     >>> AdaptiveFourier(order=[1, 2]).gain
@@ -329,7 +331,7 @@ class AdaptiveFourier:
     lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
     slowest: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
     fastest: Frequency n |omega| of a wave above which it does not learn [rad/s], in (0, inf); default 100.0
-    limit: Largest amplitude at the output [rad], in [0, inf); default 0.001
+    limit: Largest sine and cosine at the output [rad], in [0, inf); default 0.001
 
     Raises
     ------
@@ -370,7 +372,7 @@ class AdaptiveFourier:
 
     @property
     def limit(self) -> float:
-        """Largest amplitude at the output [rad]"""
+        """Largest sine and cosine at the output [rad]"""
 
     def __repr__(self) -> str: ...
 
@@ -539,8 +541,10 @@ class DisturbanceObserver:
     acceleration; with one, what the model lacks. The filter is exact for what is constant over a period.
 
     tau is what the motor is given, or, with a torque_constant, that times the current measured: for a Cascade, whose actuation
-    is a voltage. A real inertia below half of J makes the loop unstable, as does a bandwidth near the first
-    vibration of the load.
+    is a voltage. What a law of control feeds forward by gains of its own is not in tau_f, so the observer supplies it once
+    more: set viscous_feedforward and coulomb_feedforward of the law to 0, and let the compensation have the friction. With a
+    period T and a real inertia J_r of what turns, the observer alone is stable if g T J / J_r < 2; above the vibration of the
+    load, J_r is the inertia of the input. A bandwidth near that vibration makes it grow.
 
     >>> from strainwave.compensation import DisturbanceObserver
     >>> DisturbanceObserver(inertia=2e-4, bandwidth=150.0, limit=0.3).bandwidth

@@ -30,7 +30,7 @@ struct AdaptiveFourier {
         position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
         constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
         grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``fastest``, and where omega is below
-        ``slowest``. No amplitude exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+        ``slowest``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
 
         >>> from strainwave.compensation import AdaptiveFourier
         >>> AdaptiveFourier(order=[1, 2]).gain
@@ -43,7 +43,7 @@ struct AdaptiveFourier {
         visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
         visit(SW_FIELD(m, slowest, "rad/s", "Input speed below which it does not learn", 0));
         visit(SW_FIELD(m, fastest, "rad/s", "Frequency n |omega| of a wave above which it does not learn", smallest));
-        visit(SW_FIELD(m, limit, "rad", "Largest amplitude at the output", 0));
+        visit(SW_FIELD(m, limit, "rad", "Largest sine and cosine at the output", 0));
     }
 
     struct State {

@@ -23,8 +23,10 @@ struct DisturbanceObserver {
         acceleration; with one, what the model lacks. The filter is exact for what is constant over a period.
 
         tau is what the motor is given, or, with a torque_constant, that times the current measured: for a Cascade, whose actuation
-        is a voltage. A real inertia below half of J makes the loop unstable, as does a bandwidth near the first
-        vibration of the load.
+        is a voltage. What a law of control feeds forward by gains of its own is not in tau_f, so the observer supplies it once
+        more: set viscous_feedforward and coulomb_feedforward of the law to 0, and let the compensation have the friction. With a
+        period T and a real inertia J_r of what turns, the observer alone is stable if g T J / J_r < 2; above the vibration of the
+        load, J_r is the inertia of the input. A bandwidth near that vibration makes it grow.
 
         >>> from strainwave.compensation import DisturbanceObserver
         >>> DisturbanceObserver(inertia=2e-4, bandwidth=150.0, limit=0.3).bandwidth

@@ -21,8 +21,8 @@ struct LostMotionMap {
                   ds = (\operatorname{sgn}(dr) - s)\, \frac{|dr|}{r_0}
 
         with r the commanded output angle, f and b the lines through forward and backward over angle, which rises; beyond its ends
-        they stay as they are there. s is the sense of motion, r_0 = reach, within which the lost motion is taken up after a
-        reversal; before the first motion s = 0, the middle of both. It needs no model, and knows nothing of load and speed.
+        they stay as they are there. s is the sense of motion, r_0 = reach: so far after a reversal 1/e of the lost motion is
+        left to take up; before the first motion s = 0, the middle of both. It needs no model, and knows nothing of load and speed.
 
         >>> from strainwave.compensation import LostMotionMap
         >>> LostMotionMap(angle=[0.0], forward=[2e-4], backward=[-2e-4]).reach
@@ -33,7 +33,7 @@ struct LostMotionMap {
         visit(SW_FIELD(m, angle, "rad", "Output angles, rising"));
         visit(SW_FIELD(m, forward, "rad", "Lead at the output where it moves forwards"));
         visit(SW_FIELD(m, backward, "rad", "Lead at the output where it moves backwards"));
-        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 within which the lost motion is taken up", smallest));
+        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 over which what is left to take up falls to 1/e", smallest));
     }
 
     constexpr const char* problem() const {

@@ -88,7 +88,7 @@ struct ModelFeedforward {
         visit(SW_PART(m, gear, "What is known of the gear"));
         visit(SW_PART(m, load, "What the output carries"));
         visit(SW_FIELD(m, motor_inertia, "kg.m2", "Inertia of the motor's rotor", 0));
-        visit(SW_FIELD(m, presliding, "rad", "Input angle within which set-valued friction turns its sense", smallest));
+        visit(SW_FIELD(m, presliding, "rad", "Input angle over which the old sense of set-valued friction falls to 1/e", smallest));
         visit(SW_FIELD(m, friction_share, "1", "Share of the friction that is asked for", 0, 1));
         visit(SW_FIELD(m, rounds, "1", "Rounds in which the kinematic error is found; 0 leaves it out", 0, 8));
         visit(SW_FIELD(m, temperature, "K", "Temperature of the gear", smallest));

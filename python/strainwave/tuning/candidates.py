@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
-from strainwave import Compensation, Drive, Gear, compensation
-from strainwave.tuning.cascade import Plant, bare, model_of, observer_of, tuned_law
+import numpy as np
+
+from strainwave import Compensation, Drive, Gear, _core, compensation, stiffness
+from strainwave.tuning.cascade import (
+    RIGID,
+    Plant,
+    Setting,
+    bare,
+    line_of_friction,
+    model_of,
+    observer_of,
+    speed_bandwidth,
+    tuned_law,
+)
+from strainwave.tuning.steady_torque import steady_torque
 
 EFFECTS = {
     "friction": ("friction_input", "friction_mesh", "friction_output"),
@@ -16,7 +28,15 @@ EFFECTS = {
     "kinematic error": ("kinematic_error",),
 }  # parts of a gear, by the effect that they have on its motion
 MAX_ORDERS = 4  # that an AdaptiveFourier holds
-MAX_SHARE_OF_LIMIT = 0.9  # of the frequency at which the position loop lags by 90 degrees, up to which waves are learnt
+LEARNING_SHARE = 0.2  # rate of learning over the gain of the position loop
+MAX_WAVE_SHARE = 0.9  # frequency of a wave that is learnt over the gain of the position loop, which lags by 45 degrees at 1
+MAX_AMPLITUDE = 2e-3  # rad at the output, that is learnt
+SCALE_TIME = 1.0  # s, in which the scale of friction follows
+USUAL_SPEED = 20.0  # rad/s of the input
+MIN_FRICTION = 1e-6  # N.m
+RANGE_OF_SPEED = (0.1, 100.0)  # rad/s of the input, over which friction is compared with a line
+MAX_OFF_LINE = 0.01  # of the line
+ANGLES = 720  # of a turn of the input, at which the slope of an error is taken
 
 
 @dataclass(frozen=True)
@@ -24,105 +44,145 @@ class Candidate:
     """A controller with a compensation.
 
     Attributes:
-        name: what it takes away
+        name: what it compensates
         effects: the effects of the gear that its model has
-        law: that is sampled
+        setting: of its cascade
         drive: under this controller
         parts: number of effects and of what observes or learns
-        is_plain: True if it has a model and a disturbance observer, and position by the input encoder
+        is_plain: True if it has a model alone, besides the cascade
     """
 
     name: str
     effects: tuple[str, ...]
-    law: Any
+    setting: Setting
     drive: Drive
     parts: int = 0
     is_plain: bool = False
 
 
-def baseline(plant: Plant, sharpness: float, feedback: str) -> Candidate:
-    """Return the tuned cascade with feed-forward of inertia, weight and Coulomb and viscous friction, and an observer."""
-    law = tuned_law(plant, sharpness, feedback=feedback)
-    added = _compensation(plant, bare(plant.drive.gear), sharpness)
-    return Candidate("cascade with feed-forward and disturbance observer", (), law, plant.controlled(law, added))
+def baseline(plant: Plant, setting: Setting) -> Candidate:
+    """Return the cascade with feed-forward of inertia, weight, Coulomb and viscous friction, and the observer of a setting."""
+    observed = " and disturbance observer" if setting.observer_share else ""
+    encoder = ", position by the output encoder" if setting.feedback == "output" else ""
+    added = _compensation(plant, bare(plant.drive.gear), setting)
+    drive = plant.controlled(tuned_law(plant, setting), added)
+    return Candidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
 
 
-def candidates(plant: Plant, sharpness: float, *, has_output_encoder: bool) -> Iterator[Candidate]:
-    """Yield the cascade with models of each choice of effects that the gear has, and with what observes or learns."""
-    present = [effect for effect in EFFECTS if _has(plant.drive.gear, effect)]
+def candidates(plant: Plant, settings: Sequence[Setting]) -> Iterator[Candidate]:
+    """Yield the cascade of each setting with models of each choice of effects, and with what observes or learns.
+
+    Waves over the input are learnt where the controller follows the input encoder and sees the output, so only if there are
+    settings of both encoders.
+    """
+    gear = plant.drive.gear
+    present = [effect for effect in EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
+    if is_line(plant.drive):  # which the cascade feeds forward, too
+        present.remove("friction")
     choices = [each for count in range(1, len(present) + 1) for each in combinations(present, count)]
-    for effects in choices:
-        yield _with_model(plant, sharpness, effects)
-        if "friction" in effects:
-            yield _with_model(plant, sharpness, effects, scaling=True)
-    if not has_output_encoder:
-        return
-    for effects in choices:
-        yield _with_model(plant, sharpness, effects, feedback="output")
-    orders = [float(order) for order in getattr(plant.drive.gear.kinematic_error, "order", ())]
-    for effects in [(), *choices]:
-        if orders and "kinematic error" not in effects:
-            yield _with_model(plant, sharpness, effects, orders=orders[:MAX_ORDERS])
+    orders = [float(order) for order in getattr(gear.kinematic_error, "order", ())][:MAX_ORDERS]
+    sees_output = any(setting.feedback == "output" for setting in settings)
+    for setting in settings:
+        for effects in choices:
+            yield _with_model(plant, setting, effects)
+            if "friction" in effects:
+                yield _with_scale(plant, setting, effects)
+        if sees_output and setting.feedback == "input" and orders:
+            for effects in [(), *choices]:
+                if "kinematic error" not in effects:
+                    yield _with_learning(plant, setting, effects, orders)
 
 
-def _with_model(
-    plant: Plant,
-    sharpness: float,
-    effects: tuple[str, ...],
-    *,
-    feedback: str = "input",
-    scaling: bool = False,
-    orders: list[float] | None = None,
-) -> Candidate:
-    law = tuned_law(plant, sharpness, feedback=feedback, friction="friction" not in effects)
-    gear = with_effects(plant.drive.gear, effects)
-    added = _compensation(plant, gear, sharpness)
-    name = f"model of {_and(effects)}" if effects else "no model"
-    if feedback == "output":
-        name += ", position by the output encoder"
-    if scaling:
-        added = added.replace(
-            observer=compensation.FrictionScale(gain=_scale_gain(plant, law), position_gain=law.position_gain)
-        )
-        name += ", scale of friction observed in place of the disturbance"
-    if orders:
-        lag = 1.0 / law.position_gain
-        learner = compensation.AdaptiveFourier(
-            order=orders, gain=0.2 * law.position_gain, lag=0.0, fastest=MAX_SHARE_OF_LIMIT / lag, limit=2e-3
-        )
-        added = added.replace(learning=learner)
-        name += f", orders {_and([f'{order:g}' for order in orders])} learnt"
-    is_plain = feedback == "input" and not scaling and not orders
-    return Candidate(name, effects, law, plant.controlled(law, added), len(effects) + scaling + bool(orders), is_plain)
+def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+    added = _compensation(plant, with_effects(plant.drive.gear, effects), setting)
+    drive = plant.controlled(tuned_law(plant, setting), added)
+    return Candidate(_name(effects, setting), effects, setting, drive, len(effects), is_plain=True)
 
 
-def _compensation(plant: Plant, gear: Gear, sharpness: float) -> Compensation:
+def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+    """Return the same with an observer of the scale of friction in place of one of the disturbance."""
+    law = tuned_law(plant, setting)
+    scale = compensation.FrictionScale(gain=_scale_gain(plant, setting), position_gain=law.position_gain)
+    added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(observer=scale)
+    name = f"{_name(effects, setting)}, scale of friction observed"
+    return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
+
+
+def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], orders: list[float]) -> Candidate:
+    """Return the same with orders of the input that are learnt."""
+    law = tuned_law(plant, setting)
+    learner = compensation.AdaptiveFourier(
+        order=orders, gain=LEARNING_SHARE * law.position_gain, fastest=MAX_WAVE_SHARE * law.position_gain, limit=MAX_AMPLITUDE
+    )
+    added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(learning=learner)
+    which = f"order {orders[0]:g}" if len(orders) == 1 else f"orders {_and([f'{order:g}' for order in orders])}"
+    name = f"{_name(effects, setting)}, {which} learnt"
+    return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
+
+
+def _name(effects: tuple[str, ...], setting: Setting) -> str:
+    encoder = ", position by the output encoder" if setting.feedback == "output" else ""
+    return (f"model of {_and(effects)}" if effects else "no model") + encoder
+
+
+def _compensation(plant: Plant, gear: Gear, setting: Setting) -> Compensation:
     return Compensation(
         feedforward=model_of(plant, gear),
-        observer=observer_of(plant, sharpness),
+        observer=observer_of(plant, setting),
         actuation_per_torque=plant.actuation_per_torque,
     )
 
 
-def _scale_gain(plant: Plant, law: Any) -> float:
-    """Return the gain at which the scale follows in about a second of motion at full friction."""
-    friction = max(law.limit / plant.actuation_per_torque / 20.0, 1e-3)
-    error = friction / (law.speed_proportional / plant.actuation_per_torque)
-    return float(1.0 / (friction * error))
+def _scale_gain(plant: Plant, setting: Setting) -> float:
+    """Return the gain at which the scale follows in `SCALE_TIME` of motion at the usual speed."""
+    coulomb, viscous = line_of_friction(plant.drive.gear)
+    torque = max(coulomb + viscous * USUAL_SPEED, MIN_FRICTION)
+    per_speed = speed_bandwidth(plant, setting) * plant.total_inertia
+    return per_speed / (torque**2 * SCALE_TIME)
 
 
 def with_effects(gear: Gear, effects: tuple[str, ...]) -> Gear:
-    """Return a gear of which only some effects are known."""
+    """Return a gear of which only some effects are known, and the line of its friction."""
     parts = {part: getattr(gear, part) for effect in effects for part in EFFECTS[effect]}
     return bare(gear).replace(**parts)
 
 
-def _has(gear: Gear, effect: str) -> bool:
+def has_effect(gear: Gear, effect: str) -> bool:
     """True if a gear has an effect at all."""
-    plain = bare(gear)
-    return any(getattr(gear, part) != getattr(plain, part) for part in EFFECTS[effect])
+    none = Gear()
+    if effect == "friction":
+        return any(line_of_friction(gear))
+    if effect == "kinematic error":
+        return steepest_error(gear) > 0.0
+    return any(
+        getattr(gear, part) != getattr(none.replace(stiffness=stiffness.Linear(k=RIGID)), part) for part in EFFECTS[effect]
+    )
 
 
-def _and(names: tuple[str, ...] | list[str]) -> str:
+def is_line(drive: Drive) -> bool:
+    """True if the friction of a gear is Coulomb and viscous friction alone, which the cascade feeds forward, too."""
+    if any(name.startswith("friction_") for name, *_ in _core.state(drive)[0]):  # bristles
+        return False
+    coulomb, viscous = line_of_friction(drive.gear)
+    speed, turn = np.geomspace(*RANGE_OF_SPEED, 12), np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    for each in speed:
+        line = coulomb + viscous * each
+        if np.abs(steady_torque(drive.gear, float(each), turn).friction - line).max() > MAX_OFF_LINE * line:
+            return False
+    return bool(coulomb)
+
+
+def too_steep(plant: Plant, effect: str) -> bool:
+    """True for a kinematic error whose fixed point does not converge, so that it cannot be fed forward."""
+    return effect == "kinematic error" and abs(plant.ratio) * steepest_error(plant.drive.gear) >= 1.0
+
+
+def steepest_error(gear: Gear) -> float:
+    """Return the largest slope of the kinematic error of a gear over a turn of the input [rad/rad]."""
+    angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    return float(np.abs(gear.kinematic_error.slope(angle)).max())
+
+
+def _and(names: Sequence[str]) -> str:
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else last

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from strainwave import Compensation, Drive, Gear, compensation, control, loads, motor, stiffness
+from strainwave import Compensation, Drive, Gear, compensation, control, friction, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
 from strainwave.tuning.steady_torque import steady_torque
@@ -135,44 +135,70 @@ def line_of_friction(gear: Gear) -> tuple[float, float]:
 
 
 def bare(gear: Gear) -> Gear:
-    """Return a gear of which only the ratio and the inertia are known."""
-    return Gear(kinematics=gear.kinematics, stiffness=stiffness.Linear(k=RIGID), input_inertia=gear.input_inertia)
+    """Return a gear of which only the ratio, the inertia and the line of its friction are known."""
+    coulomb, viscous = line_of_friction(gear)
+    law = friction.Coulomb(coulomb=coulomb, viscous=viscous)
+    spring = stiffness.Linear(k=RIGID)
+    return Gear(kinematics=gear.kinematics, stiffness=spring, friction_input=law, input_inertia=gear.input_inertia)
 
 
-def tuned_law(plant: Plant, sharpness: float, *, feedback: str = "input", friction: bool = True) -> Any:
-    """Return position around speed, as fast as the delay lets it be times a sharpness in (0, 1].
+@dataclass(frozen=True)
+class Setting:
+    """How a cascade is set.
+
+    Attributes:
+        sharpness: of its loops, as a share of what the delay allows, in (0, 1]
+        feedback: encoder on which the position loop closes
+        observer_share: bandwidth of the disturbance observer over that of the speed loop; 0 for none
+    """
+
+    sharpness: float
+    feedback: str
+    observer_share: float
+
+
+def tuned_law(plant: Plant, setting: Setting) -> Any:
+    """Return position around speed, as fast as the delay lets it be times the sharpness.
 
     The speed loop crosses over on the inertia of the input alone, as it does above the vibration of the load, where the delay
-    takes 0.5 rad times the sharpness. Coulomb and viscous friction are fed forward by constant gains if `friction`.
+    takes 0.5 rad times the sharpness. It feeds nothing forward but the speed: what is fed forward besides belongs to the
+    compensation, so that an observer does not supply it once more.
     """
-    late = plant.delay + 0.5 * plant.period
-    gain = sharpness * PHASE_OF_DELAY / late * plant.input_inertia
-    bandwidth = gain / plant.total_inertia
-    coulomb, viscous = line_of_friction(plant.drive.gear) if friction else (0.0, 0.0)
-    per_torque = plant.actuation_per_torque
+    bandwidth, per_torque = speed_bandwidth(plant, setting), plant.actuation_per_torque
+    gain = bandwidth * plant.total_inertia
     return control.PositionSpeed(
         position_gain=POSITION_SHARE * bandwidth,
         speed_proportional=per_torque * gain,
         speed_integral=per_torque * gain * INTEGRAL_SHARE * bandwidth,
         speed_feedforward=1.0,
-        viscous_feedforward=per_torque * viscous,
-        coulomb_feedforward=per_torque * coulomb,
         limit=plant.limit,
         speed_limit=1e4,
-        feedback=feedback,
+        feedback=setting.feedback,
     )
 
 
-def observer_of(plant: Plant, sharpness: float) -> compensation.DisturbanceObserver:
-    """Return a disturbance observer half as fast as the speed loop."""
+def speed_bandwidth(plant: Plant, setting: Setting) -> float:
+    """Return the bandwidth of the speed loop below the vibration of the load [rad/s]."""
     late = plant.delay + 0.5 * plant.period
-    bandwidth = 0.5 * sharpness * PHASE_OF_DELAY / late * plant.input_inertia / plant.total_inertia
+    return setting.sharpness * PHASE_OF_DELAY / late * plant.input_inertia / plant.total_inertia
+
+
+def observer_of(plant: Plant, setting: Setting) -> compensation.DisturbanceObserver | compensation.NoObserver:
+    """Return the disturbance observer of a setting."""
+    if not setting.observer_share:
+        return compensation.NoObserver()
     return compensation.DisturbanceObserver(
-        inertia=plant.total_inertia, bandwidth=bandwidth, limit=plant.limit / plant.actuation_per_torque
+        inertia=plant.total_inertia,
+        bandwidth=setting.observer_share * speed_bandwidth(plant, setting),
+        limit=plant.limit / plant.actuation_per_torque,
     )
 
 
-def model_of(plant: Plant, gear: Gear, load: Any = None) -> compensation.ModelFeedforward:
-    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate."""
-    carried = load if load is not None else plant.drive.load
-    return compensation.ModelFeedforward(gear=gear, load=carried, motor_inertia=float(plant.drive.motor.inertia))
+def model_of(plant: Plant, gear: Gear) -> compensation.ModelFeedforward:
+    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate.
+
+    Raises:
+        ValueError: the kinematic error of the gear is too steep to be fed forward
+    """
+    inertia = float(plant.drive.motor.inertia)
+    return compensation.ModelFeedforward(gear=gear, load=plant.drive.load, motor_inertia=inertia)

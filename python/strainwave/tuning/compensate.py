@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -16,18 +17,21 @@ from strainwave.messages import listed
 from strainwave.parameters import Parameter, every
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.tuning import goals
-from strainwave.tuning.candidates import EFFECTS, Candidate, baseline, candidates
-from strainwave.tuning.cascade import Plant, gear_set_of
+from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, Candidate, baseline, candidates, has_effect, too_steep
+from strainwave.tuning.cascade import Plant, Setting, gear_set_of, tuned_law
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 
 Array = NDArray[np.float64]
 
 SHARPNESSES = (1.0, 0.5, 0.25, 0.125)  # of the cascade, of which the best one is taken
+OBSERVER_SHARES = (0.5, 0.0)  # bandwidth of its observer over that of its speed loop, likewise; 0 for none
+AT_LIMIT = 0.999  # of the limit of the motor
+MAX_SHARE_AT_LIMIT = 0.01  # of the time, of a run that counts
+MIN_SAMPLES = 100  # periods of a motion
 MIN_MEMBERS = 3
 QUANTILE = 0.95
 MIN_GAIN = 0.05  # relative: what gains less is not worth another part
-USUAL_SPEED = 20.0  # rad/s of the input, if none is given
 CREEPING = 0.01  # of that
 MAX_STEP = 2e-4  # s, of the simulation
 STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a stiffer gear is followed, too
@@ -49,15 +53,17 @@ class Judged:
         candidate: the controller
         figures: on each drawn gear, shape (members,), by name; not a number where a run did not end
         nominal: on the gear as its numbers have it, by name
+        reason: why a run failed; empty if none did
     """
 
     candidate: Candidate
     figures: Mapping[str, Array]
     nominal: Mapping[str, float]
+    reason: str = ""
 
     @property
     def failures(self) -> int:
-        """Runs that did not end."""
+        """Number of runs that failed."""
         return int(np.isnan(next(iter(self.figures.values()))).sum())
 
     def median(self, name: str) -> float:
@@ -163,22 +169,37 @@ def compensate(
     )
     wanted = goal_of(goal, plant, travel, speed)
     draws = drawn_gears(gear_set, members, seed)
-    feedbacks = ("input", "output") if encoder == "output" else ("input",)
-    tried = []
-    for sharpness in SHARPNESSES:
-        for feedback in feedbacks:
-            progress(f"cascade, {feedback} encoder, sharpness {sharpness:g}")
-            tried.append((sharpness, judged(baseline(plant, sharpness, feedback), wanted, draws, plant.period)))
-    best_sharpness, best = min(tried, key=lambda found: found[1].upper(wanted.judged_by))
+    encoders = ("input", "output") if encoder == "output" else ("input",)
+    cascades = [best_cascade(plant, wanted, draws, each, progress) for each in encoders]
+    cascades.sort(key=lambda found: found.upper(wanted.judged_by))
+    best = cascades[0]
+    if best.failures == members:
+        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}")
     others = []
-    for candidate in candidates(plant, best_sharpness, has_output_encoder=encoder == "output"):
+    for candidate in candidates(plant, [each.candidate.setting for each in cascades]):
         progress(candidate.name)
-        others.append(judged(candidate, wanted, draws, plant.period))
+        others.append(judged(candidate, wanted, draws, plant))
     others.sort(key=lambda found: found.median(wanted.judged_by))
     chosen, anew = _chosen(best, others, wanted), drawn_gears(gear_set, members, seed + 1)
-    before, after = (judged(each.candidate, wanted, anew, plant.period) for each in (best, chosen))
-    remarks = tuple(_remarks(gear_set, plant, wanted, best))
-    return Compensated(gear_set, wanted, (best, *others), before, before if chosen is best else after, members, remarks)
+    before, after = (judged(each.candidate, wanted, anew, plant) for each in (best, chosen))
+    remarks = list(_remarks(gear_set, plant, wanted, best))
+    figure = wanted.judged_by
+    if chosen is not best and not after.median(figure) < (1.0 - MIN_GAIN) * before.median(figure):
+        remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
+        after = before
+    return Compensated(gear_set, wanted, (best, *others), before, before if chosen is best else after, members, tuple(remarks))
+
+
+def best_cascade(
+    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, progress: Callable[[str], None] = lambda stage: None
+) -> Judged:
+    """Return the cascade of which 95 % of the drawn gears stay below the least, of all settings of an encoder."""
+    tried = []
+    for sharpness, share in product(SHARPNESSES, OBSERVER_SHARES):
+        setting = Setting(sharpness, encoder, share)
+        progress(f"cascade, {encoder} encoder, sharpness {sharpness:g}, observer {share:g}")
+        tried.append(judged(baseline(plant, setting), goal, draws, plant))
+    return min(tried, key=lambda found: found.upper(goal.judged_by))
 
 
 def _chosen(best: Judged, others: Sequence[Judged], goal: Goal) -> Judged:
@@ -205,30 +226,42 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None) -> Goal
     given = usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0)
     unit = plant.effort_unit
     if name == "position":
-        return goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit)
-    if name == "speed":
-        return goals.speed(given, TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
-    return goals.smooth(given, DURATION_OF_CREEPING, unit)
+        goal = goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit)
+    elif name == "speed":
+        goal = goals.speed(given, TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
+    else:
+        goal = goals.smooth(given, DURATION_OF_CREEPING, unit)
+    if goal.command.duration < MIN_SAMPLES * plant.period:
+        raise ValueError(
+            f"the motion lasts {goal.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
+            "take a lower speed, a longer travel or a shorter period"
+        )
+    return goal
 
 
-def judged(candidate: Candidate, goal: Goal, draws: Mapping[str, Array], sample: float) -> Judged:
-    """Return a controller with its figures on drawn gears; the gear as its numbers have it is run first among them."""
+def judged(candidate: Candidate, goal: Goal, draws: Mapping[str, Array], plant: Plant) -> Judged:
+    """Return a controller with its figures on drawn gears; the gear as its numbers have it is run first among them.
+
+    A run fails if it does not end, or drives the motor at its limit for more than a hundredth of the time, as a loop does that
+    is not stable.
+    """
     nominal = _numbers(candidate.drive, draws)
     whole = {path: np.concatenate(([nominal[path]], values)) for path, values in draws.items()}
     step = min(MAX_STEP, STEP_OF_VIBRATION / _core.max_rate(candidate.drive, 0.0))
     effort = "current" if candidate.drive.motor.name == "current_source" else "motor_torque"
+    recorded = ["output_angle", "output_speed", effort]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EnsembleWarning)  # failures are counted
-        runs = simulate_many(
-            candidate.drive, goal.command, whole, step, record=["output_angle", "output_speed", effort], sample=sample
-        )
-    if len(runs.failures) == len(runs):
-        raise ValueError(f"no run of the {candidate.name} came to its end: {next(iter(runs.failures.values()))}")
-    figures = goal.figures(runs, goal.command)
+        runs = simulate_many(candidate.drive, goal.command, whole, step, record=recorded, sample=plant.period)
+    later = runs.time >= goals.SETTLED * goal.command.duration
+    at_limit = np.mean(np.abs(runs[effort][:, later]) > AT_LIMIT * plant.limit, axis=1) > MAX_SHARE_AT_LIMIT
+    figures = {name: np.where(at_limit, np.nan, values) for name, values in goal.figures(runs, goal.command).items()}
+    reason = next(iter(runs.failures.values()), "the motor is at its limit" if at_limit.any() else "")
     return Judged(
         candidate,
         {name: values[1:] for name, values in figures.items()},
         {name: float(values[0]) for name, values in figures.items()},
+        reason,
     )
 
 
@@ -241,13 +274,19 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
     """Yield what was assumed, and what cannot be gained."""
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
+    if cogging := getattr(gear_set.motor, "cogging_torque", 0.0):
+        yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
     for effect in EFFECTS:
-        if not numbers_of(gear_set, effect):
+        if not has_effect(plant.drive.gear, effect):
             yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
+        elif too_steep(plant, effect):
+            yield f"the {effect} is too steep to be fed forward: its slope times the ratio reaches 1"
         elif names := assumed_numbers(gear_set, effect):
-            spread = f"{'any phase and ' if _has_unknown_phase(gear_set, effect) else ''}30 % more or less of it"
+            spread = (
+                f"{'any phase and ' if _has_unknown_phase(gear_set, effect) else ''}more or less of it by a factor of up to 1.3"
+            )
             yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
-    bandwidth = best.candidate.law.position_gain
+    bandwidth = tuned_law(plant, best.candidate.setting).position_gain
     if bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
         yield (
             f"the position loop reaches {bandwidth:.3g} rad/s with period {plant.period:g} s and delay {plant.delay:g} s, and "

@@ -12,10 +12,19 @@ from strainwave.parameters import every
 
 Array = NDArray[np.float64]
 
-SPREAD = 0.3  # relative, either way, of gears about a number that is assumed, or whose spread is not stated
+SPREAD = 0.3  # factor of up to 1 + this, either way, of gears about a number that is assumed, or whose spread is not stated
 SPREAD_OF_LOAD = 0.2  # likewise of inertia and weight of a load whose spread is not stated
-SHAPES = {"pressure_angle", "reference_temperature"}  # numbers that the gear has more than once, or that scale nothing
-SCALED = {"N.m", "N.m/rad", "N.m.s/rad", "rad", "kg.m2"}  # units of numbers that a gear may have more or less of
+# Numbers that a gear has more than once, or of which no effect is larger or smaller.
+SHAPES = {"pressure_angle", "pitch_radius", "major_radius", "minor_radius", "offset", "reference_temperature"}
+SCALED = {
+    "N.m",
+    "N.m/rad",
+    "N.m/rad3",
+    "m",
+    "N.m.s/rad",
+    "rad",
+    "kg.m2",
+}  # units of numbers that a gear may have more or less of
 PARTS = ("gear.stiffness", "gear.hysteresis", "gear.kinematic_error", "gear.friction_input", "gear.friction_mesh",
          "gear.friction_output", "load")  # fmt: skip
 
@@ -24,8 +33,8 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
     """Return numbers of drives that a set may be, as `simulate_many` takes them.
 
     Identified numbers are drawn from their covariance. All other numbers of a part are multiplied by one factor, as a stiffer
-    gear is stiffer at every twist: by up to the spread that the set states, 30 % if it states none, 20 % for the load. A phase
-    that is assumed may be any.
+    gear is stiffer at every twist: by up to 1 + the spread that the set states, either way, by 1.3 if it states none, 1.2 for
+    the load. A phase that is assumed may be any. Exponents, characteristic speeds, damping and the motor are not drawn.
 
     Args:
         gear_set: a drive with the sources of its numbers

@@ -48,7 +48,11 @@ def regulator(
     >>> law.input_angle != 0.0 and law.output_angle != 0.0
     True
     """
-    plant = Plant.of(gear_set_of(drive), arguments.number("period", period, "s", low=0.0), delay)
+    plant = Plant.of(
+        gear_set_of(drive),
+        arguments.number("period", period, "s", low=0.0),
+        arguments.number("delay", delay, "s", "[]", 0.0, period),
+    )
     weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
     a, b, states, output = _linear(plant)

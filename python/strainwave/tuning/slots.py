@@ -21,13 +21,15 @@ from strainwave.files.units import convert
 from strainwave.messages import shortened
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
+from strainwave.tuning.candidates import USUAL_SPEED
 from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
-from strainwave.tuning.compensate import CREEPING, MEASUREMENTS, USUAL_SPEED, assumed_numbers
+from strainwave.tuning.compensate import CREEPING, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.steady_torque import ROOM_TEMPERATURE, steady_torque
 
 Array = NDArray[np.float64]
 
+MIN_TEMPERATURE = 200.0  # K: less is a temperature in another unit
 SPEEDS = 1001  # of each sense, over which friction is compared
 DRAWN_SPEEDS = 33  # likewise of each drawn gear
 ANGLES = 257  # of a turn of the output: prime, so that they are spread over the turns of the input, too
@@ -270,7 +272,7 @@ def slot(
             motion,
             arguments.number("travel", travel, "rad", low=0.0),
             arguments.number("period", period, "s", low=0.0),
-            arguments.number("temperature", temperature, "K", low=0.0),
+            arguments.number("temperature", temperature, "K", low=MIN_TEMPERATURE),
             arguments.whole("members", members, MIN_MEMBERS),
             arguments.whole("seed", seed, 0),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.tuning.cascade import PHASE_OF_DELAY, POSITION_SHARE, Plant, line_of_friction, tuned_law
+from strainwave.tuning.cascade import PHASE_OF_DELAY, POSITION_SHARE, Plant, Setting, line_of_friction, tuned_law
 
 GEAR = sw.Gear(
     kinematics=sw.kinematics.PlainRatio(reduction=100.0),
@@ -15,6 +15,7 @@ GEAR = sw.Gear(
     input_inertia=2e-5,
 )
 ARM = sw.loads.Inertia(inertia=0.6)
+FAST = Setting(sharpness=1.0, feedback="input", observer_share=0.0)
 
 
 def plant_of(motor: object, period: float = 1e-3, delay: float = 5e-4) -> Plant:
@@ -29,12 +30,12 @@ def test_the_line_of_friction_is_that_of_all_places_at_the_input() -> None:
 
 def test_the_speed_loop_loses_half_a_radian_to_the_delay_where_it_crosses_over() -> None:
     plant = plant_of(sw.motor.CurrentSource(torque_constant=0.1, inertia=8e-5))
-    law = tuned_law(plant, 1.0)
+    law = tuned_law(plant, FAST)
     crossover = law.speed_proportional * 0.1 / 1e-4  # on the inertia of rotor and wave generator
     assert crossover * (5e-4 + 0.5e-3) == pytest.approx(PHASE_OF_DELAY)
     bandwidth = law.speed_proportional * 0.1 / (1e-4 + 0.6 / 100.0**2)
     assert law.position_gain == pytest.approx(POSITION_SHARE * bandwidth)
-    assert tuned_law(plant, 0.5).speed_proportional == pytest.approx(0.5 * law.speed_proportional)
+    assert tuned_law(plant, Setting(0.5, "input", 0.0)).speed_proportional == pytest.approx(0.5 * law.speed_proportional)
 
 
 @pytest.mark.parametrize(
@@ -55,13 +56,13 @@ def test_the_speed_loop_loses_half_a_radian_to_the_delay_where_it_crosses_over()
 def test_its_gains_are_those_of_the_torque_whatever_the_motor_takes(motor: object, constant: float) -> None:
     plant, torque = plant_of(motor), plant_of(sw.motor.TorqueSource(inertia=1e-4))
     assert plant.actuation_per_torque == pytest.approx(1.0 / constant)
-    assert tuned_law(plant, 1.0).speed_proportional * constant == pytest.approx(tuned_law(torque, 1.0).speed_proportional)
+    assert tuned_law(plant, FAST).speed_proportional * constant == pytest.approx(tuned_law(torque, FAST).speed_proportional)
 
 
 def test_it_holds_a_step_of_the_load() -> None:
     """The integral takes all of it: the position comes back."""
     plant = plant_of(sw.motor.CurrentSource(torque_constant=0.1, inertia=8e-5))
-    drive = plant.controlled(tuned_law(plant, 0.5), sw.Compensation())
+    drive = plant.controlled(tuned_law(plant, Setting(0.5, "input", 0.0)), sw.Compensation())
     run = sw.simulate(drive, sw.scenario.constant(0.0, 3.0), load_torque=sw.scenario.step(5.0, 3.0, start=0.1), sample=1e-3)
     assert np.abs(run["input_angle"]).max() > 1e-3
     assert np.abs(run["input_angle"][-500:]).max() < 0.05 * np.abs(run["input_angle"]).max()

@@ -10,17 +10,18 @@ import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
 from strainwave.tuning.candidates import EFFECTS, with_effects
-from strainwave.tuning.cascade import Plant, model_of, tuned_law
+from strainwave.tuning.cascade import Plant, Setting, model_of, observer_of, tuned_law
 
 joint = sw.GearSet.read("robot-joint")
 plant = Plant.of(joint, period=1e-3, delay=0.0)
 gear = plant.drive.gear.replace({"friction_input.dry_fall": 0.02})  # its dry friction falls, too
 heat = sw.thermal.Heating(winding_capacity=50.0, winding_resistance=1.0, gear_capacity=20.0, gear_resistance=2.0)
-law = tuned_law(plant, 0.25, friction=False)
+law = tuned_law(plant, Setting(sharpness=0.25, feedback="input", observer_share=0.0))
+Observer = sw.compensation.NoObserver | sw.compensation.DisturbanceObserver | sw.compensation.FrictionScale
 swing = sw.scenario.sine(0.5, 0.5, 4.0, phase=-np.pi / 2, offset=0.5)
 
 
-def worked(observer: sw.compensation.NoObserver | sw.compensation.FrictionScale, rounds: int = 40) -> np.ndarray:
+def worked(observer: Observer, rounds: int = 40) -> np.ndarray:
     """Temperature [K], tracking error [rad], observed and true scale of friction after each round of four seconds."""
     model = model_of(plant, with_effects(gear, tuple(EFFECTS)))
     added = sw.Compensation(feedforward=model, observer=observer, actuation_per_torque=plant.actuation_per_torque)
@@ -31,16 +32,18 @@ def worked(observer: sw.compensation.NoObserver | sw.compensation.FrictionScale,
         state, warm, error = run.end, float(run["temperature"][-1]), run["command"] - run["output_angle"]
         speed = float(np.mean(np.abs(run["input_speed"])))
         true = gear.friction_input.steady(speed, temperature=warm) / gear.friction_input.steady(speed)
-        scale = state["control.compensation.observer.scale"] if hasattr(observer, "gain") else 1.0
+        scale = state["control.compensation.observer.scale"] if isinstance(observer, sw.compensation.FrictionScale) else 1.0
         rows.append((warm, float(np.sqrt(np.mean(error[100:] ** 2))), scale, float(true)))
     return np.array(rows).T
 
 
 observer = sw.compensation.FrictionScale(gain=2.0, position_gain=law.position_gain, slowest=30.0)
 cold, observed = worked(sw.compensation.NoObserver()), worked(observer)
+disturbed = worked(observer_of(plant, Setting(sharpness=0.25, feedback="input", observer_share=0.5)))
 print(f"the gear warms up from 20 degC to {observed[0, -1] - 273.15:.0f} degC")
 print(f"scale of friction: observed {observed[2, -1]:.2f}, true {observed[3, -1]:.2f}")
-print(f"tracking error: {1e6 * cold[1, -1]:.0f} urad by the cold model, {1e6 * observed[1, -1]:.0f} urad with the scale")
+ends = (1e6 * each[1, -1] for each in (cold, disturbed, observed))
+print("tracking error: {:.0f} urad by the cold model, {:.0f} with a disturbance observer, {:.0f} with the scale".format(*ends))
 
 figure = Figure(figsize=(8.0, 3.6), layout="constrained")
 scales, errors = figure.subplots(1, 2)
@@ -48,6 +51,7 @@ time = 4.0 * np.arange(1, 1 + observed.shape[1])
 scales.plot(time, observed[2], color="#c2410c", label="observed")
 scales.plot(time, observed[3], "--", color="#1c2127", label="true")
 errors.plot(time, 1e6 * cold[1], color="#2166ac", label="model of the cold joint")
+errors.plot(time, 1e6 * disturbed[1], color="#7b3fa0", label="with a disturbance observer")
 errors.plot(time, 1e6 * observed[1], color="#c2410c", label="with the scale observed")
 scales.set(xlabel="time [s]", ylabel="friction over that of the cold joint [1]")
 errors.set(xlabel="time [s]", ylabel="tracking error [µrad]")
