@@ -60,14 +60,17 @@ def _figures(judged: Judged, found: Compensated) -> list[str]:
 
 
 def removed(found: Compensated) -> Iterator[str]:
-    """Yield for each effect what its model removes: all effects in the model, beside all but this one."""
-    present = tuple(effect for effect in EFFECTS if any(effect in each.candidate.effects for each in found.tried))
-    whole, figure = found.model_of(present), found.goal.judged_by
+    """Yield for each effect what its model removes or adds, beside the model of all other effects."""
+    setting, figure = found.tried[0].candidate.setting, found.goal.judged_by
+    present = tuple(effect for effect in EFFECTS if found.model_of((effect,), setting) is not None)
+    whole = found.model_of(present, setting)
     for effect in present:
-        rest = found.model_of(tuple(each for each in present if each != effect)) or found.tried[0]
+        rest = found.model_of(tuple(each for each in present if each != effect), setting) or found.tried[0]
         if whole is not None:
-            without, with_it = (typeset.quantity(each.median(figure), found.goal.units[figure]) for each in (rest, whole))
-            yield f"{effect}: {figure} {without} without it in the model, {with_it} with it"
+            before, after = rest.median(figure), whole.median(figure)
+            does = "removes" if after < before else "adds"
+            change, left = (typeset.quantity(each, found.goal.units[figure]) for each in (abs(before - after), after))
+            yield f"{effect}: its model {does} {change} of {figure}; {left} are left with the models of all effects"
 
 
 def compensate_files(found: Compensated, provenance: Provenance | None = None) -> dict[str, str]:
@@ -120,6 +123,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "name": found.gear_set.name,
             "verdict": verdict(found),
             "figure": figure,
+            "cascade": found.baseline.candidate.name,
             "rows": [
                 (each.candidate.name, *_figures(each, found), each.failures, each.candidate is found.chosen.candidate)
                 for each in found.tried

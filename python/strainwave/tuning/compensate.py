@@ -120,10 +120,10 @@ class Compensated:
         before, after = (each.median(self.goal.judged_by) for each in (self.baseline, self.chosen))
         return 1.0 - after / before
 
-    def model_of(self, effects: tuple[str, ...]) -> Judged | None:
-        """Return the controller with the plain model of these effects; None if it was not tried."""
-        plain = (each for each in self.tried if each.candidate.is_plain and each.candidate.effects == effects)
-        return next(plain, None)
+    def model_of(self, effects: tuple[str, ...], setting: Setting) -> Judged | None:
+        """Return the controller with the model of these effects alone, in the cascade of a setting; None if none was tried."""
+        alike = (each for each in self.tried if each.candidate.is_plain and each.candidate.setting == setting)
+        return next((each for each in alike if each.candidate.effects == effects), None)
 
 
 def compensate(
