@@ -66,13 +66,15 @@ def test_the_drives_drawn_move_but_for_a_few_that_friction_holds() -> None:
 
 
 # Of these tests/structure/test_staged.py shows the balance: here definitions are those of a gear of one spring.
+COMPENSATING = {"feedforward", "learning", "observer"}  # they change what a motor is asked for, and no energy
 BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled"}
 
 
 def test_the_drives_drawn_hold_every_model_between_them() -> None:
     """But what has no energy to measure by, and a table of a density, which is a law over the same as the other density."""
     drawn_ones = set().union(*(models_of(drawn(seed)) for seed in SEEDS))
-    known = {model.__name__ for models in _core.families.values() for model in models.values()}
+    families = {name: models for name, models in _core.families.items() if name not in COMPENSATING}
+    known = {model.__name__ for models in families.values() for model in models.values()}
     assert known - drawn_ones == {"NoMeter", "GridDensity"} | BALANCED_WITH_STAGES
 
 

@@ -19,6 +19,7 @@ from strainwave.simulation.state import Layout, State, start_of
 Array = NDArray[np.float64]
 SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
 _ROUNDING = 1e-14  # of what cancels
+MAX_ANGLE = 1e12  # rad of the input: beyond, where within a turn it stands is lost
 _NOTHING = 1e-12  # rad/s2, A/s: a term so small takes no part
 OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
 _FASTEST = 1e9  # rad/s at the input: what nothing has stopped by then, nothing will
@@ -192,6 +193,8 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
         return None
     stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
     rates = Rates.of(drive, stopped, inputs)
+    if abs(stopped[slow.layout.places["input_angle"].start]) > MAX_ANGLE:
+        return None
     return stopped if rates.vanishes(slow.rows(rates), 1e-9) else None  # a way without end is none
 
 

@@ -159,7 +159,7 @@ def compensate(
     >>> import strainwave as sw
     >>> found = compensate("robot-joint", members=3, travel=0.05)
     >>> found.chosen.candidate.effects, found.gain > 0.3
-    (('friction', 'torsion'), True)
+    (('torsion',), True)
     """
     gear_set = gear_set_of(drive)
     arguments.one_of("encoder", encoder, ("input", "output"))

@@ -215,6 +215,23 @@ def test_a_motor_that_prescribes_an_acceleration_has_an_equilibrium_without_one_
         sw.equilibrium(drive, command=0.01)
 
 
+def test_an_angle_that_is_lost_among_turns_is_no_place_to_rest() -> None:
+    """Nothing holds the input of this drive; after 10^22 turns the error has any slope that rounding gives it."""
+    error = sw.kinematic_error.Misalignment(
+        major_radius=0.024, minor_radius=0.024, pitch_radius=0.024, pressure_angle=1e-6, housing_tilt_x=1e-3, combine="single"
+    )
+    gear = sw.Gear(
+        kinematics=sw.kinematics.StrainWave(flexspline_teeth=2, circular_spline_teeth=3, fixed="circular_spline"),
+        kinematic_error=error,
+        stiffness=sw.stiffness.Linear(k=10.0),
+        input_inertia=1e-5,
+    )
+    idle = sw.motor.DC(resistance=0.03, torque_constant=0.0, back_emf=0.0, inertia=0.0)
+    drive = sw.Drive(gear=gear, motor=idle, control=sw.control.OpenLoop(gain=0.0), load=sw.loads.Inertia(inertia=1e-5))
+    with pytest.raises(ValueError, match=r"nor run steadily"):
+        sw.equilibrium(drive, command=0.01, load_torque=0.1)
+
+
 @settings(max_examples=sample(8, 20))
 @given(smooth_drives)
 def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:

@@ -234,7 +234,7 @@ def test_a_photograph_that_tells_nothing_is_left_out_and_told(test: Path, tmp_pa
         (("test", "--reference", "x.png"), 'reference = "x.png" is no photograph of a step'),
         (("test", "--rig", "nope"), 'no rig "nope"'),
         (("test", "--gear", "nope"), 'no set "nope"'),
-        (("test", "--rated-torque", "-1"), "rated_torque = -1.0 N.m must lie in (0, inf)"),
+        (("test", "--rated-torque", "-1"), "--rated-torque = -1.0 N.m must lie in (0, inf)"),
         (("test", "--friction", "x.csv"), "needs a gear"),
         (("test", "--positions", "1,2"), "there are 2 positions for 0 files"),
         ((LOOP, "--reference", "x.png"), "are for folders of tests"),
