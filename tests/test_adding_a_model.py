@@ -116,6 +116,7 @@ ELSEWHERE = {
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/control.cpp": BOUND_TO_ANY,
         "native/static_type.py": "whose law and compensation are parameters of its type",
+        "export/firmware.py": "what a computer runs, and firmware is",
     },
     "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},
     "TorqueSource": {
