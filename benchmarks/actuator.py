@@ -19,7 +19,7 @@ import numpy as np
 from measure import Effort, Failure, Result, measure_all
 from peers import Crowd, Peer, casadi_cvodes, strainwave_drive
 from reference_drive import DURATION, SAMPLE, Array, Maths, numba_maths
-from report import Column, save, tell, three_digits
+from report import Column, print_table, save, three_digits
 from rich.console import Console
 from single import ratio, shown
 
@@ -271,13 +271,13 @@ def run(console: Console, peers: Sequence[str], quick: bool) -> None:
     outcomes = [outcome for _, outcome in measure_all(console, chosen, effort, exact)]
     results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
     caption = "ratio: time over that of strainwave's cheapest setting with errors no larger"
-    tell(console, f"The tilt actuator, {DURATION:.0f} s", SETS, [row(each, results) for each in results], caption)
+    print_table(console, f"The tilt actuator, {DURATION:.0f} s", SETS, [row(each, results) for each in results], caption)
     told = {each.peer: each for each in CROWDS if any(word in each.peer.name.lower() for word in peers)}
     many = []
     for peer, outcome in measure_all(console, list(told), effort, exact):
         outcomes += [outcome] if isinstance(outcome, Failure) else []
         many += [Rate(outcome, told[peer].members, told[peer].threads)] if isinstance(outcome, Result) else []
-    tell(console, f"Many tilt actuators, {DURATION:.0f} s each", MANY, [rate_row(each) for each in many])
+    print_table(console, f"Many tilt actuators, {DURATION:.0f} s each", MANY, [rate_row(each) for each in many])
     alone = [outcome for _, outcome in measure_all(console, ITSELF, effort, exact)]
     for outcome in alone:
         if isinstance(outcome, Result):

@@ -20,7 +20,7 @@ import numpy as np
 import strainwave as sw
 from measure import least
 from numpy.typing import NDArray
-from report import Column, save, tell, three_digits
+from report import Column, print_table, save, three_digits
 from rich.console import Console
 from strainwave.identification.fitting.fit import Fit
 
@@ -205,7 +205,7 @@ def run(console: Console) -> None:
         )
         for row in rows
     ]
-    tell(console, "A whole drive fitted", COLUMNS, cells)
+    print_table(console, "A whole drive fitted", COLUMNS, cells)
     save("drive_fit", rows)
 
 

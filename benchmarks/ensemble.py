@@ -16,7 +16,7 @@ from measure import Effort, Failure, Result, measure_all
 from peers import Crowd, casadi_cvodes, diffrax_tsit5, jax_exponential, numba_exponential, strainwave_drive
 from reference import reference_solution
 from reference_drive import DURATION
-from report import Column, figure, save, save_figure, tell, three_digits
+from report import Column, figure, print_table, save, save_figure, three_digits
 from rich.console import Console
 from single import shown
 
@@ -70,7 +70,7 @@ def run(console: Console, peers: Sequence[str], quick: bool) -> None:
             console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)
         else:
             rates.append(Rate(outcome, crowds[peer].members, crowds[peer].threads))
-    tell(console, TITLE, COLUMNS, [row(rate, rates) for rate in rates], CAPTION)
+    print_table(console, TITLE, COLUMNS, [row(rate, rates) for rate in rates], CAPTION)
     save("ensemble", rates, quick=quick)
     draw(rates)
 

@@ -21,7 +21,7 @@ import numpy as np
 import strainwave as sw
 from peers import strainwave_drive
 from reference_drive import COULOMB, OUTPUT_INERTIA
-from report import Column, save, tell, three_digits
+from report import Column, print_table, save, three_digits
 from rich.console import Console
 
 STEP = 2e-4  # s
@@ -93,7 +93,7 @@ def run(console: Console) -> None:
     with console.status("files"):
         crowds = [measured(members) for members in MEMBERS]
     caption = f"{round(DURATION / STEP)} steps each; the runs alone: of 8000 members in memory, the end only, multiplied"
-    tell(console, "Members run to files", COLUMNS, [row(crowd) for crowd in crowds], caption)
+    print_table(console, "Members run to files", COLUMNS, [row(crowd) for crowd in crowds], caption)
     save("files", crowds)
 
 

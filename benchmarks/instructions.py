@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 import strainwave as sw
-from report import Column, save, tell
+from report import Column, print_table, save
 from rich.console import Console
 from strainwave.export.firmware import FLAGS, INPUTS
 
@@ -28,8 +28,8 @@ PROGRAMS = (QEMU, *(GCC + name for name in ("gcc", "g++", "size")))
 TRACE = ("-singlestep", "-d", "exec,nochain")  # one line for each instruction, with the function that it is of
 DRIVER = Path(__file__).with_suffix(".c")
 MEMORY = ("--section-start=.vectors=0", "-Ttext=0x400", "-Tdata=0x20000000", "-Tbss=0x20001000", "-e", "steps")
-PERIOD = 1e-3  # s
-STEPS = 400  # of the simulated motion
+SAMPLE_PERIOD = 1e-3  # s, of the controllers
+MOTION_STEPS = 400  # sampling instants of the simulated motion
 RANDOM_STEPS = 100
 RANGES = {"input_angle": 1e3, "command": 1e1, "low": 0.0, "high": 0.0}  # of random inputs; of others 1e2
 
@@ -103,21 +103,22 @@ def drive(compensation: sw.Compensation) -> sw.Drive:
         gear=sw.load("csg-20-100"),
         motor=sw.motor.TorqueSource(inertia=2e-5),
         load=sw.loads.Pendulum(inertia=0.5, gravity_torque=10.0),
-        control=sw.control.Sampled(law=law, period=PERIOD, compensation=compensation),
+        control=sw.control.Sampled(law=law, period=SAMPLE_PERIOD, compensation=compensation),
     )
 
 
 def inputs() -> np.ndarray[Any, Any]:
-    """Return what a controller sees in a simulated motion that reverses every 25 ms, then random inputs; of each a row."""
-    motion = sw.scenario.sine(0.02, 20.0, PERIOD * STEPS) + sw.scenario.sine(0.5, 3.0, PERIOD * STEPS)
-    run = sw.simulate(drive(sw.Compensation()), motion, sample=PERIOD)
-    rows = np.zeros((STEPS + RANDOM_STEPS, len(INPUTS)))
+    """Return the inputs of a controller, one row per step: a motion that reverses every 25 ms, then random inputs."""
+    duration = SAMPLE_PERIOD * MOTION_STEPS
+    motion = sw.scenario.sine(0.02, 20.0, duration) + sw.scenario.sine(0.5, 3.0, duration)
+    run = sw.simulate(drive(sw.Compensation()), motion, sample=SAMPLE_PERIOD)
+    rows = np.zeros((MOTION_STEPS + RANDOM_STEPS, len(INPUTS)))
     random = np.random.default_rng(1)
     for column, (name, *_) in enumerate(INPUTS):
         if name in run.names:
-            rows[:STEPS, column] = run[name][:STEPS]
-        rows[STEPS:, column] = RANGES.get(name, 1e2) * random.uniform(-1.0, 1.0, RANDOM_STEPS)
-    rows[:STEPS, 1] = motion.rate(PERIOD * np.arange(STEPS))
+            rows[:MOTION_STEPS, column] = run[name][:MOTION_STEPS]
+        rows[MOTION_STEPS:, column] = RANGES.get(name, 1e2) * random.uniform(-1.0, 1.0, RANDOM_STEPS)
+    rows[:MOTION_STEPS, 1] = motion.rate(SAMPLE_PERIOD * np.arange(MOTION_STEPS))
     rows[:, -2:] = -2.0, 2.0
     return rows
 
@@ -135,7 +136,7 @@ def measured(name: str, compensation: sw.Compensation, rows: np.ndarray[Any, Any
         on_m7, _ = steps(M7, folder, len(rows))
         compile_for(M4F, folder)
         on_m4f, stack = steps(M4F, folder, len(rows))
-        state, code, mean = 4 * len(written.state), code_size(folder), float(np.mean(on_m4f[:STEPS]))
+        state, code, mean = 4 * len(written.state), code_size(folder), float(np.mean(on_m4f[:MOTION_STEPS]))
         return Step(name, state, code, stack, mean, max(on_m4f), max(on_m7))
 
 
@@ -189,8 +190,12 @@ def run(console: Console) -> None:
         ]
         for each in found
     ]
-    tell(
-        console, "Instructions of a step", COLUMNS, cells, f"over {STEPS} steps of a motion and {RANDOM_STEPS} of random inputs"
+    print_table(
+        console,
+        "Instructions of a step",
+        COLUMNS,
+        cells,
+        f"over {MOTION_STEPS} steps of a motion and {RANDOM_STEPS} of random inputs",
     )
     save("instructions", found)
 

@@ -15,7 +15,7 @@ import numpy as np
 import strainwave as sw
 from measure import shortest
 from numpy.typing import NDArray
-from report import Column, installed, save, tell, three_digits
+from report import Column, installed, print_table, save, three_digits
 from rich.console import Console
 from strainwave.identification.candidates.torsion.beside import Elements
 from strainwave.identification.candidates.torsion.candidate import starts
@@ -145,7 +145,7 @@ def run(console: Console) -> None:
         )
         for row in rows
     ]
-    tell(console, "Torsion loops fitted", COLUMNS, cells)
+    print_table(console, "Torsion loops fitted", COLUMNS, cells)
     save("loop_fit", rows)
 
 

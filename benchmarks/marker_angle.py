@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from report import Column, installed, save, tell, three_digits
+from report import Column, installed, print_table, save, three_digits
 from rich.console import Console
 from strainwave.rig.virtual.render import Scene, render
 from strainwave.rig.vision.angle import follow, look
@@ -104,7 +104,7 @@ def run(console: Console, quick: bool) -> None:
         )
         for row in rows
     ]
-    tell(console, "Angle of a target from pictures of its markers", COLUMNS, cells)
+    print_table(console, "Angle of a target from pictures of its markers", COLUMNS, cells)
     save("marker_angle", rows)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import strainwave as sw
 from measure import least
 from numpy.typing import NDArray
-from report import Column, installed, save, tell, three_digits
+from report import Column, installed, print_table, save, three_digits
 from rich.console import Console
 from strainwave.identification.fitting.fit import Fit
 
@@ -212,7 +212,7 @@ def run(console: Console) -> None:
         )
         for row in rows
     ]
-    tell(console, "A drive fitted beside MuJoCo", COLUMNS, cells)
+    print_table(console, "A drive fitted beside MuJoCo", COLUMNS, cells)
     save("mujoco_fit", rows)
 
 

@@ -19,7 +19,7 @@ import strainwave as sw
 from measure import shortest
 from peers import strainwave_drive
 from reference_drive import DURATION, OUTPUT_INERTIA, SAMPLE, VOLTAGE_LIMIT
-from report import Column, figure, save, save_figure, tell, three_digits
+from report import Column, figure, print_table, save, save_figure, three_digits
 from rich.console import Console
 from strainwave import _core
 from strainwave.simulation.excitation import Excitation
@@ -168,7 +168,7 @@ def run(console: Console) -> None:
             storing_many(["input_angle", "output_angle", "torque", "current"], "4 outputs"),
             *processes(),
         ]
-    tell(console, "What comes on top", COLUMNS, [row(extra) for extra in extras])
+    print_table(console, "What comes on top", COLUMNS, [row(extra) for extra in extras])
     save("overhead", extras)
     draw(extras)
 

@@ -20,7 +20,7 @@ import strainwave as sw
 from measure import shortest
 from peers import strainwave_drive
 from reference_drive import DURATION, OUTPUT_INERTIA
-from report import Column, save, tell, three_digits
+from report import Column, print_table, save, three_digits
 from rich.console import Console
 from strainwave import _core
 
@@ -94,7 +94,7 @@ def run(console: Console) -> None:
             Use("one trajectory", operations, alone, most),
             Use(f"packs of {lanes}", lanes * operations, packed / PACKS, most),
         ]
-    tell(console, f"Of at most {three_digits(1e-9 * most)}e9 operations a second", COLUMNS, [row(use) for use in uses])
+    print_table(console, f"Of at most {three_digits(1e-9 * most)}e9 operations a second", COLUMNS, [row(use) for use in uses])
     save("peak", uses)
 
 

@@ -52,8 +52,10 @@ def three_digits(value: float) -> str:
     return f"{value:.3g}" if value < 1000.0 else f"{value:.0f}"
 
 
-def tell(console: Console, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = "") -> None:
-    """Prints a table, words on the left, numbers on the right; and keeps it for the page of the documentation."""
+def print_table(
+    console: Console, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = ""
+) -> None:
+    """Print a table, words left and numbers right, and keep it for the page of the documentation."""
     console.print(table(title, columns, rows, caption))
     rule = ["---" if column.words else "---:" for column in columns]
     lines = [f"| {' | '.join(cells)} |" for cells in ([column.heading for column in columns], rule, *rows)]

@@ -16,7 +16,7 @@ import strainwave as sw
 from measure import shortest
 from peers import strainwave_drive
 from reference_drive import OUTPUT_INERTIA
-from report import Column, figure, save, save_figure, tell, three_digits
+from report import Column, figure, print_table, save, save_figure, three_digits
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def run(console: Console) -> None:
     with console.status("scaling"):
         lines = [over_steps(), over_members(), over_elements()]
     caption = "exponent: of the power law through the times, 1 if they are proportional"
-    tell(console, "Time over what there is more of", COLUMNS, [row(line) for line in lines], caption)
+    print_table(console, "Time over what there is more of", COLUMNS, [row(line) for line in lines], caption)
     save("scaling", lines)
     save_figure("scaling", drawn(lines))
 

@@ -25,7 +25,7 @@ from peers import (
 )
 from reference import reference_solution
 from reference_drive import DURATION
-from report import Column, figure, save, save_figure, tell, three_digits
+from report import Column, figure, print_table, save, save_figure, three_digits
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def run(console: Console, peers: Sequence[str], quick: bool) -> None:
     reference = reference_solution()[:, [2, 4]]
     outcomes = [outcome for _, outcome in measure_all(console, chosen, effort, reference)]
     results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
-    tell(console, f"Reference drive, {DURATION:.0f} s", COLUMNS, [row(result, results) for result in results], CAPTION)
+    print_table(console, f"Reference drive, {DURATION:.0f} s", COLUMNS, [row(result, results) for result in results], CAPTION)
     for outcome in outcomes:
         if isinstance(outcome, Failure):
             console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)

@@ -20,7 +20,7 @@ import strainwave as sw
 from measure import Effort, Failure, Result, measure_all, shortest
 from peers import Peer, strainwave_drive
 from reference_drive import Array, Tracking, numba_maths
-from report import Column, figure, save, save_figure, tell, three_digits
+from report import Column, figure, print_table, save, save_figure, three_digits
 from rich.console import Console
 from single import ratio, shown
 from stretches import solver, sticking_stretches
@@ -135,12 +135,12 @@ def run(console: Console, quick: bool) -> None:
     speed = simulated(kinds["Stribeck, sticks"], 1e-4)["input_speed"]
     stops = int(np.count_nonzero(np.diff(speed == 0.0)))
     told = f"{stops} stops and breakaways seen at 1 kHz; ratio: time over that of strainwave's cheapest with errors no larger"
-    tell(console, "Stick and slip, 5 s", SETS, [result_row(each, results) for each in results], told)
+    print_table(console, "Stick and slip, 5 s", SETS, [result_row(each, results) for each in results], told)
     for outcome in outcomes:
         if isinstance(outcome, Failure):
             console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)
     caption = f"trajectories a second at {STEP:g} s on one thread; time / smooth: over that of viscous friction"
-    tell(console, "Stick and slip in packs", COSTS, [cost_row(each, priced) for each in priced], caption)
+    print_table(console, "Stick and slip in packs", COSTS, [cost_row(each, priced) for each in priced], caption)
     save("stick_slip", outcomes, quick=quick, costs=[vars(cost) for cost in priced], stops_and_breakaways=stops)
     draw(results)
 

@@ -13,7 +13,7 @@ from typing import Any
 import ensemble
 import single
 from measure import Result
-from report import RUN, Column, circumstances, saved, tell, three_digits, write_json
+from report import RUN, Column, circumstances, print_table, saved, three_digits, write_json
 from rich.console import Console
 from strainwave import _core
 
@@ -230,7 +230,7 @@ def run(console: Console) -> None:
     parts = dict.fromkeys(target.part for target in TARGETS)
     tables = {part: content for part in parts if (content := saved(part)) is not None}
     judged = list(verdicts(tables))
-    tell(console, "Targets", COLUMNS, [row(each) for each in judged], "; ".join(remarks(parts, tables)))
+    print_table(console, "Targets", COLUMNS, [row(each) for each in judged], "; ".join(remarks(parts, tables)))
     runs = {part: content["run"] for part, content in tables.items()}
     write_json("targets", circumstances() | {"runs": runs, "results": [vars(each) for each in judged]})
 

@@ -7,7 +7,7 @@
 
 namespace strainwave::general {
 
-/// Stands for the gear and the load that a feed-forward knows.
+/// Placeholder for the gear and the load of a feed-forward.
 struct ModelWithin {};
 
 namespace detail {

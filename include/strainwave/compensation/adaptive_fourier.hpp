@@ -83,7 +83,7 @@ struct AdaptiveFourier {
     }
 
 private:
-    /// Of an order, behind the angle by a phase.
+    /// Sine and cosine of `order * angle - phase`. Whole turns are taken out first, to keep the digits of large angles.
     static constexpr SinCos<S> wave(const S& order, const S& angle, const S& phase) {
         const S turns = rint(angle * S(0.5 / pi)), turned = order * turns;
         const S within = order * (angle - S(2.0 * pi) * turns);

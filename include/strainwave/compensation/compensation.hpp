@@ -5,7 +5,7 @@
 
 namespace strainwave {
 
-/// The state of each compensator.
+/// States of the feed-forward, the learner and the observer.
 template <class S, class Feedforward, class Learning, class Observer>
 struct CompensationStates {
     Feedforward feedforward{};
@@ -62,7 +62,7 @@ struct Compensation {
             compiled(feedforward), compiled(learning), compiled(observer), actuation_per_torque, actuation_per_speed};
     }
 
-    /// Whether it makes any difference.
+    /// True if any of its compensators changes the command.
     constexpr bool active() const {
         return compensation::active(feedforward) || compensation::active(learning) || compensation::active(observer);
     }
@@ -72,13 +72,13 @@ struct Compensation {
         return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer)};
     }
 
-    /// All that is asked for at an instant, one after the other.
+    /// Requests of the compensators at one sampling instant.
     struct Instant {
-        typename Feedforward::State feedforward;  ///< a period later
-        compensation::Plan<S> planned, learnt;    ///< what learner and observer go by
+        typename Feedforward::State feedforward;  ///< state after the period
+        compensation::Plan<S> planned, learnt;    ///< inputs of the learner and of the observer
         compensation::Asked<S> learning, observer;
 
-        /// The command as the controller follows it.
+        /// Command of the controller, with the leads and the feed-forward of all compensators.
         constexpr control::Command<S> command(const Compensation& with) const {
             const compensation::Asked<S> asked = learnt.asked + observer;
             control::Command<S> command = learnt.command;
@@ -96,7 +96,7 @@ struct Compensation {
         const compensation::Plan<S> learnt{command, measured, model.asked + learning_asks};
         return {model.later, planned, learnt, learning_asks, observer.added(x.observer, learnt)};
     }
-    /// The state a period later, where the motor was given an actuation.
+    /// State after a period in which the motor received `actuation`.
     constexpr State advance(const State& x, const Instant& now, const S& actuation, const S& period) const {
         const S given = (actuation - actuation_per_speed * now.learnt.measured.input_speed) / actuation_per_torque;
         return {now.feedforward, learning.advance(x.learning, now.planned, now.learning, given, period),

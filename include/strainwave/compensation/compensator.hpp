@@ -1,21 +1,22 @@
 #pragma once
 #include <strainwave/control/law.hpp>
 
-/// What takes away what the gear does to the motion, beside the controller. A sampled controller asks it at its instants.
+/// Compensators: additions to a controller that reduce the errors which the gear causes. A sampled controller evaluates them at
+/// each sampling instant.
 ///
-/// A feed-forward knows the drive beforehand. It has
-///
-///     State
-///     planned(state, command, period)            -> Planned: what it asks for, and its state a period later
-///
-/// An observer or a learning compensator goes by what is measured. It has
+/// A feed-forward contains a model of the drive and uses no measurement. It has
 ///
 ///     State
-///     added(state, plan)                         -> Asked, to which it adds its own
-///     advance(state, plan, asked, given, period) -> State, a period later; `given` is the torque of the motor [N.m]
+///     planned(state, command, period)            -> Planned: its request, and its state after the period
+///
+/// An observer or a learning compensator uses measurements. It has
+///
+///     State
+///     added(state, plan)                         -> Asked: its own request, without those in the plan
+///     advance(state, plan, asked, given, period) -> State after the period; `given` is the torque of the motor [N.m]
 namespace strainwave::compensation {
 
-/// Whether a compensator makes any difference; asked of a choice, the one chosen.
+/// True if a compensator changes the command. For a choice, that of the chosen compensator.
 template <class Compensator>
 constexpr bool active(const Compensator& compensator) {
     if constexpr (requires { compensator.active(); })
@@ -24,13 +25,13 @@ constexpr bool active(const Compensator& compensator) {
         return true;
 }
 
-/// What is asked for beside the controller.
+/// Request of a compensator: a lead of the input angle and a torque of the motor.
 template <class S>
 struct Asked {
-    S input_lead{0.0};       ///< How far the input is to lead the rigid motion, rad
+    S input_lead{0.0};       ///< lead of the input angle over `ratio * command`, rad
     S input_lead_rate{0.0};  ///< rad/s
     S torque{0.0};           ///< of the motor, N.m
-    S friction{0.0};         ///< what of it overcomes friction, N.m
+    S friction{0.0};         ///< share of `torque` that overcomes friction, N.m
 
     constexpr Asked operator+(const Asked& other) const {
         return {input_lead + other.input_lead, input_lead_rate + other.input_lead_rate, torque + other.torque,
@@ -38,14 +39,14 @@ struct Asked {
     }
 };
 
-/// What a feed-forward asks for, and its state a period later.
+/// Request of a feed-forward, and its state after the period.
 template <class S, class State>
 struct Planned {
     Asked<S> asked;
     State later;
 };
 
-/// What a compensator goes by: what is commanded, measured and asked for already.
+/// Inputs of a compensator: the command, the measurement and the requests of the compensators before it.
 template <class S>
 struct Plan {
     control::Command<S> command;

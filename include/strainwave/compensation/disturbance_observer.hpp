@@ -60,7 +60,7 @@ struct DisturbanceObserver {
     }
 
 private:
-    /// Of the error of the speed, times the bandwidth, N.m.
+    /// Bandwidth times the momentum of the speed error [N.m].
     constexpr S momentum(const Plan<S>& plan) const {
         return bandwidth * inertia * (plan.measured.input_speed - plan.input_speed());
     }

@@ -15,7 +15,7 @@
 
 namespace strainwave::compensation {
 
-/// What a model of a gear remembers of the motion that it was led along.
+/// States of the model's hysteresis and frictions after the commanded motion.
 template <class S, class Hysteresis, class FrictionInput, class FrictionMesh, class FrictionOutput>
 struct GearMemory {
     Hysteresis hysteresis{};

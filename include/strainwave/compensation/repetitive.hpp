@@ -80,12 +80,12 @@ struct Repetitive {
     }
 
 private:
-    /// Where an angle stands in the table, in cells.
+    /// Position of an angle in the table [cells].
     static constexpr S placed(const S& angle) {
         const S turns = angle * S(0.5 / pi);
         return S(cells) * (turns - rint(turns));
     }
-    /// From the begin of cell j, within half a turn, in cells.
+    /// Distance from the begin of cell j, wrapped to half a turn [cells].
     static constexpr S distance(const S& place, int j) {
         const S apart = place - S(j);
         return apart - S(cells) * rint(apart * S(1.0 / cells));

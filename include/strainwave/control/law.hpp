@@ -30,9 +30,9 @@ struct Command {
     S value{0.0};            ///< As the scenario gives it
     S rate{0.0};             ///< Its time derivative
     S ratio{1.0};            ///< Signed, of the gear: input angle per output angle
-    S input_lead{0.0};       ///< How far the input is to lead `ratio * value`, rad: what the gear loses of its motion
+    S input_lead{0.0};       ///< lead of the input angle over `ratio * value`, rad
     S input_lead_rate{0.0};  ///< rad/s
-    S feedforward{0.0};      ///< Asked for without any error, in the unit of what the law asks for
+    S feedforward{0.0};      ///< added to the output of the law, in its unit
 
     constexpr S input_angle() const { return ratio * value + input_lead; }
     constexpr S input_speed() const { return ratio * rate + input_lead_rate; }
@@ -107,7 +107,7 @@ constexpr const char* given_by(const Law& law) {
         return "";
 }
 
-/// Whether a law is given an angle of the output to follow.
+/// True for a law that follows a commanded output angle.
 template <class Law>
 constexpr bool follows_angle(const Law& law) {
     if constexpr (requires { law.follows_angle(); })

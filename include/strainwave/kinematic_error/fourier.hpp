@@ -49,7 +49,7 @@ struct Fourier {
 
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
 
-    /// Where all its waves are steepest at once, without sign [rad/rad].
+    /// Upper bound of the magnitude of the slope [rad/rad]: the sum over all waves.
     constexpr S steepest() const {
         S sum(0.0);
         for (int h = 0; h < order.count; ++h) sum = sum + abs(order[h] * amplitude[h]);

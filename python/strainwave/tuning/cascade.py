@@ -144,7 +144,7 @@ def bare(gear: Gear) -> Gear:
 
 @dataclass(frozen=True)
 class Setting:
-    """How a cascade is set.
+    """Tuning parameters of a cascade.
 
     Attributes:
         sharpness: of its loops, as a share of what the delay allows, in (0, 1]

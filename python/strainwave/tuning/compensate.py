@@ -30,13 +30,12 @@ AT_LIMIT = 0.999  # of the limit of the motor
 MAX_SHARE_AT_LIMIT = 0.01  # of the time, of a run that counts
 MIN_SAMPLES = 100  # periods of a motion
 MIN_MEMBERS = 3
-QUANTILE = 0.95
 MIN_GAIN = 0.05  # relative: what gains less is not worth another part
-CREEPING = 0.01  # of that
+CREEP_SPEED_SHARE = 0.01  # of the usual speed, for the goal `smooth`
 MAX_STEP = 2e-4  # s, of the simulation
 STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a stiffer gear is followed, too
 TURNS = 8.0  # of the input, over which the speed is judged
-DURATION_OF_CREEPING = 4.0  # s
+CREEP_DURATION = 4.0  # s
 MIN_BANDWIDTH_RATIO = 5.0  # of the position loop over the pace of the motion
 MEASUREMENTS = {
     "friction": "a friction table or a log of motion determines it",
@@ -72,12 +71,12 @@ class Judged:
 
     def upper(self, name: str) -> float:
         """Return what 95 % of the drawn gears stay below."""
-        return float(np.quantile(np.nan_to_num(self.figures[name], nan=np.inf), QUANTILE, method="higher"))
+        return float(np.quantile(np.nan_to_num(self.figures[name], nan=np.inf), goals.UPPER_QUANTILE, method="higher"))
 
 
 @dataclass(frozen=True)
 class Compensated:
-    """What was found for a drive.
+    """Result of `compensate`: the drive with its controller, and the figures of every candidate.
 
     Attributes:
         gear_set: the drive
@@ -222,7 +221,7 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None) -> Goal
         ValueError: there is none of that name
     """
     arguments.one_of("goal", name, ("position", "speed", "smooth"))
-    usual = USUAL_SPEED / abs(plant.ratio) * (CREEPING if name == "smooth" else 1.0)
+    usual = USUAL_SPEED / abs(plant.ratio) * (CREEP_SPEED_SHARE if name == "smooth" else 1.0)
     given = usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0)
     unit = plant.effort_unit
     if name == "position":
@@ -230,7 +229,7 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None) -> Goal
     elif name == "speed":
         goal = goals.speed(given, TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
     else:
-        goal = goals.smooth(given, DURATION_OF_CREEPING, unit)
+        goal = goals.smooth(given, CREEP_DURATION, unit)
     if goal.command.duration < MIN_SAMPLES * plant.period:
         raise ValueError(
             f"the motion lasts {goal.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
@@ -253,7 +252,7 @@ def judged(candidate: Candidate, goal: Goal, draws: Mapping[str, Array], plant: 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EnsembleWarning)  # failures are counted
         runs = simulate_many(candidate.drive, goal.command, whole, step, record=recorded, sample=plant.period)
-    later = runs.time >= goals.SETTLED * goal.command.duration
+    later = runs.time >= goals.SETTLING_SHARE * goal.command.duration
     at_limit = np.mean(np.abs(runs[effort][:, later]) > AT_LIMIT * plant.limit, axis=1) > MAX_SHARE_AT_LIMIT
     figures = {name: np.where(at_limit, np.nan, values) for name, values in goal.figures(runs, goal.command).items()}
     reason = next(iter(runs.failures.values()), "the motor is at its limit" if at_limit.any() else "")

@@ -12,8 +12,8 @@ from strainwave.parameters import every
 
 Array = NDArray[np.float64]
 
-SPREAD = 0.3  # factor of up to 1 + this, either way, of gears about a number that is assumed, or whose spread is not stated
-SPREAD_OF_LOAD = 0.2  # likewise of inertia and weight of a load whose spread is not stated
+ASSUMED_SPREAD = 0.3  # drawn factor up to 1 + this, either way, of a number that is assumed or has no stated spread
+ASSUMED_LOAD_SPREAD = 0.2  # likewise, of inertia and weight of a load
 # Numbers that a gear has more than once, or of which no effect is larger or smaller.
 SHAPES = {"pressure_angle", "pitch_radius", "major_radius", "minor_radius", "offset", "reference_temperature"}
 SCALED = {
@@ -94,4 +94,4 @@ def _identified(gear_set: GearSet, members: int, chance: np.random.Generator) ->
 def _spread(gear_set: GearSet, part: str) -> float:
     """Return the largest spread that a set states of the numbers of a part; that of numbers without one if it states none."""
     stated = [entry.spread for path, entry in gear_set.sources.items() if path.startswith(f"{part}.") and entry.spread]
-    return max(stated, default=SPREAD_OF_LOAD if part == "load" else SPREAD)
+    return max(stated, default=ASSUMED_LOAD_SPREAD if part == "load" else ASSUMED_SPREAD)

@@ -15,8 +15,9 @@ from strainwave.simulation.scenario import Scenario
 Array = NDArray[np.float64]
 
 AROUND_REVERSAL = 0.1  # of a period, either side of a reversal
-SETTLED = 0.5  # share of a run that is left out at its begin
-STICKING = 0.1  # of the commanded speed: below it the output rests
+SETTLING_SHARE = 0.5  # of a run, left out at its begin
+MAX_STICKING_SPEED_SHARE = 0.1  # of the commanded speed: below it the output rests
+UPPER_QUANTILE = 0.95  # of figures over drawn gears
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ def smooth(speed: float, duration: float, effort_unit: str) -> Goal:
 
 def _of_position(runs: Ensemble, command: Scenario, period: float) -> dict[str, Array]:
     time = runs.time
-    later = time >= SETTLED * command.duration
+    later = time >= SETTLING_SHARE * command.duration
     error = command.value(time) - runs["output_angle"]
     phase = (time / period) % 0.5
     near = later & (np.minimum(phase, 0.5 - phase) < AROUND_REVERSAL)
@@ -85,7 +86,7 @@ def _of_position(runs: Ensemble, command: Scenario, period: float) -> dict[str, 
 
 
 def _of_speed(runs: Ensemble, command: Scenario) -> dict[str, Array]:
-    later = runs.time >= SETTLED * command.duration
+    later = runs.time >= SETTLING_SHARE * command.duration
     wanted = command.rate(runs.time)
     error = (command.value(runs.time) - runs["output_angle"])[:, later]
     ripple = (runs["output_speed"] / wanted - 1.0)[:, later]
@@ -97,9 +98,9 @@ def _of_speed(runs: Ensemble, command: Scenario) -> dict[str, Array]:
 
 
 def _of_creeping(runs: Ensemble, command: Scenario) -> dict[str, Array]:
-    later = runs.time >= SETTLED * command.duration
+    later = runs.time >= SETTLING_SHARE * command.duration
     share = (runs["output_speed"] / command.rate(runs.time))[:, later]
-    return _of_speed(runs, command) | {"time at rest": np.mean(np.abs(share) < STICKING, axis=1)}
+    return _of_speed(runs, command) | {"time at rest": np.mean(np.abs(share) < MAX_STICKING_SPEED_SHARE, axis=1)}
 
 
 def _effort(runs: Ensemble) -> Array:

@@ -16,6 +16,7 @@ from strainwave.simulation.state import State
 from strainwave.tuning.approach import friction_at_rest, lost_motion
 from strainwave.tuning.cascade import Plant, gear_set_of, line_of_friction
 from strainwave.tuning.drawn import drawn_gears
+from strainwave.tuning.goals import UPPER_QUANTILE
 
 Array = NDArray[np.float64]
 
@@ -25,7 +26,6 @@ SHARE_OF_FIRST = 0.5  # of what remains, at which the first pulse each way aims:
 MAX_RESTS = 20  # in a row, until a drive is refused as one that does not come to rest
 MAX_DRIFT = 0.1  # of the tolerance, that a drive at rest moves in the last tenth of a rest
 MAX_STEP = 2e-4  # s, of the simulation
-QUANTILE = 0.95
 
 
 def pulse_travel(torque: float, width: float, inertia: float, friction: float) -> float:
@@ -360,7 +360,7 @@ class PulseRepeatability:
     @property
     def upper_error(self) -> float:
         """Size of the error that 95 % of the drives stay within [rad]."""
-        return float(np.quantile(np.abs(self.errors), QUANTILE))
+        return float(np.quantile(np.abs(self.errors), UPPER_QUANTILE))
 
     @property
     def median_pulses(self) -> float:
@@ -370,7 +370,7 @@ class PulseRepeatability:
     @property
     def upper_pulses(self) -> float:
         """Number of pulses that is enough for 95 % of the drives."""
-        return float(np.quantile(self.pulses, QUANTILE, method="higher"))
+        return float(np.quantile(self.pulses, UPPER_QUANTILE, method="higher"))
 
 
 def pulse_repeatability(

@@ -23,7 +23,7 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import USUAL_SPEED
 from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
-from strainwave.tuning.compensate import CREEPING, MEASUREMENTS, assumed_numbers
+from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.steady_torque import ROOM_TEMPERATURE, steady_torque
 
@@ -167,7 +167,7 @@ class Request:
             at_input = FAST_SPEED if rated is None else convert(rated.value, rated.unit, "rad/s")
             top = at_input / abs(self.speed_ratio)
         if self.threshold is None:
-            return CREEPING * top, top
+            return CREEP_SPEED_SHARE * top, top
         threshold = at_side * arguments.number("threshold", self.threshold, "rad/s", low=0.0)
         if threshold >= top:
             raise ValueError(f"threshold = {self.threshold} rad/s must be below the largest speed, {top / at_side:g} rad/s")
@@ -437,7 +437,7 @@ def anticogging_map(request: Request) -> Slot:
     turns = min(max(round(abs(request.ratio)), 1), MAX_TURNS)
     fine = 2.0 * np.pi / (FINER * count) * np.arange(FINER * count)
     angle = fine[:, np.newaxis] + 2.0 * np.pi * np.arange(turns)
-    slow = CREEPING * USUAL_SPEED / abs(request.ratio) if request.speed is None else request.speed
+    slow = CREEP_SPEED_SHARE * USUAL_SPEED / abs(request.ratio) if request.speed is None else request.speed
     speed = arguments.sized("speed", slow, "rad/s", 1e-9, MAX_SPEED) * abs(request.ratio)
     there, back = (_over_turn(request, angle, each) for each in (speed, -speed))
     if not there.ripple.any():
@@ -499,7 +499,7 @@ def torque_offset(request: Request) -> Slot:
     time = request.period * np.arange(int(periods) + 1)
     model = model_of(plant, request.gear).replace(temperature=request.temperature)
     _, _, torque, resisting = model.planned(motion.value(time), motion.rate(time), plant.ratio, request.period)
-    begun = time >= (goals.SETTLED * motion.duration if request.motion is None else 0.0)  # at first it begins from rest
+    begun = time >= (goals.SETTLING_SHARE * motion.duration if request.motion is None else 0.0)  # at first it begins from rest
     torque, resisting = torque[begun], resisting[begun]
     time = time[: torque.size]
     wanted = 1e3 * torque / rated

@@ -7,7 +7,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.files.identified_tables import Covariance
-from strainwave.tuning.drawn import SPREAD, drawn_gears
+from strainwave.tuning.drawn import ASSUMED_SPREAD, drawn_gears
 
 SET = sw.GearSet.read("robot-joint")
 SIGMA = 0.002
@@ -18,8 +18,8 @@ def test_numbers_of_a_part_have_one_factor_within_its_spread() -> None:
     factors = {path: values / SET.gear.stiffness.k1 for path, values in draws.items() if path == "gear.stiffness.k1"}
     (k1,) = factors.values()
     assert draws["gear.stiffness.t2"] / SET.gear.stiffness.t2 == pytest.approx(k1, rel=1e-12)
-    assert k1.max() <= 1.0 + SPREAD
-    assert k1.min() >= 1.0 / (1.0 + SPREAD)
+    assert k1.max() <= 1.0 + ASSUMED_SPREAD
+    assert k1.min() >= 1.0 / (1.0 + ASSUMED_SPREAD)
     assert np.median(k1) == pytest.approx(1.0, abs=0.05)
     friction = draws["gear.friction_input.law.coulomb"] / SET.gear.friction_input.law.coulomb
     assert not np.allclose(friction, k1)
