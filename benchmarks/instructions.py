@@ -78,7 +78,7 @@ def controllers() -> dict[str, sw.Compensation]:
         return sw.compensation.ModelFeedforward(gear=gear, load=load, motor_inertia=2e-5)
 
     observer = sw.compensation.DisturbanceObserver(inertia=8e-5, limit=0.5)
-    fourier = sw.compensation.AdaptiveFourier(order=[1, 2, 4, 2.02], fastest=300.0)
+    fourier = sw.compensation.AdaptiveFourier(order=[1, 2, 4, 2.02], max_frequency=300.0)
     lost_motion = sw.compensation.LostMotionMap(angle=[-1.0, 0.0, 1.0], forward=[1e-4] * 3, backward=[-1e-4] * 3)
     every = sw.Compensation
     return {
@@ -87,7 +87,7 @@ def controllers() -> dict[str, sw.Compensation]:
         "model of the whole gear": every(feedforward=model(gear)),
         "lost-motion map": every(feedforward=lost_motion),
         "adaptive Fourier, 4 orders": every(learning=fourier),
-        "repetitive": every(learning=sw.compensation.Repetitive(fastest=100.0)),
+        "repetitive": every(learning=sw.compensation.Repetitive(max_speed=100.0)),
         "disturbance observer": every(observer=observer),
         "friction and inertia, friction scale": every(feedforward=model(bare), observer=sw.compensation.FrictionScale()),
         "whole gear, adaptive Fourier, observer": every(feedforward=model(gear), learning=fourier, observer=observer),

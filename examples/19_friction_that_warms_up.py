@@ -37,7 +37,7 @@ def worked(observer: Observer, rounds: int = 40) -> np.ndarray:
     return np.array(rows).T
 
 
-observer = sw.compensation.FrictionScale(gain=2.0, position_gain=law.position_gain, slowest=30.0)
+observer = sw.compensation.FrictionScale(gain=2.0, position_gain=law.position_gain, min_speed=30.0)
 cold, observed = worked(sw.compensation.NoObserver()), worked(observer)
 disturbed = worked(observer_of(plant, Setting(sharpness=0.25, feedback="input", observer_share=0.5)))
 print(f"the gear warms up from 20 degC to {observed[0, -1] - 273.15:.0f} degC")

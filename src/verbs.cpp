@@ -152,11 +152,12 @@ void variation_verbs(const BoundLaw& of) {
 void feedforward_verbs(const BoundLaw& of) {
     using Part = general::Feedforward<double>;
     define_verb(
-        of.type, of.description, "planned", {{"angle", SW_NUMBERS}, {"speed", SW_NUMBERS}, {"ratio", "float"}, {"period", "float"}},
+        of.type, of.description, "requests",
+        {{"angle", SW_NUMBERS}, {"speed", SW_NUMBERS}, {"ratio", "float"}, {"period", "float"}},
         "tuple[" SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY "]",
-        "What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` "
-        "[s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how "
-        "fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape "
+        "Return its requests along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` "
+        "[s] after another, through a gear of this signed `ratio`: the lead of the input over the rigid motion [rad], its "
+        "rate [rad/s], the torque of the motor [N.m], and the share of it that overcomes friction [N.m], each of shape "
         "(n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign "
         "outside of [1e-6, 1e6].",
         [of](const void* model, const Call& call) -> nb::object {
@@ -173,12 +174,12 @@ void feedforward_verbs(const BoundLaw& of) {
             auto [friction, d] = like(angle);
             for (std::size_t i = 0; i < angle.size(); ++i) {
                 let_interrupt(i);
-                const auto found = law.part.planned(x, {angle.data()[i], speed.data()[i], ratio}, period);
-                x = found.later;
-                a[i] = found.asked.input_lead;
-                b[i] = found.asked.input_lead_rate;
-                c[i] = found.asked.torque;
-                d[i] = found.asked.friction;
+                const auto found = law.part.step(x, {angle.data()[i], speed.data()[i], ratio}, period);
+                x = found.next;
+                a[i] = found.request.input_lead;
+                b[i] = found.request.input_lead_rate;
+                c[i] = found.request.torque;
+                d[i] = found.request.friction;
             }
             return nb::make_tuple(lead, lead_rate, torque, friction);
         });

@@ -200,7 +200,7 @@ class Gear:
 
 class Compensation:
     """
-    What a sampled controller is given beside the error: what a model, a learner and an observer know of the drive.
+    Lead of the input and torque that a sampled controller adds: those of a model, a learner and an observer.
 
     .. math:: \\theta_r = i r + \\theta_f + \\theta_l, \\qquad u_f = p\\,(\\tau_f + \\tau_l + \\tau_o) + q\\,\\dot\\theta_r
 
@@ -218,9 +218,9 @@ class Compensation:
 
     Parameters
     ----------
-    feedforward: What a model of the drive asks for; default NoFeedforward()
-    learning: What is learnt of what repeats; default NoLearning()
-    observer: What is observed to be missing; default NoObserver()
+    feedforward: Feed-forward of a model of the drive; default NoFeedforward()
+    learning: Learning of errors that repeat; default NoLearning()
+    observer: Observer of what the model lacks; default NoObserver()
     actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
     actuation_per_speed: What the motor takes, per input speed q: its back-EMF [s/rad]; default 0.0
 
@@ -243,15 +243,15 @@ class Compensation:
 
     @property
     def feedforward(self) -> strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap:
-        """What a model of the drive asks for"""
+        """Feed-forward of a model of the drive"""
 
     @property
     def learning(self) -> strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive:
-        """What is learnt of what repeats"""
+        """Learning of errors that repeat"""
 
     @property
     def observer(self) -> strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale:
-        """What is observed to be missing"""
+        """Observer of what the model lacks"""
 
     @property
     def actuation_per_torque(self) -> float:

@@ -58,9 +58,9 @@ class NoFeedforward:
 
     fields: tuple[dict[str, Any], ...]
 
-    def planned(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    def requests(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
+        Return its requests along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: the lead of the input over the rigid motion [rad], its rate [rad/s], the torque of the motor [N.m], and the share of it that overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
     @property
@@ -171,9 +171,9 @@ class ModelFeedforward:
 
     fields: tuple[dict[str, Any], ...]
 
-    def planned(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    def requests(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
+        Return its requests along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: the lead of the input over the rigid motion [rad], its rate [rad/s], the torque of the motor [N.m], and the share of it that overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
 class LostMotionMap:
@@ -249,9 +249,9 @@ class LostMotionMap:
 
     fields: tuple[dict[str, Any], ...]
 
-    def planned(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    def requests(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], ratio: float, period: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What it asks for along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: how far the input leads the rigid motion [rad], how fast that changes [rad/s], the torque of the motor [N.m], and what of it overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
+        Return its requests along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` [s] after another, through a gear of this signed `ratio`: the lead of the input over the rigid motion [rad], its rate [rad/s], the torque of the motor [N.m], and the share of it that overcomes friction [N.m], each of shape (n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign outside of [1e-6, 1e6].
         """
 
 class NoLearning:
@@ -317,8 +317,8 @@ class AdaptiveFourier:
     with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag, which the
     position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
     constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
-    grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``fastest``, and where omega is below
-    ``slowest``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+    grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``max_frequency``, and where omega is below
+    ``min_speed``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
 
     >>> from strainwave.compensation import AdaptiveFourier
     >>> AdaptiveFourier(order=[1, 2]).gain
@@ -329,8 +329,8 @@ class AdaptiveFourier:
     order: Orders n: periods per revolution of the input, in (0, inf); default ()
     gain: Rate gamma at which the amplitudes follow the error [1/s], in [0, inf); default 5.0
     lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
-    slowest: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
-    fastest: Frequency n |omega| of a wave above which it does not learn [rad/s], in (0, inf); default 100.0
+    min_speed: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
+    max_frequency: Frequency n |omega| of a wave above which it does not learn [rad/s], in (0, inf); default 100.0
     limit: Largest sine and cosine at the output [rad], in [0, inf); default 0.001
 
     Raises
@@ -343,9 +343,9 @@ class AdaptiveFourier:
     BodsonSacksKhosla1994, adaptive feedforward cancellation, over the input angle in place of time; its rate by averaging (SandersVerhulstMurdock2007)
     """
 
-    def __init__(self, *, order: float | Sequence[float] = ..., gain: float = ..., lag: float = ..., slowest: float = ..., fastest: float = ..., limit: float = ...) -> None: ...
+    def __init__(self, *, order: float | Sequence[float] = ..., gain: float = ..., lag: float = ..., min_speed: float = ..., max_frequency: float = ..., limit: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, order: float | Sequence[float] = ..., gain: float = ..., lag: float = ..., slowest: float = ..., fastest: float = ..., limit: float = ...) -> AdaptiveFourier:
+    def replace(self, changes: dict[str, Any] = ..., /, *, order: float | Sequence[float] = ..., gain: float = ..., lag: float = ..., min_speed: float = ..., max_frequency: float = ..., limit: float = ...) -> AdaptiveFourier:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -363,11 +363,11 @@ class AdaptiveFourier:
         """Time t_lag that the position loop takes to follow [s]"""
 
     @property
-    def slowest(self) -> float:
+    def min_speed(self) -> float:
         """Input speed below which it does not learn [rad/s]"""
 
     @property
-    def fastest(self) -> float:
+    def max_frequency(self) -> float:
         """Frequency n |omega| of a wave above which it does not learn [rad/s]"""
 
     @property
@@ -401,7 +401,7 @@ class Repetitive:
 
     with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing: the filter Q, which takes away what
     changes from cell to cell, t_lag = lag of the position loop. The input leads by i e^. It learns where the input speed lies
-    between ``slowest`` and ``fastest``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
+    between ``min_speed`` and ``max_speed``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
     exceeds ``limit``. Orders above 8 are learnt in part only, and what does not repeat with the input, as the second harmonic
     of the other spline, not at all: AdaptiveFourier takes any order.
 
@@ -414,8 +414,8 @@ class Repetitive:
     gain: Rate gamma at which a cell follows the error [1/s], in [0, inf); default 5.0
     smoothing: Rate sigma at which a cell follows its neighbours [1/s], in [0, inf); default 0.0
     lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
-    slowest: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
-    fastest: Input speed above which it does not learn [rad/s], in (0, inf); default 30.0
+    min_speed: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
+    max_speed: Input speed above which it does not learn [rad/s], in (0, inf); default 30.0
     limit: Largest value at the output [rad], in [0, inf); default 0.001
 
     Raises
@@ -428,9 +428,9 @@ class Repetitive:
     HaraYamamotoOmataNakano1988, repetitive control with a filter Q, over the input angle in place of time and with local functions in place of a delay
     """
 
-    def __init__(self, *, gain: float = ..., smoothing: float = ..., lag: float = ..., slowest: float = ..., fastest: float = ..., limit: float = ...) -> None: ...
+    def __init__(self, *, gain: float = ..., smoothing: float = ..., lag: float = ..., min_speed: float = ..., max_speed: float = ..., limit: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., smoothing: float = ..., lag: float = ..., slowest: float = ..., fastest: float = ..., limit: float = ...) -> Repetitive:
+    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., smoothing: float = ..., lag: float = ..., min_speed: float = ..., max_speed: float = ..., limit: float = ...) -> Repetitive:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -448,11 +448,11 @@ class Repetitive:
         """Time t_lag that the position loop takes to follow [s]"""
 
     @property
-    def slowest(self) -> float:
+    def min_speed(self) -> float:
         """Input speed below which it does not learn [rad/s]"""
 
     @property
-    def fastest(self) -> float:
+    def max_speed(self) -> float:
         """Input speed above which it does not learn [rad/s]"""
 
     @property
@@ -618,24 +618,24 @@ class FrictionScale:
               \\;\\text{ where } |\\omega_r| \\ge \\omega_{min}, \\qquad \\hat s \\in [s_{min}, s_{max}], \\qquad
               \\sigma = \\omega_r - \\omega + \\lambda\\, (\\theta_r - \\theta)
 
-    with F the friction that the feed-forward asks for, theta_r, omega_r and theta, omega the input angle and speed that the
-    controller is to follow and as measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = slowest,
-    s_min, s_max = least, most. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
+    with F the friction of the feed-forward, theta_r, omega_r and theta, omega the input angle and speed commanded
+    and measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = min_speed,
+    s_min, s_max = min_scale, max_scale. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
     J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it
     must be small. By the speed alone, lambda = 0, a motion of one sense under a position loop does not determine s. Below
     omega_min it stands still: rest does not determine s, and around a reversal the error is that of the presliding.
 
     >>> from strainwave.compensation import FrictionScale
-    >>> FrictionScale(gain=5.0).most
+    >>> FrictionScale(gain=5.0).max_scale
     1.5
 
     Parameters
     ----------
     gain: Rate gamma of the scale per friction and error sigma [1/(N.m.rad)], in [0, inf); default 1.0
     position_gain: Weight lambda of the error of the input angle [1/s], in [0, inf); default 20.0
-    least: Least scale s_min, of the friction of the model, in [0, 1]; default 0.5
-    most: Largest scale s_max, in [1, 10]; default 1.5
-    slowest: Slowest commanded input speed omega_min that determines the scale [rad/s], in [0, inf); default 1.0
+    min_scale: Least scale s_min, of the friction of the model, in [0, 1]; default 0.5
+    max_scale: Largest scale s_max, in [1, 10]; default 1.5
+    min_speed: Slowest commanded input speed omega_min that determines the scale [rad/s], in [0, inf); default 1.0
 
     Raises
     ------
@@ -647,9 +647,9 @@ class FrictionScale:
     SlotineLi1991, section 8.2: gradient of a Lyapunov function, linear in the unknown
     """
 
-    def __init__(self, *, gain: float = ..., position_gain: float = ..., least: float = ..., most: float = ..., slowest: float = ...) -> None: ...
+    def __init__(self, *, gain: float = ..., position_gain: float = ..., min_scale: float = ..., max_scale: float = ..., min_speed: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., position_gain: float = ..., least: float = ..., most: float = ..., slowest: float = ...) -> FrictionScale:
+    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., position_gain: float = ..., min_scale: float = ..., max_scale: float = ..., min_speed: float = ...) -> FrictionScale:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -663,15 +663,15 @@ class FrictionScale:
         """Weight lambda of the error of the input angle [1/s]"""
 
     @property
-    def least(self) -> float:
+    def min_scale(self) -> float:
         """Least scale s_min, of the friction of the model"""
 
     @property
-    def most(self) -> float:
+    def max_scale(self) -> float:
         """Largest scale s_max"""
 
     @property
-    def slowest(self) -> float:
+    def min_speed(self) -> float:
         """
         Slowest commanded input speed omega_min that determines the scale [rad/s]
         """

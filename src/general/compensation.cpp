@@ -50,11 +50,11 @@ auto Feedforward<S>::initial_state() const -> State {
     return FeedforwardLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
 }
 template <class S>
-auto Feedforward<S>::planned(const State& x, const control::Command<S>& command, const S& period) const
-    -> compensation::Planned<S, State> {
-    return FeedforwardLaws<S>::visit(*this, [&](const auto& law) -> compensation::Planned<S, State> {
-        const auto found = law.planned(own<S>(law, x), command, period);
-        return {found.asked, packed<State>(found.later)};
+auto Feedforward<S>::step(const State& x, const control::Command<S>& command, const S& period) const
+    -> compensation::RequestAndState<S, State> {
+    return FeedforwardLaws<S>::visit(*this, [&](const auto& law) -> compensation::RequestAndState<S, State> {
+        const auto found = law.step(own<S>(law, x), command, period);
+        return {found.request, packed<State>(found.next)};
     });
 }
 
@@ -71,14 +71,14 @@ auto Correction<S, list>::initial_state() const -> State {
     return CorrectionLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
 }
 template <class S, Corrections list>
-auto Correction<S, list>::added(const State& x, const compensation::Plan<S>& plan) const -> compensation::Asked<S> {
-    return CorrectionLaws<S, list>::visit(*this, [&](const auto& law) { return law.added(own<S>(law, x), plan); });
+auto Correction<S, list>::request(const State& x, const compensation::Inputs<S>& inputs) const -> compensation::Request<S> {
+    return CorrectionLaws<S, list>::visit(*this, [&](const auto& law) { return law.request(own<S>(law, x), inputs); });
 }
 template <class S, Corrections list>
-auto Correction<S, list>::advance(const State& x, const compensation::Plan<S>& plan, const compensation::Asked<S>& asked,
-                                  const S& given, const S& period) const -> State {
+auto Correction<S, list>::advance(const State& x, const compensation::Inputs<S>& inputs, const compensation::Request<S>& request,
+                                  const S& motor_torque, const S& period) const -> State {
     return CorrectionLaws<S, list>::visit(
-        *this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), plan, asked, given, period)); });
+        *this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), inputs, request, motor_torque, period)); });
 }
 
 SW_GENERAL(Feedforward)

@@ -14,7 +14,7 @@ struct Feedforward : Part {
     void places(Places& found) const;
 
     State initial_state() const;
-    compensation::Planned<S, State> planned(const State& x, const control::Command<S>& command, const S& period) const;
+    compensation::RequestAndState<S, State> step(const State& x, const control::Command<S>& command, const S& period) const;
 };
 
 /// Lists of compensators that go by what is measured.
@@ -29,9 +29,9 @@ struct Correction : Part {
     void places(Places& found) const;
 
     State initial_state() const;
-    compensation::Asked<S> added(const State& x, const compensation::Plan<S>& plan) const;
-    State advance(const State& x, const compensation::Plan<S>& plan, const compensation::Asked<S>& asked, const S& given,
-                  const S& period) const;
+    compensation::Request<S> request(const State& x, const compensation::Inputs<S>& inputs) const;
+    State advance(const State& x, const compensation::Inputs<S>& inputs, const compensation::Request<S>& request,
+                  const S& motor_torque, const S& period) const;
 };
 
 template <class S>

@@ -80,7 +80,13 @@ class AdaptiveFourier:
     def learn(self, now: Instant, given: float) -> None:
         law, order = self.law, np.array(self.law.order)
         late = order * now.seen.input_angle - order * self.speed * law.lag
-        step = law.gain * now.period * now.error * (abs(order * self.speed) < law.fastest) * (abs(self.speed) >= law.slowest)
+        step = (
+            law.gain
+            * now.period
+            * now.error
+            * (abs(order * self.speed) < law.max_frequency)
+            * (abs(self.speed) >= law.min_speed)
+        )
         self.waves[:, : order.size] += step * np.array([np.sin(late), np.cos(late)])
         self.waves = np.clip(self.waves, -law.limit, law.limit)
 
@@ -107,7 +113,7 @@ class Repetitive:
 
     def learn(self, now: Instant, given: float) -> None:
         law = self.law
-        if not law.slowest <= abs(self.speed) < law.fastest:
+        if not law.min_speed <= abs(self.speed) < law.max_speed:
             return
         even = 0.5 * (np.roll(self.values, 1) + np.roll(self.values, -1))
         moved = law.gain * now.error * hats(now.seen.input_angle - self.speed * law.lag)
@@ -148,11 +154,11 @@ class FrictionScale:
 
     def learn(self, now: Instant, given: float) -> None:
         law = self.law
-        if abs(now.speed) >= law.slowest:
+        if abs(now.speed) >= law.min_speed:
             error = now.speed - now.seen.input_speed
             error += law.position_gain * (now.ratio * now.seen.command + now.lead - now.seen.input_angle)
             moved = law.gain * self.modelled * error * now.period
-            self.scale = float(np.clip(self.scale + moved, law.least, law.most))
+            self.scale = float(np.clip(self.scale + moved, law.min_scale, law.max_scale))
 
 
 @dataclass

@@ -17,7 +17,7 @@ LAGS = [0.0, 0.002, 0.02, 0.03, 0.045, 0.06]  # s: at 40 rad/s up to 137 degrees
 
 
 def learning(**changed: object) -> AdaptiveFourier:
-    return AdaptiveFourier(**({"order": [ORDER], "gain": GAIN, "fastest": 1e3, "slowest": 1.0, "limit": 1.0} | changed))  # type: ignore[arg-type]
+    return AdaptiveFourier(**({"order": [ORDER], "gain": GAIN, "max_frequency": 1e3, "min_speed": 1.0, "limit": 1.0} | changed))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("speed", [-20.0, 20.0, -10.0])
@@ -53,14 +53,14 @@ def test_it_leaves_nothing_of_an_error_of_four_orders() -> None:
 @pytest.mark.parametrize(
     ("changed", "learns"),
     [
-        ({"fastest": 39.0}, False),
-        ({"fastest": 41.0}, True),
-        ({"slowest": 20.5}, False),
-        ({"slowest": 19.5}, True),
+        ({"max_frequency": 39.0}, False),
+        ({"max_frequency": 41.0}, True),
+        ({"min_speed": 20.5}, False),
+        ({"min_speed": 19.5}, True),
         ({"gain": 0.0}, False),
     ],
 )
-def test_it_learns_between_the_slowest_and_the_fastest_only(changed: dict[str, float], learns: bool) -> None:
+def test_it_learns_between_min_speed_and_max_frequency_only(changed: dict[str, float], learns: bool) -> None:
     """At 20 rad/s waves of order 2 have 40 rad/s."""
     found = state(Course.at(following(ERROR, learning(**changed)), -20.0, 0.5).run.end, "learning")
     assert any(found.values()) == learns

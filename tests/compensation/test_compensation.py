@@ -36,10 +36,12 @@ PARTS: dict[str, Any] = {
         angle=[-0.1, 0.05, 0.2], forward=[3e-4, 1e-4, 4e-4], backward=[-2e-4, -3e-4, 1e-4], reach=0.02
     ),
     "model_feedforward": compensation.ModelFeedforward(gear=DRY, load=NO_LOAD, presliding=0.5),
-    "adaptive_fourier": compensation.AdaptiveFourier(order=[1.0, 2.0, 2.02], gain=20.0, lag=0.01, fastest=130.0, limit=2e-4),
-    "repetitive": compensation.Repetitive(gain=30.0, smoothing=5.0, lag=0.01, slowest=5.0, fastest=100.0, limit=2e-4),
+    "adaptive_fourier": compensation.AdaptiveFourier(
+        order=[1.0, 2.0, 2.02], gain=20.0, lag=0.01, max_frequency=130.0, limit=2e-4
+    ),
+    "repetitive": compensation.Repetitive(gain=30.0, smoothing=5.0, lag=0.01, min_speed=5.0, max_speed=100.0, limit=2e-4),
     "disturbance_observer": compensation.DisturbanceObserver(inertia=2.1e-4, bandwidth=120.0, limit=0.1),
-    "friction_scale": compensation.FrictionScale(gain=3.0, most=1.2, slowest=2.0),
+    "friction_scale": compensation.FrictionScale(gain=3.0, max_scale=1.2, min_speed=2.0),
 }
 HANDS = {
     "lost_motion_map": by_hand.LostMotionMap,

@@ -50,7 +50,7 @@ def scale(run: Any) -> float:
 @pytest.mark.parametrize("true", [0.7, 1.0, 1.3])
 def test_it_converges_to_the_true_scale(command: sw.scenario.Scenario, true: float) -> None:
     """Of all friction, Coulomb's and viscous; back and forth too, if it waits until a reversal is over."""
-    found = sw.simulate(drive(FrictionScale(gain=30.0, slowest=29.0), scale=true), command, sample=1e-2)
+    found = sw.simulate(drive(FrictionScale(gain=30.0, min_speed=29.0), scale=true), command, sample=1e-2)
     assert scale(found) == pytest.approx(true, abs=0.01)
 
 
@@ -64,17 +64,17 @@ def test_the_speed_error_goes_with_the_friction_that_was_missing() -> None:
     assert errors[1] < 0.01 * errors[0]
 
 
-@pytest.mark.parametrize(("slowest", "learns"), [(29.9, True), (30.1, False)])
-def test_below_the_slowest_it_stands_still(slowest: float, learns: bool) -> None:
+@pytest.mark.parametrize(("min_speed", "learns"), [(29.9, True), (30.1, False)])
+def test_below_the_slowest_it_stands_still(min_speed: float, learns: bool) -> None:
     """At 30 rad/s of the input."""
-    found = sw.simulate(drive(FrictionScale(gain=30.0, slowest=slowest)), sw.scenario.ramp(0.3, 1.0), sample=1e-2)
+    found = sw.simulate(drive(FrictionScale(gain=30.0, min_speed=min_speed)), sw.scenario.ramp(0.3, 1.0), sample=1e-2)
     assert (scale(found) != 1.0) == learns
 
 
 @given(st.floats(0.0, 1.0), st.floats(1.0, 3.0), st.floats(0.0, 1e4), st.floats(0.1, 5.0))
 def test_it_stays_within_its_bounds(least: float, most: float, gain: float, true: float) -> None:
     """However fast, and whatever the friction is."""
-    one = drive(FrictionScale(gain=gain, least=least, most=most), scale=true)
+    one = drive(FrictionScale(gain=gain, min_scale=least, max_scale=most), scale=true)
     found = sw.simulate(one, sw.scenario.sine(0.1, 2.0, 0.5), sample=1e-2)
     assert least <= scale(found) <= most
 
@@ -127,8 +127,8 @@ def test_without_a_model_of_friction_there_is_nothing_to_scale() -> None:
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
-        ({"least": 1.1}, r"friction_scale\.least = 1\.1 must lie in \[0, 1\]"),
-        ({"most": 0.9}, r"friction_scale\.most = 0\.9 must lie in"),
+        ({"min_scale": 1.1}, r"friction_scale\.min_scale = 1\.1 must lie in \[0, 1\]"),
+        ({"max_scale": 0.9}, r"friction_scale\.max_scale = 0\.9 must lie in"),
         ({"gain": -1.0}, r"friction_scale\.gain = -1"),
     ],
 )

@@ -17,7 +17,7 @@ MAP = LostMotionMap(angle=[-0.5, 0.0, 1.0], forward=[3e-4, 1e-4, 2e-4], backward
 
 def leads(law: LostMotionMap, angle: Array, ratio: float = RATIO) -> Array:
     """Lead at the output [rad]."""
-    lead, _, torque, friction = law.planned(angle, np.zeros(angle.size), ratio, PERIOD)
+    lead, _, torque, friction = law.requests(angle, np.zeros(angle.size), ratio, PERIOD)
     assert not torque.any()
     assert not friction.any()
     return lead / ratio
@@ -58,7 +58,7 @@ def test_steps_of_a_motion_do_not_matter(turns: list[float], parts: int) -> None
 
 def test_the_rate_of_the_lead_is_its_difference() -> None:
     angle = 0.3 * np.sin(0.05 * np.arange(200))
-    lead, rate, _, _ = MAP.planned(angle, np.zeros(200), RATIO, PERIOD)
+    lead, rate, _, _ = MAP.requests(angle, np.zeros(200), RATIO, PERIOD)
     assert rate == pytest.approx(np.append(0.0, np.diff(lead) / PERIOD), abs=1e-9)
 
 
@@ -93,4 +93,4 @@ def test_a_motion_that_cannot_be_is_refused(
     angle: list[float], speed: list[float], ratio: float, period: float, words: str
 ) -> None:
     with pytest.raises(ValueError, match=words):
-        MAP.planned(angle, speed, ratio, period)
+        MAP.requests(angle, speed, ratio, period)

@@ -30,7 +30,7 @@ TURN = np.linspace(0.0, 2.0 * np.pi / abs(RATIO), 4001)  # of the input
 
 def planned(law: ModelFeedforward, angle: Array, speed: Array | float = 0.0, ratio: float = RATIO) -> tuple[Array, ...]:
     """Lead, its rate, torque and friction along a motion."""
-    return law.planned(angle, np.broadcast_to(speed, angle.shape).copy(), ratio, PERIOD)
+    return law.requests(angle, np.broadcast_to(speed, angle.shape).copy(), ratio, PERIOD)
 
 
 # Kinematic error

@@ -21,7 +21,7 @@ NONE = sw.kinematic_error.Fourier()
 
 
 def learning(**changed: float) -> Repetitive:
-    return Repetitive(**({"gain": 40.0, "fastest": 100.0, "slowest": 1.0, "limit": 1.0} | changed))
+    return Repetitive(**({"gain": 40.0, "max_speed": 100.0, "min_speed": 1.0, "limit": 1.0} | changed))
 
 
 def peaks(course: Course) -> list[float]:
@@ -81,9 +81,16 @@ def test_what_it_holds_is_interpolated_between_the_cells() -> None:
     assert np.corrcoef(lead[settled], wanted[settled])[0, 1] > 0.999
 
 
-@pytest.mark.parametrize(("changed", "learns"), [({"fastest": 9.9}, False), ({"slowest": 10.1}, False), ({"gain": 0.0}, False),
-                                                 ({"slowest": 9.9, "fastest": 10.1}, True)])  # fmt: skip
-def test_it_learns_between_the_slowest_and_the_fastest_only(changed: dict[str, float], learns: bool) -> None:
+@pytest.mark.parametrize(
+    ("changed", "learns"),
+    [
+        ({"max_speed": 9.9}, False),
+        ({"min_speed": 10.1}, False),
+        ({"gain": 0.0}, False),
+        ({"min_speed": 9.9, "max_speed": 10.1}, True),
+    ],
+)
+def test_it_learns_between_min_speed_and_max_speed_only(changed: dict[str, float], learns: bool) -> None:
     error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[1e-4], phase=[0.7])
     found = values(Course.at(following(error, learning(**changed)), -10.0, 0.5).run.end)
     assert bool(found.any()) == learns

@@ -47,8 +47,8 @@ USED: dict[str, Any] = {
     "lost_motion_map": compensation.LostMotionMap(
         angle=[-0.1, 0.0, 0.1], forward=[3e-4, 2e-4, 1e-4], backward=[-1e-4, -2e-4, -3e-4], reach=0.01
     ),
-    "adaptive_fourier": compensation.AdaptiveFourier(order=[1.0, 2.0, 2.02], gain=10.0, lag=0.01, fastest=130.0),
-    "repetitive": compensation.Repetitive(gain=20.0, smoothing=1.0, lag=0.01, fastest=100.0),
+    "adaptive_fourier": compensation.AdaptiveFourier(order=[1.0, 2.0, 2.02], gain=10.0, lag=0.01, max_frequency=130.0),
+    "repetitive": compensation.Repetitive(gain=20.0, smoothing=1.0, lag=0.01, max_speed=100.0),
     "disturbance_observer": compensation.DisturbanceObserver(inertia=1.6e-4, bandwidth=120.0, limit=0.3),
     "friction_scale": compensation.FrictionScale(gain=3.0),
 }

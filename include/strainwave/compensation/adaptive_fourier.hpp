@@ -11,8 +11,8 @@ struct AdaptiveFourier {
     Sequence<S, capacity> order{};
     S gain{5.0};
     S lag{0.0};
-    S slowest{1.0};
-    S fastest{100.0};
+    S min_speed{1.0};
+    S max_frequency{100.0};
     S limit{1e-3};
 
     static constexpr auto name = "adaptive_fourier";
@@ -29,8 +29,8 @@ struct AdaptiveFourier {
         with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag, which the
         position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
         constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
-        grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``fastest``, and where omega is below
-        ``slowest``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+        grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``max_frequency``, and where omega is below
+        ``min_speed``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
 
         >>> from strainwave.compensation import AdaptiveFourier
         >>> AdaptiveFourier(order=[1, 2]).gain
@@ -41,8 +41,8 @@ struct AdaptiveFourier {
         visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input", smallest));
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which the amplitudes follow the error", 0));
         visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
-        visit(SW_FIELD(m, slowest, "rad/s", "Input speed below which it does not learn", 0));
-        visit(SW_FIELD(m, fastest, "rad/s", "Frequency n |omega| of a wave above which it does not learn", smallest));
+        visit(SW_FIELD(m, min_speed, "rad/s", "Input speed below which it does not learn", 0));
+        visit(SW_FIELD(m, max_frequency, "rad/s", "Frequency n |omega| of a wave above which it does not learn", smallest));
         visit(SW_FIELD(m, limit, "rad", "Largest sine and cosine at the output", 0));
     }
 
@@ -56,30 +56,30 @@ struct AdaptiveFourier {
         }
     };
 
-    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
-        Asked<S> asked{};
+    constexpr Request<S> request(const State& x, const Inputs<S>& inputs) const {
+        Request<S> request{};
         for (int n = 0; n < order.count; ++n) {
-            const SinCos<S> at = wave(order[n], plan.measured.input_angle, S(0.0));
-            const S pace = order[n] * plan.input_speed();
-            asked.input_lead = asked.input_lead + x.sine[n] * at.sin + x.cosine[n] * at.cos;
-            asked.input_lead_rate = asked.input_lead_rate + pace * (x.sine[n] * at.cos - x.cosine[n] * at.sin);
+            const SinCos<S> at = wave(order[n], inputs.measured.input_angle, S(0.0));
+            const S pace = order[n] * inputs.input_speed();
+            request.input_lead = request.input_lead + x.sine[n] * at.sin + x.cosine[n] * at.cos;
+            request.input_lead_rate = request.input_lead_rate + pace * (x.sine[n] * at.cos - x.cosine[n] * at.sin);
         }
-        asked.input_lead = plan.command.ratio * asked.input_lead;
-        asked.input_lead_rate = plan.command.ratio * asked.input_lead_rate;
-        return asked;
+        request.input_lead = inputs.command.ratio * request.input_lead;
+        request.input_lead_rate = inputs.command.ratio * request.input_lead_rate;
+        return request;
     }
-    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
-        const S speed = plan.input_speed(), error = plan.command.value - plan.measured.output_angle;
-        State later = x;
+    constexpr State advance(const State& x, const Inputs<S>& inputs, const Request<S>&, const S&, const S& period) const {
+        const S speed = inputs.input_speed(), error = inputs.command.value - inputs.measured.output_angle;
+        State next = x;
         for (int n = 0; n < order.count; ++n) {
             const S pace = order[n] * speed;
-            const S learnt = select(abs(pace) < fastest, gain * period * error, S(0.0));
-            const S step = select(abs(speed) < slowest, S(0.0), learnt);
-            const SinCos<S> at = wave(order[n], plan.measured.input_angle, pace * lag);
-            later.sine[n] = clip(x.sine[n] + step * at.sin, -limit, limit);
-            later.cosine[n] = clip(x.cosine[n] + step * at.cos, -limit, limit);
+            const S below = select(abs(pace) < max_frequency, gain * period * error, S(0.0));
+            const S step = select(abs(speed) < min_speed, S(0.0), below);
+            const SinCos<S> at = wave(order[n], inputs.measured.input_angle, pace * lag);
+            next.sine[n] = clip(x.sine[n] + step * at.sin, -limit, limit);
+            next.cosine[n] = clip(x.cosine[n] + step * at.cos, -limit, limit);
         }
-        return later;
+        return next;
     }
 
 private:

@@ -15,7 +15,7 @@ struct CompensationStates {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, feedforward, "State of the feed-forward"));
-        visit(SW_PART(m, learning, "What is learnt"));
+        visit(SW_PART(m, learning, "State of the learner"));
         visit(SW_PART(m, observer, "State of the observer"));
     }
 };
@@ -32,7 +32,7 @@ struct Compensation {
     static constexpr auto name = "compensation";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        What a sampled controller is given beside the error: what a model, a learner and an observer know of the drive.
+        Lead of the input and torque that a sampled controller adds: those of a model, a learner and an observer.
 
         .. math:: \theta_r = i r + \theta_f + \theta_l, \qquad u_f = p\,(\tau_f + \tau_l + \tau_o) + q\,\dot\theta_r
 
@@ -50,9 +50,9 @@ struct Compensation {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, feedforward, "What a model of the drive asks for"));
-        visit(SW_PART(m, learning, "What is learnt of what repeats"));
-        visit(SW_PART(m, observer, "What is observed to be missing"));
+        visit(SW_PART(m, feedforward, "Feed-forward of a model of the drive"));
+        visit(SW_PART(m, learning, "Learning of errors that repeat"));
+        visit(SW_PART(m, observer, "Observer of what the model lacks"));
         visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
         visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed q: its back-EMF"));
     }
@@ -74,33 +74,33 @@ struct Compensation {
 
     /// Requests of the compensators at one sampling instant.
     struct Instant {
-        typename Feedforward::State feedforward;  ///< state after the period
-        compensation::Plan<S> planned, learnt;    ///< inputs of the learner and of the observer
-        compensation::Asked<S> learning, observer;
+        typename Feedforward::State next_feedforward;  ///< state after the period
+        compensation::Inputs<S> learning_inputs, observer_inputs;
+        compensation::Request<S> learning_request, observer_request;
 
         /// Command of the controller, with the leads and the feed-forward of all compensators.
         constexpr control::Command<S> command(const Compensation& with) const {
-            const compensation::Asked<S> asked = learnt.asked + observer;
-            control::Command<S> command = learnt.command;
-            command.input_lead = asked.input_lead;
-            command.input_lead_rate = asked.input_lead_rate;
-            command.feedforward = with.actuation_per_torque * asked.torque + with.actuation_per_speed * command.input_speed();
+            const compensation::Request<S> request = observer_inputs.request + observer_request;
+            control::Command<S> command = observer_inputs.command;
+            command.input_lead = request.input_lead;
+            command.input_lead_rate = request.input_lead_rate;
+            command.feedforward = with.actuation_per_torque * request.torque + with.actuation_per_speed * command.input_speed();
             return command;
         }
     };
     constexpr Instant instant(const State& x, const control::Command<S>& command, const control::Measurement<S>& measured,
                               const S& period) const {
-        const auto model = feedforward.planned(x.feedforward, command, period);
-        const compensation::Plan<S> planned{command, measured, model.asked};
-        const compensation::Asked<S> learning_asks = learning.added(x.learning, planned);
-        const compensation::Plan<S> learnt{command, measured, model.asked + learning_asks};
-        return {model.later, planned, learnt, learning_asks, observer.added(x.observer, learnt)};
+        const auto model = feedforward.step(x.feedforward, command, period);
+        const compensation::Inputs<S> learning_inputs{command, measured, model.request};
+        const compensation::Request<S> learning_request = learning.request(x.learning, learning_inputs);
+        const compensation::Inputs<S> observer_inputs{command, measured, model.request + learning_request};
+        return {model.next, learning_inputs, observer_inputs, learning_request, observer.request(x.observer, observer_inputs)};
     }
     /// State after a period in which the motor received `actuation`.
     constexpr State advance(const State& x, const Instant& now, const S& actuation, const S& period) const {
-        const S given = (actuation - actuation_per_speed * now.learnt.measured.input_speed) / actuation_per_torque;
-        return {now.feedforward, learning.advance(x.learning, now.planned, now.learning, given, period),
-                observer.advance(x.observer, now.learnt, now.observer, given, period)};
+        const S motor_torque = (actuation - actuation_per_speed * now.observer_inputs.measured.input_speed) / actuation_per_torque;
+        return {now.next_feedforward, learning.advance(x.learning, now.learning_inputs, now.learning_request, motor_torque, period),
+                observer.advance(x.observer, now.observer_inputs, now.observer_request, motor_torque, period)};
     }
 };
 

@@ -50,19 +50,20 @@ struct DisturbanceObserver {
         }
     };
 
-    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
-        return {S(0.0), S(0.0), clip(x.filtered - momentum(plan), -limit, limit), S(0.0)};
+    constexpr Request<S> request(const State& x, const Inputs<S>& inputs) const {
+        return {S(0.0), S(0.0), S(0.0), clip(x.filtered - momentum(inputs), -limit, limit), S(0.0)};
     }
-    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S& given, const S& period) const {
-        const S known = select(torque_constant > S(0.0), torque_constant * plan.measured.current, given);
-        const S kept = exp(-min(bandwidth * period, S(beyond_digits))), towards = known - plan.asked.torque + momentum(plan);
+    constexpr State advance(const State& x, const Inputs<S>& inputs, const Request<S>&, const S& motor_torque,
+                            const S& period) const {
+        const S known = select(torque_constant > S(0.0), torque_constant * inputs.measured.current, motor_torque);
+        const S kept = exp(-min(bandwidth * period, S(beyond_digits))), towards = known - inputs.request.torque + momentum(inputs);
         return {towards + kept * (x.filtered - towards)};
     }
 
 private:
     /// Bandwidth times the momentum of the speed error [N.m].
-    constexpr S momentum(const Plan<S>& plan) const {
-        return bandwidth * inertia * (plan.measured.input_speed - plan.input_speed());
+    constexpr S momentum(const Inputs<S>& inputs) const {
+        return bandwidth * inertia * (inputs.measured.input_speed - inputs.input_speed());
     }
 };
 

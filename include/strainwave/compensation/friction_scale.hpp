@@ -7,9 +7,9 @@ template <class S>
 struct FrictionScale {
     S gain{1.0};
     S position_gain{20.0};
-    S least{0.5};
-    S most{1.5};
-    S slowest{1.0};
+    S min_scale{0.5};
+    S max_scale{1.5};
+    S min_speed{1.0};
 
     static constexpr auto name = "friction_scale";
     static constexpr auto source = "SlotineLi1991, section 8.2: gradient of a Lyapunov function, linear in the unknown";
@@ -20,24 +20,24 @@ struct FrictionScale {
                   \;\text{ where } |\omega_r| \ge \omega_{min}, \qquad \hat s \in [s_{min}, s_{max}], \qquad
                   \sigma = \omega_r - \omega + \lambda\, (\theta_r - \theta)
 
-        with F the friction that the feed-forward asks for, theta_r, omega_r and theta, omega the input angle and speed that the
-        controller is to follow and as measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = slowest,
-        s_min, s_max = least, most. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
+        with F the friction of the feed-forward, theta_r, omega_r and theta, omega the input angle and speed commanded
+        and measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = min_speed,
+        s_min, s_max = min_scale, max_scale. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
         J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it
         must be small. By the speed alone, lambda = 0, a motion of one sense under a position loop does not determine s. Below
         omega_min it stands still: rest does not determine s, and around a reversal the error is that of the presliding.
 
         >>> from strainwave.compensation import FrictionScale
-        >>> FrictionScale(gain=5.0).most
+        >>> FrictionScale(gain=5.0).max_scale
         1.5)";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error sigma", 0));
         visit(SW_FIELD(m, position_gain, "1/s", "Weight lambda of the error of the input angle", 0));
-        visit(SW_FIELD(m, least, "1", "Least scale s_min, of the friction of the model", 0, 1));
-        visit(SW_FIELD(m, most, "1", "Largest scale s_max", 1, 10));
-        visit(SW_FIELD(m, slowest, "rad/s", "Slowest commanded input speed omega_min that determines the scale", 0));
+        visit(SW_FIELD(m, min_scale, "1", "Least scale s_min, of the friction of the model", 0, 1));
+        visit(SW_FIELD(m, max_scale, "1", "Largest scale s_max", 1, 10));
+        visit(SW_FIELD(m, min_speed, "rad/s", "Slowest commanded input speed omega_min that determines the scale", 0));
     }
 
     struct State {
@@ -50,15 +50,15 @@ struct FrictionScale {
     };
 
     constexpr State initial_state() const { return {}; }
-    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
-        const S friction = (x.scale - S(1.0)) * plan.asked.friction;
-        return {S(0.0), S(0.0), friction, friction};
+    constexpr Request<S> request(const State& x, const Inputs<S>& inputs) const {
+        const S friction = (x.scale - S(1.0)) * inputs.request.friction;
+        return {S(0.0), S(0.0), S(0.0), friction, friction};
     }
-    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
-        const S wanted = plan.input_speed();
-        const S error = wanted - plan.measured.input_speed + position_gain * (plan.input_angle() - plan.measured.input_angle);
-        const S moved = select(abs(wanted) < slowest, S(0.0), gain * plan.asked.friction * error * period);
-        return {clip(x.scale + moved, least, most)};
+    constexpr State advance(const State& x, const Inputs<S>& inputs, const Request<S>&, const S&, const S& period) const {
+        const S wanted = inputs.input_speed();
+        const S error = wanted - inputs.measured.input_speed + position_gain * (inputs.input_angle() - inputs.measured.input_angle);
+        const S moved = select(abs(wanted) < min_speed, S(0.0), gain * inputs.request.friction * error * period);
+        return {clip(x.scale + moved, min_scale, max_scale)};
     }
 };
 

@@ -59,14 +59,15 @@ struct LostMotionMap {
         }
     };
 
-    constexpr Planned<S, State> planned(const State& x, const control::Command<S>& command, const S& period) const {
+    constexpr RequestAndState<S, State> step(const State& x, const control::Command<S>& command, const S& period) const {
         const S moved = x.begun * (command.value - x.angle), towards = sign(moved);
         const S kept = exp(-min(abs(moved) / reach, S(beyond_digits)));
         const S sense = select(towards == S(0.0), x.sense, towards + (x.sense - towards) * kept);
         const S mean = S(0.5) * (on(forward, command.value) + on(backward, command.value));
         const S half = S(0.5) * (on(forward, command.value) - on(backward, command.value));
         const S lead = mean + sense * half, rate = x.begun * (lead - x.lead) / period;
-        return {{command.ratio * lead, command.ratio * rate, S(0.0), S(0.0)}, {command.value, sense, lead, S(1.0)}};
+        return {{command.ratio * lead, command.ratio * rate, command.ratio * lead, S(0.0), S(0.0)},
+                {command.value, sense, lead, S(1.0)}};
     }
 
 private:

@@ -139,23 +139,23 @@ struct ModelFeedforward {
         return x;
     }
 
-    constexpr Planned<S, State> planned(const State& x, const control::Command<S>& command, const S& period) const {
+    constexpr RequestAndState<S, State> step(const State& x, const control::Command<S>& command, const S& period) const {
         const auto changed = [&](const S& now, const S& before) { return x.begun * (now - before) / period; };
-        State later = x;
+        State next = x;
         const S acceleration = changed(command.rate, x.speed);
         const S output_sense = sign(command.ratio) * x.sense;
         const S carried = inertia_of<S>(load) * acceleration + load_torque<S>(load, command.value, command.rate, S(0.0)) +
                           output_sense * braking<S>(load, S(0.0)).slip;
         const S inverse = S(1.0) / command.ratio;
         const Contact output{command.rate, output_sense, reduced(command.value), carried, temperature};
-        const S at_output = slid(gear.friction_output, x.gear.friction_output, output, period, later.gear.friction_output);
+        const S at_output = slid(gear.friction_output, x.gear.friction_output, output, period, next.gear.friction_output);
         const S transmitted = carried + at_output;
 
-        later.twist = inverse_twist(gear, x.gear.hysteresis, x.twist, transmitted, temperature);
-        later.gear.hysteresis = gear.hysteresis.advance(x.gear.hysteresis, later.twist - x.twist);
-        const S twist_rate = changed(later.twist, x.twist);
-        const auto found = engaged(command, later.twist, transmitted);
-        const S lead = command.ratio * (found.value + later.twist);
+        next.twist = inverse_twist(gear, x.gear.hysteresis, x.twist, transmitted, temperature);
+        next.gear.hysteresis = gear.hysteresis.advance(x.gear.hysteresis, next.twist - x.twist);
+        const S twist_rate = changed(next.twist, x.twist);
+        const auto found = engaged(command, next.twist, transmitted);
+        const S lead = command.ratio * (found.value + next.twist);
         // input speed = ratio (rate + twist rate + slope * input speed)
         const S follows = max(S(1.0) - command.ratio * found.slope, S(least_follow));
         const S speed = command.ratio * (command.rate + twist_rate) / follows;
@@ -165,19 +165,19 @@ struct ModelFeedforward {
         const S per_input = inverse - found.slope;
         const Angle<S> angle = reduced(command.ratio * command.value + lead);
         const Contact mesh{speed * per_input, output_sense, reduced(command.value), transmitted, temperature};
-        const S at_mesh = slid(gear.friction_mesh, x.gear.friction_mesh, mesh, period, later.gear.friction_mesh);
+        const S at_mesh = slid(gear.friction_mesh, x.gear.friction_mesh, mesh, period, next.gear.friction_mesh);
         const Contact input{speed, x.sense, angle, per_input * transmitted, temperature};
-        const S at_input = slid(gear.friction_input, x.gear.friction_input, input, period, later.gear.friction_input);
+        const S at_input = slid(gear.friction_input, x.gear.friction_input, input, period, next.gear.friction_input);
         const S friction = friction_share * (at_input + per_input * (at_mesh + at_output));
 
-        later.speed = command.rate;
-        later.lead_rate = lead_rate;
-        later.begun = S(1.0);
+        next.speed = command.rate;
+        next.lead_rate = lead_rate;
+        next.begun = S(1.0);
         const S moved = speed * period, towards = sign(moved);
-        later.sense = towards + (x.sense - towards) * exp(-min(abs(moved) / presliding, S(beyond_digits)));
-        later.sense = select(towards == S(0.0), x.sense, later.sense);
+        next.sense = towards + (x.sense - towards) * exp(-min(abs(moved) / presliding, S(beyond_digits)));
+        next.sense = select(towards == S(0.0), x.sense, next.sense);
         const S inertial = (motor_inertia + gear.input_inertia) * input_acceleration;
-        return {{lead, lead_rate, inertial + per_input * carried + friction, friction}, later};
+        return {{lead, lead_rate, command.ratio * next.twist, inertial + per_input * carried + friction, friction}, next};
     }
 
 private:
@@ -192,12 +192,12 @@ private:
     }
     static constexpr double least_follow = 0.1;  ///< share of the commanded speed that the input keeps where the error is steep
 
-    /// The torque of a friction, in the state that the motion left it in; `later` is that a period on.
+    /// The torque of a friction, in the state that the motion left it in; `next` is that a period on.
     template <class Law>
     static constexpr S slid(const Law& law, const typename Law::State& x, const Contact& at, const S& period,
-                            typename Law::State& later) {
-        later = friction::clamped(law, friction::update_mode(law, friction::advance(law, x, at, period), at), at);
-        return friction::torque(law, later, at);
+                            typename Law::State& next) {
+        next = friction::clamped(law, friction::update_mode(law, friction::advance(law, x, at, period), at), at);
+        return friction::torque(law, next, at);
     }
     /// The kinematic error where the input must stand.
     constexpr kinematic_error::Error<S> engaged(const control::Command<S>& command, const S& twist, const S& torque) const {

@@ -21,7 +21,7 @@ struct NoFeedforward {
 
     using State = Stateless<S>;
     static constexpr bool active() { return false; }
-    constexpr Planned<S, State> planned(const State&, const control::Command<S>&, const S&) const { return {}; }
+    constexpr RequestAndState<S, State> step(const State&, const control::Command<S>&, const S&) const { return {}; }
 };
 
 template <class S>
@@ -42,8 +42,8 @@ struct NoObserver {
 
     using State = Stateless<S>;
     static constexpr bool active() { return false; }
-    constexpr Asked<S> added(const State&, const Plan<S>&) const { return {}; }
-    constexpr State advance(const State&, const Plan<S>&, const Asked<S>&, const S&, const S&) const { return {}; }
+    constexpr Request<S> request(const State&, const Inputs<S>&) const { return {}; }
+    constexpr State advance(const State&, const Inputs<S>&, const Request<S>&, const S&, const S&) const { return {}; }
 };
 
 template <class S>
@@ -64,8 +64,8 @@ struct NoLearning {
 
     using State = Stateless<S>;
     static constexpr bool active() { return false; }
-    constexpr Asked<S> added(const State&, const Plan<S>&) const { return {}; }
-    constexpr State advance(const State&, const Plan<S>&, const Asked<S>&, const S&, const S&) const { return {}; }
+    constexpr Request<S> request(const State&, const Inputs<S>&) const { return {}; }
+    constexpr State advance(const State&, const Inputs<S>&, const Request<S>&, const S&, const S&) const { return {}; }
 };
 
 }  // namespace strainwave::compensation

@@ -10,8 +10,8 @@ struct Repetitive {
     S gain{5.0};
     S smoothing{0.0};
     S lag{0.0};
-    S slowest{1.0};
-    S fastest{30.0};
+    S min_speed{1.0};
+    S max_speed{30.0};
     S limit{1e-3};
 
     static constexpr auto name = "repetitive";
@@ -26,7 +26,7 @@ struct Repetitive {
 
         with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing: the filter Q, which takes away what
         changes from cell to cell, t_lag = lag of the position loop. The input leads by i e^. It learns where the input speed lies
-        between ``slowest`` and ``fastest``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
+        between ``min_speed`` and ``max_speed``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
         exceeds ``limit``. Orders above 8 are learnt in part only, and what does not repeat with the input, as the second harmonic
         of the other spline, not at all: AdaptiveFourier takes any order.
 
@@ -39,8 +39,8 @@ struct Repetitive {
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which a cell follows the error", 0));
         visit(SW_FIELD(m, smoothing, "1/s", "Rate sigma at which a cell follows its neighbours", 0));
         visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
-        visit(SW_FIELD(m, slowest, "rad/s", "Input speed below which it does not learn", 0));
-        visit(SW_FIELD(m, fastest, "rad/s", "Input speed above which it does not learn", smallest));
+        visit(SW_FIELD(m, min_speed, "rad/s", "Input speed below which it does not learn", 0));
+        visit(SW_FIELD(m, max_speed, "rad/s", "Input speed above which it does not learn", smallest));
         visit(SW_FIELD(m, limit, "rad", "Largest value at the output", 0));
     }
 
@@ -53,30 +53,30 @@ struct Repetitive {
         }
     };
 
-    constexpr Asked<S> added(const State& x, const Plan<S>& plan) const {
-        const S place = placed(plan.measured.input_angle);
+    constexpr Request<S> request(const State& x, const Inputs<S>& inputs) const {
+        const S place = placed(inputs.measured.input_angle);
         S value(0.0), slope(0.0);
         for (int j = 0; j < cells; ++j) {
             const S apart = distance(place, j);
             value = value + weight(apart) * x.value[j];
             slope = slope - select(abs(apart) < S(1.0), sign(apart), S(0.0)) * x.value[j];
         }
-        const S ratio = plan.command.ratio, per_angle = S(cells / (2.0 * pi));
-        return {ratio * value, ratio * slope * per_angle * plan.input_speed(), S(0.0), S(0.0)};
+        const S ratio = inputs.command.ratio, per_angle = S(cells / (2.0 * pi));
+        return {ratio * value, ratio * slope * per_angle * inputs.input_speed(), S(0.0), S(0.0), S(0.0)};
     }
-    constexpr State advance(const State& x, const Plan<S>& plan, const Asked<S>&, const S&, const S& period) const {
-        const S speed = plan.input_speed(), error = plan.command.value - plan.measured.output_angle;
-        const S learnt = select(abs(speed) < fastest, period, S(0.0)), step = select(abs(speed) < slowest, S(0.0), learnt);
-        const S place = placed(plan.measured.input_angle), late = placed(plan.measured.input_angle - speed * lag);
+    constexpr State advance(const State& x, const Inputs<S>& inputs, const Request<S>&, const S&, const S& period) const {
+        const S speed = inputs.input_speed(), error = inputs.command.value - inputs.measured.output_angle;
+        const S below = select(abs(speed) < max_speed, period, S(0.0)), step = select(abs(speed) < min_speed, S(0.0), below);
+        const S place = placed(inputs.measured.input_angle), late = placed(inputs.measured.input_angle - speed * lag);
         const S taken = min(smoothing * step, S(1.0));
-        State later = x;
+        State next = x;
         for (int j = 0; j < cells; ++j) {
             const S even = S(0.5) * (x.value[(j + cells - 1) % cells] + x.value[(j + 1) % cells]);
             const S moved =
                 gain * step * weight(distance(late, j)) * error - taken * weight(distance(place, j)) * (x.value[j] - even);
-            later.value[j] = clip(x.value[j] + moved, -limit, limit);
+            next.value[j] = clip(x.value[j] + moved, -limit, limit);
         }
-        return later;
+        return next;
     }
 
 private:

@@ -112,7 +112,10 @@ def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], ord
     """Return the same with orders of the input that are learnt."""
     law = tuned_law(plant, setting)
     learner = compensation.AdaptiveFourier(
-        order=orders, gain=LEARNING_SHARE * law.position_gain, fastest=MAX_WAVE_SHARE * law.position_gain, limit=MAX_AMPLITUDE
+        order=orders,
+        gain=LEARNING_SHARE * law.position_gain,
+        max_frequency=MAX_WAVE_SHARE * law.position_gain,
+        limit=MAX_AMPLITUDE,
     )
     added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(learning=learner)
     which = f"order {orders[0]:g}" if len(orders) == 1 else f"orders {_and([f'{order:g}' for order in orders])}"

@@ -498,7 +498,7 @@ def torque_offset(request: Request) -> Slot:
         )
     time = request.period * np.arange(int(periods) + 1)
     model = model_of(plant, request.gear).replace(temperature=request.temperature)
-    _, _, torque, resisting = model.planned(motion.value(time), motion.rate(time), plant.ratio, request.period)
+    _, _, torque, resisting = model.requests(motion.value(time), motion.rate(time), plant.ratio, request.period)
     begun = time >= (goals.SETTLING_SHARE * motion.duration if request.motion is None else 0.0)  # at first it begins from rest
     torque, resisting = torque[begun], resisting[begun]
     time = time[: torque.size]

@@ -46,7 +46,7 @@ DRIVES = {
     "model": drive(feedforward=FEEDFORWARD, observer=OBSERVER),
     "delay": drive(delay=3e-4, feedforward=FEEDFORWARD),
     "whole_period": drive(delay=PERIOD, observer=OBSERVER),
-    "fourier": drive(learning=sw.compensation.AdaptiveFourier(order=[1, 2.5], fastest=300.0)),
+    "fourier": drive(learning=sw.compensation.AdaptiveFourier(order=[1, 2.5], max_frequency=300.0)),
     "table": drive(learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)),
     "map": drive(feedforward=sw.compensation.LostMotionMap(angle=[0.0, 0.1], forward=[1e-4, 2e-4], backward=[-1e-4, 0.0])),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),

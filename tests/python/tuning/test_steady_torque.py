@@ -29,7 +29,7 @@ def test_it_is_what_a_model_feeds_forward_along_a_slow_motion(speed: float, load
     law = sw.compensation.ModelFeedforward(gear=GEAR, load=held, rounds=8)
     angle = speed / ratio * period * np.arange(3000)
     lead, lead_rate, torque, resisting = (
-        each[1000:] for each in law.planned(angle, np.full(angle.size, speed / ratio), ratio, period)
+        each[1000:] for each in law.requests(angle, np.full(angle.size, speed / ratio), ratio, period)
     )
     at, turning = ratio * angle[1000:] + lead, speed + lead_rate
     found = steady_torque(GEAR, turning, at, load)
