@@ -69,27 +69,28 @@ class NoFeedforward:
 
 class ModelFeedforward:
     """
-    What a model of the drive asks for so that the output moves as it is commanded, before any error.
+    Feed-forward of a model of the drive: the input angle and torque that move the output along its command.
 
     .. math:: T = J_{out} \\ddot r + T_{load}(r, \\dot r) + F_{out}, \\qquad \\delta: T_{gear}(\\delta, \\text{history}) = T, \\qquad
               \\theta = i\\,(r + e(\\theta) + \\delta)
 
     .. math:: \\tau = J_{in} \\ddot\\theta + (T + F_{mesh})\\,(1/i - e'(\\theta)) + F_{in}
 
-    with r the commanded output angle, i the signed ratio, T the torque that the gear must transmit, delta its twist, e its
-    kinematic error, theta the input angle that belongs to all that, J_in = motor_inertia + gear.input_inertia. The controller
-    is given theta - i r as a lead of the input, and tau. ``gear`` and ``load`` are what is known of the drive: an effect
-    that is left out of them is not compensated.
+    with r the commanded output angle, i the signed ratio, T the torque that the gear transmits, delta its twist, e its kinematic
+    error, theta the input angle, J_in = motor_inertia + gear.input_inertia. The request is the lead theta - i r of the
+    input, and the torque tau. ``gear`` and ``load`` are the model. An effect that the model lacks is not compensated.
 
-    theta is found by ``rounds`` rounds of theta <- i (r + e(theta) + delta), which converge if q = |i| max|e'| < 1: each
-    leaves at most the share q of the error before. delta is found on the branch of the hysteresis that the command follows.
-    Rates are differences over a period, so inertia comes half a period late. A set-valued friction acts in the sense s of
-    the motion, which does not jump where the command turns back: ds = (sgn(d theta) - s) |d theta| / presliding, as a
-    contact does that bends before it slides; laws with bristles have that of their own. friction_share takes part of all
-    friction: less than 1 where the model may have too much of it, since friction compensated more than once drives by itself.
+    The fixed point theta <- i (r + e(theta) + delta) is repeated ``rounds`` times. It converges if q = |i| max|e'| < 1: each
+    round reduces the error to at most the share q. delta lies on the branch of the hysteresis that the command follows.
+    Rates are differences over a period, so the torque of inertia is half a period late.
 
-    Valid where the motion is slow against the vibration of load and gear. Leaves out damping of the spring, noise, bodies
-    within the gear and the variation of the stiffness. The temperature is taken to be ``temperature``.
+    A set-valued friction acts in the sense s of the motion. At a reversal s changes gradually, as bristles bend before they
+    slide: ds = (sgn(d theta) - s) |d theta| / presliding. Laws with bristles have presliding of their own. friction_share is
+    the share of the friction that is compensated. Use less than 1 if the model may have too much friction: compensation
+    beyond the true friction drives the joint by itself.
+
+    Valid if the motion is slow against the vibration of load and gear. The model has no damping of the spring, no noise, no
+    bodies within the gear and no variation of the stiffness. Its temperature is constant.
 
     >>> import strainwave as sw
     >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05))
@@ -98,12 +99,12 @@ class ModelFeedforward:
 
     Parameters
     ----------
-    gear: What is known of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
-    load: What the output carries; default Inertia(inertia=0.01)
+    gear: Model of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
+    load: Model of the load; default Inertia(inertia=0.01)
     motor_inertia: Inertia of the motor's rotor [kg.m2], in [0, inf); default 0.0
     presliding: Input angle over which the old sense of set-valued friction falls to 1/e [rad], in (0, inf); default 0.002
-    friction_share: Share of the friction that is asked for, in [0, 1]; default 1.0
-    rounds: Rounds in which the kinematic error is found; 0 leaves it out, in [0, 8]; default 4
+    friction_share: Share of the friction that is compensated, in [0, 1]; default 1.0
+    rounds: Rounds of the fixed point; 0 leaves the kinematic error out, in [0, 8]; default 4
     temperature: Temperature of the gear [K], in (0, inf); default 293.15
 
     Raises
@@ -125,11 +126,11 @@ class ModelFeedforward:
 
     @property
     def gear(self) -> strainwave._core.Gear:
-        """What is known of the gear"""
+        """Model of the gear"""
 
     @property
     def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed:
-        """What the output carries"""
+        """Model of the load"""
 
     @property
     def motor_inertia(self) -> float:
@@ -143,11 +144,11 @@ class ModelFeedforward:
 
     @property
     def friction_share(self) -> float:
-        """Share of the friction that is asked for"""
+        """Share of the friction that is compensated"""
 
     @property
     def rounds(self) -> int:
-        """Rounds in which the kinematic error is found; 0 leaves it out"""
+        """Rounds of the fixed point; 0 leaves the kinematic error out"""
 
     @property
     def temperature(self) -> float:
@@ -178,14 +179,14 @@ class ModelFeedforward:
 
 class LostMotionMap:
     """
-    Lost motion as it was measured: how far the input must lead, over the output angle, for each sense of motion.
+    Lead of the input by a table of measured lost motion over the output angle, for each sense of motion.
 
     .. math:: \\theta = i\\,\\Big(r + \\tfrac{1 + s}{2} f(r) + \\tfrac{1 - s}{2} b(r)\\Big), \\qquad
               ds = (\\operatorname{sgn}(dr) - s)\\, \\frac{|dr|}{r_0}
 
-    with r the commanded output angle, f and b the lines through forward and backward over angle, which rises; beyond its ends
-    they stay as they are there. s is the sense of motion, r_0 = reach: so far after a reversal 1/e of the lost motion is
-    left to take up; before the first motion s = 0, the middle of both. It needs no model, and knows nothing of load and speed.
+    with r the commanded output angle, f and b the lines through forward and backward over angle. angle increases; beyond its ends
+    f and b are constant. s is the sense of motion: at an angle r_0 = reach after a reversal 1/e of the lost motion is left.
+    Before the first motion s = 0, the middle of both. The map needs no model. It does not depend on load and speed.
 
     >>> from strainwave.compensation import LostMotionMap
     >>> LostMotionMap(angle=[0.0], forward=[2e-4], backward=[-2e-4]).reach
@@ -308,17 +309,17 @@ class NoLearning:
 
 class AdaptiveFourier:
     """
-    Learning of what repeats as the wave generator turns: one sine and one cosine for each order.
+    Learning of errors that repeat with the input angle: one sine and one cosine for each order.
 
     .. math:: \\hat e = \\sum_n a_n \\sin n\\theta + b_n \\cos n\\theta, \\qquad
               \\dot a_n = \\gamma\\, (r - \\theta_{out}) \\sin(n\\theta - \\varphi_n), \\quad
               \\dot b_n = \\gamma\\, (r - \\theta_{out}) \\cos(n\\theta - \\varphi_n), \\qquad \\varphi_n = n\\, \\omega\\, t_{lag}
 
-    with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag, which the
-    position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
-    constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
-    grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``max_frequency``, and where omega is below
-    ``min_speed``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+    with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag of
+    the position loop. The input leads by i e^. Let P(j n omega) be the response of the output to the lead. The amplitude of
+    a constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
+    It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega| is
+    below ``min_speed``. No sine and no cosine exceeds ``limit``. An error of the output encoder itself is learnt as well.
 
     >>> from strainwave.compensation import AdaptiveFourier
     >>> AdaptiveFourier(order=[1, 2]).gain
@@ -328,9 +329,9 @@ class AdaptiveFourier:
     ----------
     order: Orders n: periods per revolution of the input, in (0, inf); default ()
     gain: Rate gamma at which the amplitudes follow the error [1/s], in [0, inf); default 5.0
-    lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
-    min_speed: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
-    max_frequency: Frequency n |omega| of a wave above which it does not learn [rad/s], in (0, inf); default 100.0
+    lag: Lag t_lag of the position loop [s], in [0, inf); default 0.0
+    min_speed: Least input speed of learning [rad/s], in [0, inf); default 1.0
+    max_frequency: Largest frequency n |omega| of learning [rad/s], in (0, inf); default 100.0
     limit: Largest sine and cosine at the output [rad], in [0, inf); default 0.001
 
     Raises
@@ -360,15 +361,15 @@ class AdaptiveFourier:
 
     @property
     def lag(self) -> float:
-        """Time t_lag that the position loop takes to follow [s]"""
+        """Lag t_lag of the position loop [s]"""
 
     @property
     def min_speed(self) -> float:
-        """Input speed below which it does not learn [rad/s]"""
+        """Least input speed of learning [rad/s]"""
 
     @property
     def max_frequency(self) -> float:
-        """Frequency n |omega| of a wave above which it does not learn [rad/s]"""
+        """Largest frequency n |omega| of learning [rad/s]"""
 
     @property
     def limit(self) -> float:
@@ -394,16 +395,16 @@ class AdaptiveFourier:
 
 class Repetitive:
     """
-    Learning of whatever repeats with every turn of the wave generator, of any shape: a table over the input angle.
+    Learning of errors of any shape that repeat with each turn of the input: a table over the input angle.
 
     .. math:: \\hat e(\\theta) = \\sum_j c_j\\, w_j(\\theta), \\qquad \\dot c_j = \\gamma\\, w_j(\\theta - \\omega\\, t_{lag})\\,
               (r - \\theta_{out}) - \\sigma\\, w_j(\\theta)\\,\\big(c_j - \\tfrac{1}{2}(c_{j-1} + c_{j+1})\\big)
 
-    with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing: the filter Q, which takes away what
-    changes from cell to cell, t_lag = lag of the position loop. The input leads by i e^. It learns where the input speed lies
-    between ``min_speed`` and ``max_speed``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
-    exceeds ``limit``. Orders above 8 are learnt in part only, and what does not repeat with the input, as the second harmonic
-    of the other spline, not at all: AdaptiveFourier takes any order.
+    with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing, t_lag = lag of the position loop.
+    The term of sigma is the filter Q: it removes differences between neighbouring cells. The input leads by i e^. Learning
+    needs an input speed between ``min_speed`` and ``max_speed``. At max_speed the highest order of the error must lag by less
+    than 90 degrees. No value exceeds ``limit``. Orders above 8 are learnt in part only. Errors that do not repeat with each
+    turn of the input are not learnt: AdaptiveFourier learns any order.
 
     >>> from strainwave.compensation import Repetitive
     >>> Repetitive(gain=10.0).limit
@@ -413,9 +414,9 @@ class Repetitive:
     ----------
     gain: Rate gamma at which a cell follows the error [1/s], in [0, inf); default 5.0
     smoothing: Rate sigma at which a cell follows its neighbours [1/s], in [0, inf); default 0.0
-    lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
-    min_speed: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
-    max_speed: Input speed above which it does not learn [rad/s], in (0, inf); default 30.0
+    lag: Lag t_lag of the position loop [s], in [0, inf); default 0.0
+    min_speed: Least input speed of learning [rad/s], in [0, inf); default 1.0
+    max_speed: Largest input speed of learning [rad/s], in (0, inf); default 30.0
     limit: Largest value at the output [rad], in [0, inf); default 0.001
 
     Raises
@@ -445,15 +446,15 @@ class Repetitive:
 
     @property
     def lag(self) -> float:
-        """Time t_lag that the position loop takes to follow [s]"""
+        """Lag t_lag of the position loop [s]"""
 
     @property
     def min_speed(self) -> float:
-        """Input speed below which it does not learn [rad/s]"""
+        """Least input speed of learning [rad/s]"""
 
     @property
     def max_speed(self) -> float:
-        """Input speed above which it does not learn [rad/s]"""
+        """Largest input speed of learning [rad/s]"""
 
     @property
     def limit(self) -> float:
@@ -531,20 +532,20 @@ class NoObserver:
 
 class DisturbanceObserver:
     """
-    Observer of the torque that the drive needs beyond what controller and model expect, and gives at once.
+    Observer of the disturbance torque: its estimate is added to the torque of the motor.
 
     .. math:: \\hat d = \\frac{g}{s + g}\\,\\big(\\tau - \\tau_f - J s\\,(\\omega - \\omega_r)\\big), \\qquad
               \\tau \\leftarrow \\tau + \\operatorname{clip}(\\hat d, \\pm d_{max})
 
-    with tau the torque of the motor, tau_f what is fed forward, omega the input speed, omega_r the commanded one, J = inertia of
-    all that turns with the input, g = bandwidth, d_max = limit. Without a model it supplies friction, load and the torque of
-    acceleration; with one, what the model lacks. The filter is exact for what is constant over a period.
+    with tau the torque of the motor, tau_f the feed-forward, omega the input speed, omega_r its command, J = inertia at the input,
+    g = bandwidth, d_max = limit. Without a model the observer supplies friction, load and inertial torque. With a model it
+    supplies the difference. The filter is exact for a torque that is constant over a period.
 
-    tau is what the motor is given, or, with a torque_constant, that times the current measured: for a Cascade, whose actuation
-    is a voltage. What a law of control feeds forward by gains of its own is not in tau_f, so the observer supplies it once
-    more: set viscous_feedforward and coulomb_feedforward of the law to 0, and let the compensation have the friction. With a
-    period T and a real inertia J_r of what turns, the observer alone is stable if g T J / J_r < 2; above the vibration of the
-    load, J_r is the inertia of the input. A bandwidth near that vibration makes it grow.
+    tau is the actuation of the motor over actuation_per_torque. With a torque_constant it is that times the measured current,
+    as a Cascade needs, whose actuation is a voltage. tau_f does not contain the feed-forward of the law of control, so the
+    observer would supply it twice: set viscous_feedforward and coulomb_feedforward of the law to 0, and compensate friction
+    by the model. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
+    vibration of the load, J_r is the inertia of the input. A bandwidth near that vibration excites it.
 
     >>> from strainwave.compensation import DisturbanceObserver
     >>> DisturbanceObserver(inertia=2e-4, bandwidth=150.0, limit=0.3).bandwidth
@@ -555,7 +556,7 @@ class DisturbanceObserver:
     inertia: Inertia J at the input: rotor, wave generator, and load over ratio squared [kg.m2], in (0, inf); required
     bandwidth: Bandwidth g of the filter [rad/s], in (0, inf); default 100.0
     limit: Largest torque that it adds [N.m], in [0, inf); required
-    torque_constant: Torque per current measured; 0: by what the motor is given [N.m/A], in [0, inf); default 0.0
+    torque_constant: Torque per measured current; 0: the torque by the actuation [N.m/A], in [0, inf); default 0.0
 
     Raises
     ------
@@ -590,7 +591,7 @@ class DisturbanceObserver:
 
     @property
     def torque_constant(self) -> float:
-        """Torque per current measured; 0: by what the motor is given [N.m/A]"""
+        """Torque per measured current; 0: the torque by the actuation [N.m/A]"""
 
     def __repr__(self) -> str: ...
 
@@ -612,7 +613,7 @@ class DisturbanceObserver:
 
 class FrictionScale:
     """
-    Observer of how much more or less friction there is than a model has: it wears, warms up, cools down.
+    Observer of the friction over that of the model. Friction changes with wear and temperature.
 
     .. math:: \\tau \\leftarrow \\tau + (\\hat s - 1) F, \\qquad \\dot{\\hat s} = \\gamma F \\sigma
               \\;\\text{ where } |\\omega_r| \\ge \\omega_{min}, \\qquad \\hat s \\in [s_{min}, s_{max}], \\qquad
@@ -620,10 +621,10 @@ class FrictionScale:
 
     with F the friction of the feed-forward, theta_r, omega_r and theta, omega the input angle and speed commanded
     and measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = min_speed,
-    s_min, s_max = min_scale, max_scale. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
-    J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it
-    must be small. By the speed alone, lambda = 0, a motion of one sense under a position loop does not determine s. Below
-    omega_min it stands still: rest does not determine s, and around a reversal the error is that of the presliding.
+    s_min, s_max = min_scale, max_scale. If the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
+    J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop
+    gamma must be small. With lambda = 0, a motion of one sense under a position loop does not determine s. The scale is
+    constant below omega_min, because rest and presliding do not determine s.
 
     >>> from strainwave.compensation import FrictionScale
     >>> FrictionScale(gain=5.0).max_scale

@@ -20,17 +20,17 @@ struct AdaptiveFourier {
         "BodsonSacksKhosla1994, adaptive feedforward cancellation, over the input angle in place of time; its rate by averaging "
         "(SandersVerhulstMurdock2007)";
     static constexpr auto doc = R"(
-        Learning of what repeats as the wave generator turns: one sine and one cosine for each order.
+        Learning of errors that repeat with the input angle: one sine and one cosine for each order.
 
         .. math:: \hat e = \sum_n a_n \sin n\theta + b_n \cos n\theta, \qquad
                   \dot a_n = \gamma\, (r - \theta_{out}) \sin(n\theta - \varphi_n), \quad
                   \dot b_n = \gamma\, (r - \theta_{out}) \cos(n\theta - \varphi_n), \qquad \varphi_n = n\, \omega\, t_{lag}
 
-        with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag, which the
-        position loop takes to follow. The input leads by i e^. Where the loop follows waves of order n with P(j n omega), a
-        constant error of that order decays as exp(-gamma/2 |P| cos(Delta) t), Delta the angle between P and exp(-j phi_n): it
-        grows beyond 90 degrees, so learning stands still where n |omega| exceeds ``max_frequency``, and where omega is below
-        ``min_speed``. No sine and no cosine exceeds ``limit``. The encoder of the output must see the error; one that errs itself is learnt.
+        with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag of
+        the position loop. The input leads by i e^. Let P(j n omega) be the response of the output to the lead. The amplitude of
+        a constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
+        It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega| is
+        below ``min_speed``. No sine and no cosine exceeds ``limit``. An error of the output encoder itself is learnt as well.
 
         >>> from strainwave.compensation import AdaptiveFourier
         >>> AdaptiveFourier(order=[1, 2]).gain
@@ -40,9 +40,9 @@ struct AdaptiveFourier {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input", smallest));
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which the amplitudes follow the error", 0));
-        visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
-        visit(SW_FIELD(m, min_speed, "rad/s", "Input speed below which it does not learn", 0));
-        visit(SW_FIELD(m, max_frequency, "rad/s", "Frequency n |omega| of a wave above which it does not learn", smallest));
+        visit(SW_FIELD(m, lag, "s", "Lag t_lag of the position loop", 0));
+        visit(SW_FIELD(m, min_speed, "rad/s", "Least input speed of learning", 0));
+        visit(SW_FIELD(m, max_frequency, "rad/s", "Largest frequency n |omega| of learning", smallest));
         visit(SW_FIELD(m, limit, "rad", "Largest sine and cosine at the output", 0));
     }
 

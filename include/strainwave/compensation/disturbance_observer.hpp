@@ -13,20 +13,20 @@ struct DisturbanceObserver {
     static constexpr auto name = "disturbance_observer";
     static constexpr auto source = "OhnishiShibataMurakami1996; SariyildizOboeOhnishi2020, with a low-pass filter of first order";
     static constexpr auto doc = R"(
-        Observer of the torque that the drive needs beyond what controller and model expect, and gives at once.
+        Observer of the disturbance torque: its estimate is added to the torque of the motor.
 
         .. math:: \hat d = \frac{g}{s + g}\,\big(\tau - \tau_f - J s\,(\omega - \omega_r)\big), \qquad
                   \tau \leftarrow \tau + \operatorname{clip}(\hat d, \pm d_{max})
 
-        with tau the torque of the motor, tau_f what is fed forward, omega the input speed, omega_r the commanded one, J = inertia of
-        all that turns with the input, g = bandwidth, d_max = limit. Without a model it supplies friction, load and the torque of
-        acceleration; with one, what the model lacks. The filter is exact for what is constant over a period.
+        with tau the torque of the motor, tau_f the feed-forward, omega the input speed, omega_r its command, J = inertia at the input,
+        g = bandwidth, d_max = limit. Without a model the observer supplies friction, load and inertial torque. With a model it
+        supplies the difference. The filter is exact for a torque that is constant over a period.
 
-        tau is what the motor is given, or, with a torque_constant, that times the current measured: for a Cascade, whose actuation
-        is a voltage. What a law of control feeds forward by gains of its own is not in tau_f, so the observer supplies it once
-        more: set viscous_feedforward and coulomb_feedforward of the law to 0, and let the compensation have the friction. With a
-        period T and a real inertia J_r of what turns, the observer alone is stable if g T J / J_r < 2; above the vibration of the
-        load, J_r is the inertia of the input. A bandwidth near that vibration makes it grow.
+        tau is the actuation of the motor over actuation_per_torque. With a torque_constant it is that times the measured current,
+        as a Cascade needs, whose actuation is a voltage. tau_f does not contain the feed-forward of the law of control, so the
+        observer would supply it twice: set viscous_feedforward and coulomb_feedforward of the law to 0, and compensate friction
+        by the model. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
+        vibration of the load, J_r is the inertia of the input. A bandwidth near that vibration excites it.
 
         >>> from strainwave.compensation import DisturbanceObserver
         >>> DisturbanceObserver(inertia=2e-4, bandwidth=150.0, limit=0.3).bandwidth
@@ -38,7 +38,7 @@ struct DisturbanceObserver {
                           smallest));
         visit(SW_FIELD(m, bandwidth, "rad/s", "Bandwidth g of the filter", smallest));
         visit(SW_REQUIRED(m, limit, "N.m", "Largest torque that it adds", 0));
-        visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current measured; 0: by what the motor is given", 0));
+        visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per measured current; 0: the torque by the actuation", 0));
     }
 
     struct State {

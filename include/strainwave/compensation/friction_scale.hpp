@@ -14,7 +14,7 @@ struct FrictionScale {
     static constexpr auto name = "friction_scale";
     static constexpr auto source = "SlotineLi1991, section 8.2: gradient of a Lyapunov function, linear in the unknown";
     static constexpr auto doc = R"(
-        Observer of how much more or less friction there is than a model has: it wears, warms up, cools down.
+        Observer of the friction over that of the model. Friction changes with wear and temperature.
 
         .. math:: \tau \leftarrow \tau + (\hat s - 1) F, \qquad \dot{\hat s} = \gamma F \sigma
                   \;\text{ where } |\omega_r| \ge \omega_{min}, \qquad \hat s \in [s_{min}, s_{max}], \qquad
@@ -22,10 +22,10 @@ struct FrictionScale {
 
         with F the friction of the feed-forward, theta_r, omega_r and theta, omega the input angle and speed commanded
         and measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = min_speed,
-        s_min, s_max = min_scale, max_scale. Where the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
-        J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop it
-        must be small. By the speed alone, lambda = 0, a motion of one sense under a position loop does not determine s. Below
-        omega_min it stands still: rest does not determine s, and around a reversal the error is that of the presliding.
+        s_min, s_max = min_scale, max_scale. If the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
+        J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop
+        gamma must be small. With lambda = 0, a motion of one sense under a position loop does not determine s. The scale is
+        constant below omega_min, because rest and presliding do not determine s.
 
         >>> from strainwave.compensation import FrictionScale
         >>> FrictionScale(gain=5.0).max_scale

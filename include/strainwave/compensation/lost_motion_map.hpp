@@ -15,14 +15,14 @@ struct LostMotionMap {
     static constexpr auto name = "lost_motion_map";
     static constexpr auto source = "document T, which asks for maps of compensation; between the two branches: Dahl1968";
     static constexpr auto doc = R"(
-        Lost motion as it was measured: how far the input must lead, over the output angle, for each sense of motion.
+        Lead of the input by a table of measured lost motion over the output angle, for each sense of motion.
 
         .. math:: \theta = i\,\Big(r + \tfrac{1 + s}{2} f(r) + \tfrac{1 - s}{2} b(r)\Big), \qquad
                   ds = (\operatorname{sgn}(dr) - s)\, \frac{|dr|}{r_0}
 
-        with r the commanded output angle, f and b the lines through forward and backward over angle, which rises; beyond its ends
-        they stay as they are there. s is the sense of motion, r_0 = reach: so far after a reversal 1/e of the lost motion is
-        left to take up; before the first motion s = 0, the middle of both. It needs no model, and knows nothing of load and speed.
+        with r the commanded output angle, f and b the lines through forward and backward over angle. angle increases; beyond its ends
+        f and b are constant. s is the sense of motion: at an angle r_0 = reach after a reversal 1/e of the lost motion is left.
+        Before the first motion s = 0, the middle of both. The map needs no model. It does not depend on load and speed.
 
         >>> from strainwave.compensation import LostMotionMap
         >>> LostMotionMap(angle=[0.0], forward=[2e-4], backward=[-2e-4]).reach

@@ -56,27 +56,28 @@ struct ModelFeedforward {
         "Banach1922; "
         "presliding of the sense of friction: Dahl1968";
     static constexpr auto doc = R"(
-        What a model of the drive asks for so that the output moves as it is commanded, before any error.
+        Feed-forward of a model of the drive: the input angle and torque that move the output along its command.
 
         .. math:: T = J_{out} \ddot r + T_{load}(r, \dot r) + F_{out}, \qquad \delta: T_{gear}(\delta, \text{history}) = T, \qquad
                   \theta = i\,(r + e(\theta) + \delta)
 
         .. math:: \tau = J_{in} \ddot\theta + (T + F_{mesh})\,(1/i - e'(\theta)) + F_{in}
 
-        with r the commanded output angle, i the signed ratio, T the torque that the gear must transmit, delta its twist, e its
-        kinematic error, theta the input angle that belongs to all that, J_in = motor_inertia + gear.input_inertia. The controller
-        is given theta - i r as a lead of the input, and tau. ``gear`` and ``load`` are what is known of the drive: an effect
-        that is left out of them is not compensated.
+        with r the commanded output angle, i the signed ratio, T the torque that the gear transmits, delta its twist, e its kinematic
+        error, theta the input angle, J_in = motor_inertia + gear.input_inertia. The request is the lead theta - i r of the
+        input, and the torque tau. ``gear`` and ``load`` are the model. An effect that the model lacks is not compensated.
 
-        theta is found by ``rounds`` rounds of theta <- i (r + e(theta) + delta), which converge if q = |i| max|e'| < 1: each
-        leaves at most the share q of the error before. delta is found on the branch of the hysteresis that the command follows.
-        Rates are differences over a period, so inertia comes half a period late. A set-valued friction acts in the sense s of
-        the motion, which does not jump where the command turns back: ds = (sgn(d theta) - s) |d theta| / presliding, as a
-        contact does that bends before it slides; laws with bristles have that of their own. friction_share takes part of all
-        friction: less than 1 where the model may have too much of it, since friction compensated more than once drives by itself.
+        The fixed point theta <- i (r + e(theta) + delta) is repeated ``rounds`` times. It converges if q = |i| max|e'| < 1: each
+        round reduces the error to at most the share q. delta lies on the branch of the hysteresis that the command follows.
+        Rates are differences over a period, so the torque of inertia is half a period late.
 
-        Valid where the motion is slow against the vibration of load and gear. Leaves out damping of the spring, noise, bodies
-        within the gear and the variation of the stiffness. The temperature is taken to be ``temperature``.
+        A set-valued friction acts in the sense s of the motion. At a reversal s changes gradually, as bristles bend before they
+        slide: ds = (sgn(d theta) - s) |d theta| / presliding. Laws with bristles have presliding of their own. friction_share is
+        the share of the friction that is compensated. Use less than 1 if the model may have too much friction: compensation
+        beyond the true friction drives the joint by itself.
+
+        Valid if the motion is slow against the vibration of load and gear. The model has no damping of the spring, no noise, no
+        bodies within the gear and no variation of the stiffness. Its temperature is constant.
 
         >>> import strainwave as sw
         >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05))
@@ -85,12 +86,12 @@ struct ModelFeedforward {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, gear, "What is known of the gear"));
-        visit(SW_PART(m, load, "What the output carries"));
+        visit(SW_PART(m, gear, "Model of the gear"));
+        visit(SW_PART(m, load, "Model of the load"));
         visit(SW_FIELD(m, motor_inertia, "kg.m2", "Inertia of the motor's rotor", 0));
         visit(SW_FIELD(m, presliding, "rad", "Input angle over which the old sense of set-valued friction falls to 1/e", smallest));
-        visit(SW_FIELD(m, friction_share, "1", "Share of the friction that is asked for", 0, 1));
-        visit(SW_FIELD(m, rounds, "1", "Rounds in which the kinematic error is found; 0 leaves it out", 0, 8));
+        visit(SW_FIELD(m, friction_share, "1", "Share of the friction that is compensated", 0, 1));
+        visit(SW_FIELD(m, rounds, "1", "Rounds of the fixed point; 0 leaves the kinematic error out", 0, 8));
         visit(SW_FIELD(m, temperature, "K", "Temperature of the gear", smallest));
     }
 
@@ -124,10 +125,10 @@ struct ModelFeedforward {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_PART(m, gear, "What the model of the gear remembers"));
+            visit(SW_PART(m, gear, "States of hysteresis and friction of the model"));
             visit(SW_FIELD(m, twist, "rad", "Twist of the model"));
             visit(SW_FIELD(m, speed, "rad/s", "Output speed commanded"));
-            visit(SW_FIELD(m, lead_rate, "rad/s", "How fast the input led the rigid motion"));
+            visit(SW_FIELD(m, lead_rate, "rad/s", "Rate of the lead of the input"));
             visit(SW_FIELD(m, sense, "1", "Sense of friction, in [-1, 1]"));
             visit(SW_FIELD(m, begun, "1", "1 after the first instant"));
         }
@@ -182,7 +183,7 @@ struct ModelFeedforward {
 
 private:
     using Contact = friction::Contact<S>;
-    /// True if the output moves as its load says, whatever the torque; asked of a choice, of the load chosen.
+    /// True for a load that prescribes the motion of the output. For a choice, that of the chosen load.
     template <class Carried>
     static constexpr bool moves_output(const Carried& carried) {
         if constexpr (requires { carried.model; })
@@ -192,14 +193,14 @@ private:
     }
     static constexpr double least_follow = 0.1;  ///< share of the commanded speed that the input keeps where the error is steep
 
-    /// The torque of a friction, in the state that the motion left it in; `next` is that a period on.
+    /// Friction torque after one more period of motion. Sets `next` to the state after it.
     template <class Law>
     static constexpr S slid(const Law& law, const typename Law::State& x, const Contact& at, const S& period,
                             typename Law::State& next) {
         next = friction::clamped(law, friction::update_mode(law, friction::advance(law, x, at, period), at), at);
         return friction::torque(law, next, at);
     }
-    /// The kinematic error where the input must stand.
+    /// The kinematic error at the input angle that the command needs.
     constexpr kinematic_error::Error<S> engaged(const control::Command<S>& command, const S& twist, const S& torque) const {
         const S relief = kinematic_error::relief(gear.kinematic_error, torque).factor;
         kinematic_error::Error<S> found{};

@@ -19,16 +19,16 @@ struct Repetitive {
         "HaraYamamotoOmataNakano1988, repetitive control with a filter Q, over the input angle in place of time and with local "
         "functions in place of a delay";
     static constexpr auto doc = R"(
-        Learning of whatever repeats with every turn of the wave generator, of any shape: a table over the input angle.
+        Learning of errors of any shape that repeat with each turn of the input: a table over the input angle.
 
         .. math:: \hat e(\theta) = \sum_j c_j\, w_j(\theta), \qquad \dot c_j = \gamma\, w_j(\theta - \omega\, t_{lag})\,
                   (r - \theta_{out}) - \sigma\, w_j(\theta)\,\big(c_j - \tfrac{1}{2}(c_{j-1} + c_{j+1})\big)
 
-        with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing: the filter Q, which takes away what
-        changes from cell to cell, t_lag = lag of the position loop. The input leads by i e^. It learns where the input speed lies
-        between ``min_speed`` and ``max_speed``, at which a wave of the highest order learnt may lag by no more than 90 degrees; no value
-        exceeds ``limit``. Orders above 8 are learnt in part only, and what does not repeat with the input, as the second harmonic
-        of the other spline, not at all: AdaptiveFourier takes any order.
+        with w_j the hat functions of 32 equal cells of a turn, gamma = gain, sigma = smoothing, t_lag = lag of the position loop.
+        The term of sigma is the filter Q: it removes differences between neighbouring cells. The input leads by i e^. Learning
+        needs an input speed between ``min_speed`` and ``max_speed``. At max_speed the highest order of the error must lag by less
+        than 90 degrees. No value exceeds ``limit``. Orders above 8 are learnt in part only. Errors that do not repeat with each
+        turn of the input are not learnt: AdaptiveFourier learns any order.
 
         >>> from strainwave.compensation import Repetitive
         >>> Repetitive(gain=10.0).limit
@@ -38,9 +38,9 @@ struct Repetitive {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which a cell follows the error", 0));
         visit(SW_FIELD(m, smoothing, "1/s", "Rate sigma at which a cell follows its neighbours", 0));
-        visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
-        visit(SW_FIELD(m, min_speed, "rad/s", "Input speed below which it does not learn", 0));
-        visit(SW_FIELD(m, max_speed, "rad/s", "Input speed above which it does not learn", smallest));
+        visit(SW_FIELD(m, lag, "s", "Lag t_lag of the position loop", 0));
+        visit(SW_FIELD(m, min_speed, "rad/s", "Least input speed of learning", 0));
+        visit(SW_FIELD(m, max_speed, "rad/s", "Largest input speed of learning", smallest));
         visit(SW_FIELD(m, limit, "rad", "Largest value at the output", 0));
     }
 
@@ -49,7 +49,7 @@ struct Repetitive {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, value, "rad", "Value at the begin of each cell"));
+            visit(SW_FIELD(m, value, "rad", "Value at the beginning of each cell"));
         }
     };
 
