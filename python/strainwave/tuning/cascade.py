@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from strainwave import Compensation, Drive, Gear, compensation, control, friction, loads, motor, stiffness
+from strainwave import Compensation, Drive, Gear, _core, compensation, control, friction, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
 from strainwave.tuning.steady_torque import steady_torque
@@ -21,6 +21,7 @@ FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose frictio
 ANGLES = 64  # of a turn of the input, over which friction is averaged
 LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor that states no limit, beside that of acceleration
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
+MAX_VIBRATION = 1e6  # rad/s of the fastest vibration: steps of 1 us, of which a motion of seconds has millions
 
 
 def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
@@ -63,10 +64,10 @@ class Plant:
 
         Raises:
             ValueError: the set has no motor or no load, the load prescribes the motion, or the motor takes neither a current, a
-                torque nor a voltage
+                torque nor a voltage, or the inertia of the load is too small
         """
-        drive = gear_set.drive
-        if type(drive.load) is loads.Prescribed:
+        drive, load = gear_set.drive, gear_set.drive.load
+        if isinstance(load, loads.Prescribed):
             raise ValueError(f"{gear_set.name}: the load prescribes the motion of the output; give one with an inertia")
         constant = torque_constant(drive.motor)
         inertia = drive.motor.inertia
@@ -74,7 +75,13 @@ class Plant:
             torque_constant=constant, inertia=inertia)  # fmt: skip
         per_torque = 1.0 if constant is None else 1.0 / constant
         limit = getattr(drive.motor, "current_limit", None) or per_torque * _usual_limit(drive)
-        return cls(drive.replace(motor=ideal, control=control.OpenLoop()), per_torque, float(limit), period, delay)
+        plain = drive.replace(motor=ideal, control=control.OpenLoop())
+        if (vibration := _core.max_rate(plain, 0.0)) > MAX_VIBRATION:
+            raise ValueError(
+                f"{gear_set.name}: load and gear vibrate at up to {vibration:.3g} rad/s, and {MAX_VIBRATION:g} are the most; "
+                f"load.inertia is {load.inertia:g} kg.m2: state that of the real load"
+            )
+        return cls(plain, per_torque, float(limit), period, delay)
 
     @property
     def ratio(self) -> float:

@@ -273,6 +273,11 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
     """Yield what was assumed, and what cannot be gained."""
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
+    if not plant.drive.motor.inertia:
+        yield (
+            "the inertia of the motor is 0, and that of the load may contain it: with the true one, that of a data sheet, a "
+            "faster cascade is possible, and a compensation gains less"
+        )
     if cogging := getattr(gear_set.motor, "cogging_torque", 0.0):
         yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
     for effect in EFFECTS:

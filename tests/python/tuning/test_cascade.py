@@ -79,3 +79,10 @@ def test_what_cannot_be_compensated_is_refused(parts: dict[str, object], words: 
     drive = sw.Drive(**({"gear": GEAR, "motor": sw.motor.TorqueSource(inertia=1e-4), "load": ARM} | parts))
     with pytest.raises(ValueError, match=words):
         Plant.of(sw.GearSet.of(drive, name="joint", source="stated"), 1e-3, 0.0)
+
+
+def test_a_load_without_inertia_is_refused() -> None:
+    """A log at constant speed determines no inertia, and `identify` writes 1e-12 kg.m2."""
+    drive = sw.Drive(gear=GEAR, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=1e-12))
+    with pytest.raises(ValueError, match=r"joint: load and gear vibrate at up to 1\.73e\+08 rad/s.*inertia is 1e-12 kg\.m2"):
+        Plant.of(sw.GearSet.of(drive, name="joint", source="stated"), 1e-3, 0.0)

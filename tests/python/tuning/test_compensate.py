@@ -115,3 +115,11 @@ def test_the_cascade_supplies_no_friction_twice() -> None:
     momentum = observer.bandwidth * observer.inertia * (run["input_speed"][-1] - 100.0 * 0.2)
     estimate = run.end["control.compensation.observer.filtered"] - momentum
     assert abs(estimate) < 0.01 * 0.05
+
+
+def test_a_motor_without_inertia_is_remarked() -> None:
+    """The load then contains it, so the cascade is slower than that of the joint."""
+    joint = sw.GearSet.read("robot-joint")
+    bare = joint.with_parts(motor=joint.motor.replace(inertia=0.0), source="changed")
+    assert any("the inertia of the motor is 0" in each for each in sw.compensate(bare, members=3).remarks)
+    assert not any("the inertia of the motor" in each for each in sw.compensate(joint, members=3).remarks)
