@@ -49,6 +49,7 @@ ELSEWHERE = {
     "NoObserver": {"compensation/compensation.hpp": NOTHING},
     "NoLearning": {"compensation/compensation.hpp": NOTHING},
     "NoFeedforward": {"compensation/compensation.hpp": NOTHING},
+    "NoDither": {"compensation/compensation.hpp": NOTHING},
     "ThermalSoftening": {"compensation/model_feedforward.hpp": MODEL},
     "Fourier": {
         "compensation/model_feedforward.hpp": MODEL,

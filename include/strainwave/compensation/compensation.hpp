@@ -6,12 +6,12 @@
 namespace strainwave {
 
 /// States of the feed-forward, the learner, the observer and the dither.
-template <class S, class Feedforward, class Learning, class Observer, class Dither>
+template <class S, class Feedforward, class Learning, class Observer, class Dither_>
 struct CompensationStates {
     Feedforward feedforward{};
     Learning learning{};
     Observer observer{};
-    Dither dither{};
+    Dither_ dither{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -23,12 +23,12 @@ struct CompensationStates {
 };
 
 template <class S, class Feedforward = compensation::NoFeedforward<S>, class Learning = compensation::NoLearning<S>,
-          class Observer = compensation::NoObserver<S>, class Dither = compensation::NoDither<S>>
+          class Observer = compensation::NoObserver<S>, class Dither_ = compensation::NoDither<S>>
 struct Compensation {
     Feedforward feedforward{};
     Learning learning{};
     Observer observer{};
-    Dither dither{};
+    Dither_ dither{};
     S actuation_per_torque{1.0};
     S actuation_per_speed{0.0};
 
@@ -74,7 +74,7 @@ struct Compensation {
     }
 
     using State = CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State,
-                                     typename Dither::State>;
+                                     typename Dither_::State>;
     constexpr State initial_state() const {
         return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer),
                 strainwave::initial_state(dither)};
@@ -83,7 +83,7 @@ struct Compensation {
     /// Requests of the compensators at one sampling instant.
     struct Instant {
         typename Feedforward::State next_feedforward;  ///< state after the period
-        typename Dither::State next_dither;            ///< likewise
+        typename Dither_::State next_dither;           ///< likewise
         compensation::Inputs<S> learning_inputs, observer_inputs;
         compensation::Request<S> learning_request, observer_request;
 
