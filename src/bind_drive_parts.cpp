@@ -9,6 +9,7 @@ void bind_drive_parts(nb::module_& core) {
     bind_list<FeedforwardVerbs>(core, compensation, "feedforward", strainwave::compensation::Feedforwards{});
     bind_list<NoVerbs>(core, compensation, "learning", strainwave::compensation::Learners{});
     bind_list<NoVerbs>(core, compensation, "observer", strainwave::compensation::Observers{});
+    bind_list<NoVerbs>(core, compensation, "dither", strainwave::compensation::Dithers{});
     const Bound<ParameterCompensation> whole{bind<ParameterCompensation>(core, "Compensation", "compensation"),
                                              description_of<ParameterCompensation>()};
     property(whole, "active", "bool", "Whether it makes any difference.",

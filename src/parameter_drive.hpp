@@ -86,11 +86,15 @@ template <class S, class Gear, class Load>
 struct AtRunTime<S, compensation::ModelFeedforward<S, Gear, Load>> {
     using type = compensation::ModelFeedforward<S, AnyGear<S>, AnyOf<S, load::Models>>;
 };
+template <class S, class Law>
+struct AtRunTime<S, compensation::BristleObserver<S, Law>> {
+    using type = compensation::BristleObserver<S, AnyOf<S, friction::Models>>;
+};
 template <class S, class Law, class Compensation_>
 struct AtRunTime<S, control::Sampled<S, Law, Compensation_>> {
-    using type = control::Sampled<
-        S, AnyOf<S, control::Continuous>,
-        Compensation<S, AnyOf<S, compensation::Feedforwards>, AnyOf<S, compensation::Learners>, AnyOf<S, compensation::Observers>>>;
+    using type = control::Sampled<S, AnyOf<S, control::Continuous>,
+                                  Compensation<S, AnyOf<S, compensation::Feedforwards>, AnyOf<S, compensation::Learners>,
+                                               AnyOf<S, compensation::Observers>, AnyOf<S, compensation::Dithers>>>;
 };
 
 }  // namespace detail

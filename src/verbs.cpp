@@ -150,7 +150,7 @@ void variation_verbs(const BoundLaw& of) {
 }
 
 void feedforward_verbs(const BoundLaw& of) {
-    using Part = general::Feedforward<double>;
+    using Part = general::Feedforward<double, general::Requests::feedforward>;
     define_verb(
         of.type, of.description, "requests",
         {{"angle", SW_NUMBERS}, {"speed", SW_NUMBERS}, {"ratio", "float"}, {"period", "float"}},

@@ -49,6 +49,7 @@ ELSEWHERE = {
     "NoObserver": {"compensation/compensation.hpp": NOTHING},
     "NoLearning": {"compensation/compensation.hpp": NOTHING},
     "NoFeedforward": {"compensation/compensation.hpp": NOTHING},
+    "NoDither": {"compensation/compensation.hpp": NOTHING},
     "ThermalSoftening": {"compensation/model_feedforward.hpp": MODEL},
     "Fourier": {
         "compensation/model_feedforward.hpp": MODEL,
@@ -88,6 +89,7 @@ ELSEWHERE = {
     },
     "CurrentSource": {"identification/kinds/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
+        "compensation/bristle_observer.hpp": "what follows the measured motion by default",
         "compensation/model_feedforward.hpp": MODEL,
         "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
@@ -129,6 +131,7 @@ ELSEWHERE = {
         "sensor/noisy.hpp": "what it adds noise to by default",
         "sensor/quantised.hpp": "what it reads in steps by default",
     },
+    "BristleObserver": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Delayed": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Noisy": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Quantised": {"parameter_drive.hpp": BOUND_TO_ANY},

@@ -7,6 +7,7 @@ import numpy
 import numpy.typing
 
 import strainwave._core
+import strainwave.friction
 import strainwave.loads
 
 
@@ -690,6 +691,251 @@ class FrictionScale:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'friction_scale'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class BristleObserver:
+    """
+    Observer of friction: a law of friction follows the measured input, and the motor supplies its torque.
+
+    .. math:: \\tau \\leftarrow \\tau - \\tau_{fric} + \\rho\\, \\hat s\\, F(\\hat z, \\theta, \\omega), \\qquad
+              \\dot{\\hat z} = f(\\hat z, v), \\quad v = \\omega + k \\sigma, \\qquad
+              \\sigma = \\omega_r - \\omega + \\lambda\\, (\\theta_r - \\theta)
+
+    .. math:: \\dot{\\hat s} = \\gamma \\rho F \\sigma \\;\\text{ where } |\\omega_r| \\ge \\omega_{min}, \\qquad
+              \\hat s \\in [s_{min}, s_{max}]
+
+    with ``friction`` the law of all friction at the input, F its torque, z its bristles, theta, omega and theta_r, omega_r the
+    input angle and speed measured and commanded, rho = friction_share, k = bristle_gain, lambda = position_gain, gamma = gain.
+    tau_fric is the friction that the feed-forward already requests. It is taken off, so no friction is supplied twice.
+
+    k = 0 bends the bristles by the measured speed alone: friction is supplied after the input has moved. k = 1 bends them by
+    omega_r + lambda (theta_r - theta), so a shaft at rest receives more torque until it breaks away, at most the breakaway
+    torque. Bristles never leave their bounds. A set-valued law acts in the sense s of v, as
+    ds = (sgn(v) - s) |v| dt / presliding. F is evaluated at the measured speed. Its load is the rest of the torque that the
+    feed-forward requests.
+
+    The scale converges to the true one over rho. rho s_max is the largest share of the friction of the law that is
+    supplied: keep it below the true scale if over-compensation must not occur. Over-compensated friction drives the shaft by
+    itself, because the compensation follows the measured motion. Where the loop gives k_c sigma with an inertia
+    J <= k_c / lambda, and F is exact, J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s/rho - s^)^2 / gamma never grows.
+    Below omega_min of the command the scale stands still.
+
+    >>> import strainwave as sw
+    >>> law = sw.friction.Coulomb(coulomb=0.05, breakaway=0.07)
+    >>> sw.compensation.BristleObserver(friction=law, friction_share=0.9, gain=5.0).max_scale
+    1.5
+
+    Parameters
+    ----------
+    friction: Law of all friction, at the input; default Viscous(viscous=0.0)
+    friction_share: Share rho of the friction that is supplied, in [0, 1]; default 1.0
+    bristle_gain: Share k of the error that bends the bristles, in [0, 10]; default 0.0
+    position_gain: Weight lambda of the error of the input angle [1/s], in [0, inf); default 20.0
+    gain: Rate gamma of the scale per friction and error sigma; 0: constant scale [1/(N.m.rad)], in [0, inf); default 0.0
+    min_scale: Least scale s_min, of the friction of the law, in [0, 1]; default 0.5
+    max_scale: Largest scale s_max, in [1, 10]; default 1.5
+    min_speed: Slowest commanded input speed omega_min that determines the scale [rad/s], in [0, inf); default 1.0
+    presliding: Input angle over which the old sense of set-valued friction falls to 1/e [rad], in (0, inf); default 0.002
+    temperature: Temperature of the friction [K], in (0, inf); default 293.15
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    CanudasDeWit1995: bristles that follow the measured speed and the error; scale: SlotineLi1991, section 8.2; presliding of the sense of friction: Dahl1968
+    """
+
+    def __init__(self, *, friction: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.MixedLubrication | strainwave.friction.CurvedViscous | strainwave.friction.AngleSpeedMap | strainwave.friction.TorqueEfficiency | strainwave.friction.Asymmetric | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_share: float = ..., bristle_gain: float = ..., position_gain: float = ..., gain: float = ..., min_scale: float = ..., max_scale: float = ..., min_speed: float = ..., presliding: float = ..., temperature: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, friction: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.MixedLubrication | strainwave.friction.CurvedViscous | strainwave.friction.AngleSpeedMap | strainwave.friction.TorqueEfficiency | strainwave.friction.Asymmetric | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_share: float = ..., bristle_gain: float = ..., position_gain: float = ..., gain: float = ..., min_scale: float = ..., max_scale: float = ..., min_speed: float = ..., presliding: float = ..., temperature: float = ...) -> BristleObserver:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def friction(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.MixedLubrication | strainwave.friction.CurvedViscous | strainwave.friction.AngleSpeedMap | strainwave.friction.TorqueEfficiency | strainwave.friction.Asymmetric | strainwave.friction.Cyclic | strainwave.friction.Thermal:
+        """Law of all friction, at the input"""
+
+    @property
+    def friction_share(self) -> float:
+        """Share rho of the friction that is supplied"""
+
+    @property
+    def bristle_gain(self) -> float:
+        """Share k of the error that bends the bristles"""
+
+    @property
+    def position_gain(self) -> float:
+        """Weight lambda of the error of the input angle [1/s]"""
+
+    @property
+    def gain(self) -> float:
+        """
+        Rate gamma of the scale per friction and error sigma; 0: constant scale [1/(N.m.rad)]
+        """
+
+    @property
+    def min_scale(self) -> float:
+        """Least scale s_min, of the friction of the law"""
+
+    @property
+    def max_scale(self) -> float:
+        """Largest scale s_max"""
+
+    @property
+    def min_speed(self) -> float:
+        """
+        Slowest commanded input speed omega_min that determines the scale [rad/s]
+        """
+
+    @property
+    def presliding(self) -> float:
+        """
+        Input angle over which the old sense of set-valued friction falls to 1/e [rad]
+        """
+
+    @property
+    def temperature(self) -> float:
+        """Temperature of the friction [K]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'bristle_observer'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class NoDither:
+    """
+    No dither: no torque swings around zero.
+
+    .. math:: \\tau_d = 0
+
+    >>> from strainwave.compensation import NoDither
+    >>> NoDither()
+    NoDither()
+
+    Parameters
+    ----------
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition
+    """
+
+    def __init__(self) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /) -> NoDither:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'no_dither'
+
+    source: str = 'definition'
+
+    fields: tuple[dict[str, Any], ...]
+
+    @property
+    def active(self) -> bool:
+        """Whether it makes any difference."""
+
+class Dither:
+    """
+    Torque that swings around zero, so that the input never rests: the mean of its friction becomes smooth over the speed.
+
+    .. math:: \\tau_d = A \\sin(2 \\pi \\varphi)\\, \\operatorname{sgn}(\\dot r), \\qquad \\dot\\varphi = f \\;\\text{ where } \\dot r \\ne 0
+
+    with r the commanded output angle, A = amplitude, f = frequency. The phase stands still while the command rests. An inertia J at
+    the input swings with the speed a = (A - F) / (2 pi f J) at most, F being its friction. The mean of Coulomb friction F_c
+    at a mean speed v is then (2 / pi) F_c asin(v / a) for v < a, a viscous friction of about 2 F_c / (pi a), in place of a
+    jump. So A must exceed the breakaway torque by 2 pi f J v.
+
+    Keep f above the bandwidth of the speed loop, away from the vibrations of the drive, and at most a tenth of the sample
+    rate: the controller holds the torque over a period. Dither heats the motor, wears the gear, and can be heard. It moves
+    friction at the input only: the output follows with the share that gear and load let through.
+
+    >>> from strainwave.compensation import Dither
+    >>> Dither(amplitude=0.05, frequency=80.0).frequency
+    80.0
+
+    Parameters
+    ----------
+    amplitude: Amplitude A, of the motor [N.m], in [0, inf); default 0.0
+    frequency: Frequency f [Hz], in (0, inf); default 50.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    ArmstrongHelouvry1994; mean of Coulomb friction, by the dual-input describing function: GelbVanderVelde1968
+    """
+
+    def __init__(self, *, amplitude: float = ..., frequency: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, amplitude: float = ..., frequency: float = ...) -> Dither:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def amplitude(self) -> float:
+        """Amplitude A, of the motor [N.m]"""
+
+    @property
+    def frequency(self) -> float:
+        """Frequency f [Hz]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'dither'
 
     source: str = ...
 

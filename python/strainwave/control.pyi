@@ -656,7 +656,7 @@ class Sampled:
     Parameters
     ----------
     law: What is worked out at each instant; default OpenLoop(gain=1.0)
-    compensation: What is known of the drive, and asked for beside the error; default Compensation(feedforward=NoFeedforward(), learning=NoLearning(), observer=NoObserver(), actuation_per_torque=1.0, actuation_per_speed=0.0)
+    compensation: What is known of the drive, and asked for beside the error; default Compensation(feedforward=NoFeedforward(), learning=NoLearning(), observer=NoObserver(), dither=NoDither(), actuation_per_torque=1.0, actuation_per_speed=0.0)
     period: Time from one sample to the next [s], in (0, inf); default 0.001
     delay: Time from a sample to the output that is worked out from it [s], in [0, inf); default 0.0
 

@@ -21,6 +21,15 @@ struct Around<compensation::ModelFeedforward<double>, ModelWithin> : AroundModel
 template <>
 struct Around<compensation::ModelFeedforward<Slope>, ModelWithin> : AroundModel<Slope> {};
 
+template <Requests list>
+struct RequestList {
+    using type = compensation::Feedforwards;
+};
+template <>
+struct RequestList<Requests::dither> {
+    using type = compensation::Dithers;
+};
+
 template <Corrections list>
 struct CorrectionList {
     using type = compensation::Learners;
@@ -32,27 +41,27 @@ struct CorrectionList<Corrections::observer> {
 
 }  // namespace detail
 
-template <class S>
-using FeedforwardLaws = Laws<S, compensation::Feedforwards, ModelWithin>;
+template <class S, Requests list>
+using FeedforwardLaws = Laws<S, typename detail::RequestList<list>::type, ModelWithin>;
 template <class S, Corrections list>
-using CorrectionLaws = Laws<S, typename detail::CorrectionList<list>::type>;
+using CorrectionLaws = Laws<S, typename detail::CorrectionList<list>::type, Friction<S>>;
 
-template <class S>
-void Feedforward<S>::read(kernel::Reader<S>& from) {
-    FeedforwardLaws<S>::read(*this, from);
+template <class S, Requests list>
+void Feedforward<S, list>::read(kernel::Reader<S>& from) {
+    FeedforwardLaws<S, list>::read(*this, from);
 }
-template <class S>
-void Feedforward<S>::places(Places& found) const {
-    FeedforwardLaws<S>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
+template <class S, Requests list>
+void Feedforward<S, list>::places(Places& found) const {
+    FeedforwardLaws<S, list>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
 }
-template <class S>
-auto Feedforward<S>::initial_state() const -> State {
-    return FeedforwardLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+template <class S, Requests list>
+auto Feedforward<S, list>::initial_state() const -> State {
+    return FeedforwardLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
 }
-template <class S>
-auto Feedforward<S>::step(const State& x, const control::Command<S>& command, const S& period) const
+template <class S, Requests list>
+auto Feedforward<S, list>::step(const State& x, const control::Command<S>& command, const S& period) const
     -> compensation::RequestAndState<S, State> {
-    return FeedforwardLaws<S>::visit(*this, [&](const auto& law) -> compensation::RequestAndState<S, State> {
+    return FeedforwardLaws<S, list>::visit(*this, [&](const auto& law) -> compensation::RequestAndState<S, State> {
         const auto found = law.step(own<S>(law, x), command, period);
         return {found.request, packed<State>(found.next)};
     });
@@ -81,7 +90,11 @@ auto Correction<S, list>::advance(const State& x, const compensation::Inputs<S>&
         *this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), inputs, request, motor_torque, period)); });
 }
 
-SW_GENERAL(Feedforward)
+#define SW_FEEDFORWARDS(list)                  \
+    template struct Feedforward<double, list>; \
+    template struct Feedforward<Slope, list>;
+SW_FEEDFORWARDS(Requests::feedforward)
+SW_FEEDFORWARDS(Requests::dither)
 #define SW_CORRECTIONS(list)                  \
     template struct Correction<double, list>; \
     template struct Correction<Slope, list>;

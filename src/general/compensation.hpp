@@ -5,10 +5,13 @@
 
 namespace strainwave::general {
 
-/// A feed-forward by any law.
-template <class S>
+/// Lists of compensators that go by the command alone.
+enum class Requests { feedforward, dither };
+
+/// A feed-forward or a dither by any law.
+template <class S, Requests list>
 struct Feedforward : Part {
-    using State = Storage<S, 96, 0>;
+    using State = Storage<S, list == Requests::feedforward ? 96 : 4, 0>;
 
     void read(kernel::Reader<S>& from);
     void places(Places& found) const;
@@ -35,6 +38,7 @@ struct Correction : Part {
 };
 
 template <class S>
-using AnyCompensation = Compensation<S, Feedforward<S>, Correction<S, Corrections::learning>, Correction<S, Corrections::observer>>;
+using AnyCompensation = Compensation<S, Feedforward<S, Requests::feedforward>, Correction<S, Corrections::learning>,
+                                     Correction<S, Corrections::observer>, Feedforward<S, Requests::dither>>;
 
 }  // namespace strainwave::general

@@ -162,6 +162,56 @@ class FrictionScale:
 
 
 @dataclass
+class BristleObserver:
+    """With a LuGre law of constant bristle damping."""
+
+    law: sw.compensation.BristleObserver
+    deflection: float = 0.0
+    scale: float = 1.0
+    torque: float = 0.0
+
+    def reach(self, speed: float) -> float:
+        """Deflection in steady sliding [rad]."""
+        lugre: Any = self.law.friction
+        excess = (lugre.breakaway - lugre.coulomb) * np.exp(-((speed / lugre.stribeck_speed) ** 2))
+        return float((lugre.coulomb + excess) / lugre.bristle_stiffness)
+
+    def add(self, now: Instant) -> None:
+        lugre: Any = self.law.friction
+        speed = now.seen.input_speed
+        rate = speed - abs(speed) * self.deflection / self.reach(speed)
+        self.torque = lugre.bristle_stiffness * self.deflection + lugre.bristle_damping * rate + lugre.viscous * speed
+        supplied = self.law.friction_share * self.scale * self.torque
+        now.torque += supplied - now.friction
+        now.friction = supplied
+
+    def learn(self, now: Instant, given: float) -> None:
+        law = self.law
+        error = now.speed - now.seen.input_speed
+        error += law.position_gain * (now.ratio * now.seen.command + now.lead - now.seen.input_angle)
+        bending = now.seen.input_speed + law.bristle_gain * error
+        slid, reach = bending * now.period, self.reach(bending)
+        steady = np.sign(bending) * reach
+        self.deflection = float(steady + (self.deflection - steady) * np.exp(-abs(slid) / reach))
+        if abs(now.speed) >= law.min_speed:
+            moved = law.gain * law.friction_share * self.torque * error * now.period
+            self.scale = float(np.clip(self.scale + moved, law.min_scale, law.max_scale))
+
+
+@dataclass
+class Dither:
+    law: sw.compensation.Dither
+    turns: float = 0.0
+
+    def add(self, now: Instant) -> None:
+        sense = np.sign(now.ratio * now.seen.command_rate)
+        now.torque += float(sense * self.law.amplitude * np.sin(2.0 * np.pi * self.turns))
+        self.turns += abs(sense) * self.law.frequency * now.period
+
+    def learn(self, now: Instant, given: float) -> None: ...
+
+
+@dataclass
 class DryFriction:
     """A feed-forward of Coulomb's friction at the input of a rigid gear, and of nothing else."""
 

@@ -42,6 +42,17 @@ PARTS: dict[str, Any] = {
     "repetitive": compensation.Repetitive(gain=30.0, smoothing=5.0, lag=0.01, min_speed=5.0, max_speed=100.0, limit=2e-4),
     "disturbance_observer": compensation.DisturbanceObserver(inertia=2.1e-4, bandwidth=120.0, limit=0.1),
     "friction_scale": compensation.FrictionScale(gain=3.0, max_scale=1.2, min_speed=2.0),
+    "bristle_observer": compensation.BristleObserver(
+        friction=sw.friction.LuGre(
+            coulomb=0.025, breakaway=0.035, stribeck_speed=4.0, bristle_stiffness=0.5, bristle_damping=1e-3, viscous=4e-4
+        ),
+        friction_share=0.9,
+        bristle_gain=0.4,
+        gain=3.0,
+        max_scale=1.2,
+        min_speed=2.0,
+    ),
+    "dither": compensation.Dither(amplitude=0.02, frequency=37.0),
 }
 HANDS = {
     "lost_motion_map": by_hand.LostMotionMap,
@@ -50,14 +61,18 @@ HANDS = {
     "repetitive": by_hand.Repetitive,
     "disturbance_observer": by_hand.DisturbanceObserver,
     "friction_scale": by_hand.FrictionScale,
+    "bristle_observer": by_hand.BristleObserver,
+    "dither": by_hand.Dither,
 }
-PLACES = ("feedforward", "learning", "observer")
+PLACES = ("feedforward", "dither", "learning", "observer")  # in the order in which they are asked
 NAMES = [(place, name) for place in PLACES for name in _core.families[place] if name != f"no_{place}"]
 ALONE = [{place: name} for place, name in NAMES]
 TOGETHER = [
     {"feedforward": "model_feedforward", "learning": "adaptive_fourier", "observer": "friction_scale"},
     {"feedforward": "model_feedforward", "learning": "repetitive", "observer": "disturbance_observer"},
     {"feedforward": "lost_motion_map", "learning": "adaptive_fourier", "observer": "disturbance_observer"},
+    {"feedforward": "model_feedforward", "dither": "dither", "learning": "adaptive_fourier", "observer": "bristle_observer"},
+    {"feedforward": "model_feedforward", "dither": "dither", "observer": "disturbance_observer"},
 ]
 # A motor, and what it takes per torque and per input speed.
 MOTORS = {

@@ -51,8 +51,12 @@ USED: dict[str, Any] = {
     "repetitive": compensation.Repetitive(gain=20.0, smoothing=1.0, lag=0.01, max_speed=100.0),
     "disturbance_observer": compensation.DisturbanceObserver(inertia=1.6e-4, bandwidth=120.0, limit=0.3),
     "friction_scale": compensation.FrictionScale(gain=3.0),
+    "bristle_observer": compensation.BristleObserver(
+        friction=GEAR.friction_input, friction_share=0.9, bristle_gain=0.2, gain=3.0, max_scale=1.2
+    ),
+    "dither": compensation.Dither(amplitude=0.02, frequency=37.0),
 }
-PLACES = ("feedforward", "learning", "observer")
+PLACES = ("feedforward", "learning", "observer", "dither")
 LISTED = [(place, name) for place in PLACES for name in _core.families[place]]
 # What suits each other: a friction is scaled that a model has.
 TOGETHER = {"feedforward": "model_feedforward", "learning": "adaptive_fourier", "observer": "friction_scale"}
@@ -129,6 +133,8 @@ VARIED = {
     "repetitive": ["gain", "smoothing", "lag"],
     "disturbance_observer": ["inertia", "bandwidth"],
     "friction_scale": ["gain", "position_gain"],
+    "bristle_observer": ["friction.coulomb", "friction_share", "bristle_gain", "position_gain", "gain"],
+    "dither": ["amplitude", "frequency"],
 }
 
 
@@ -213,7 +219,11 @@ def test_so_is_any_other(tmp_path: Path, part: sw.Compensation) -> None:
     assert load(tmp_path / "drive.toml") == one
 
 
-COMPILED = [TOGETHER, {"feedforward": "lost_motion_map", "learning": "repetitive", "observer": "disturbance_observer"}]
+COMPILED = [
+    TOGETHER,
+    {"feedforward": "lost_motion_map", "learning": "repetitive", "observer": "disturbance_observer"},
+    {"feedforward": "model_feedforward", "observer": "bristle_observer", "dither": "dither"},
+]
 
 
 @pytest.mark.parametrize("chosen", COMPILED, ids=lambda chosen: "+".join(chosen.values()))

@@ -5,39 +5,42 @@
 
 namespace strainwave {
 
-/// States of the feed-forward, the learner and the observer.
-template <class S, class Feedforward, class Learning, class Observer>
+/// States of the feed-forward, the learner, the observer and the dither.
+template <class S, class Feedforward, class Learning, class Observer, class Dither_>
 struct CompensationStates {
     Feedforward feedforward{};
     Learning learning{};
     Observer observer{};
+    Dither_ dither{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, feedforward, "State of the feed-forward"));
         visit(SW_PART(m, learning, "State of the learner"));
         visit(SW_PART(m, observer, "State of the observer"));
+        visit(SW_PART(m, dither, "State of the dither"));
     }
 };
 
 template <class S, class Feedforward = compensation::NoFeedforward<S>, class Learning = compensation::NoLearning<S>,
-          class Observer = compensation::NoObserver<S>>
+          class Observer = compensation::NoObserver<S>, class Dither_ = compensation::NoDither<S>>
 struct Compensation {
     Feedforward feedforward{};
     Learning learning{};
     Observer observer{};
+    Dither_ dither{};
     S actuation_per_torque{1.0};
     S actuation_per_speed{0.0};
 
     static constexpr auto name = "compensation";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        Lead of the input and torque that a sampled controller adds: those of a model, a learner and an observer.
+        Lead of the input and torque that a sampled controller adds: those of a model, a dither, a learner and an observer.
 
-        .. math:: \theta_r = i r + \theta_f + \theta_l, \qquad u_f = p\,(\tau_f + \tau_l + \tau_o) + q\,\dot\theta_r
+        .. math:: \theta_r = i r + \theta_f + \theta_l, \qquad u_f = p\,(\tau_f + \tau_d + \tau_l + \tau_o) + q\,\dot\theta_r
 
-        with r the commanded output angle, theta_f, theta_l the leads of the input by feed-forward and learner, tau_f, tau_l, tau_o the
-        torques of feed-forward, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The controller follows
+        with r the commanded output angle, theta_f, theta_l the leads of the input by feed-forward and learner, tau_f, tau_d, tau_l,
+        tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The controller follows
         theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
 
         p is 1 for a motor that takes a torque, 1 over the torque constant for a motor that takes a current and for a Cascade, and
@@ -53,28 +56,34 @@ struct Compensation {
         visit(SW_PART(m, feedforward, "Feed-forward of a model of the drive"));
         visit(SW_PART(m, learning, "Learning of errors that repeat"));
         visit(SW_PART(m, observer, "Observer of what the model lacks"));
+        visit(SW_PART(m, dither, "Torque that swings around zero"));
         visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
         visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed q: its back-EMF"));
     }
 
     constexpr auto compile() const {
-        return Compensation<S, decltype(compiled(feedforward)), decltype(compiled(learning)), decltype(compiled(observer))>{
-            compiled(feedforward), compiled(learning), compiled(observer), actuation_per_torque, actuation_per_speed};
+        return Compensation<S, decltype(compiled(feedforward)), decltype(compiled(learning)), decltype(compiled(observer)),
+                            decltype(compiled(dither))>{compiled(feedforward), compiled(learning),   compiled(observer),
+                                                        compiled(dither),      actuation_per_torque, actuation_per_speed};
     }
 
     /// True if any of its compensators changes the command.
     constexpr bool active() const {
-        return compensation::active(feedforward) || compensation::active(learning) || compensation::active(observer);
+        return compensation::active(feedforward) || compensation::active(learning) || compensation::active(observer) ||
+               compensation::active(dither);
     }
 
-    using State = CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State>;
+    using State = CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State,
+                                     typename Dither_::State>;
     constexpr State initial_state() const {
-        return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer)};
+        return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer),
+                strainwave::initial_state(dither)};
     }
 
     /// Requests of the compensators at one sampling instant.
     struct Instant {
         typename Feedforward::State next_feedforward;  ///< state after the period
+        typename Dither_::State next_dither;           ///< likewise
         compensation::Inputs<S> learning_inputs, observer_inputs;
         compensation::Request<S> learning_request, observer_request;
 
@@ -91,16 +100,18 @@ struct Compensation {
     constexpr Instant instant(const State& x, const control::Command<S>& command, const control::Measurement<S>& measured,
                               const S& period) const {
         const auto model = feedforward.step(x.feedforward, command, period);
-        const compensation::Inputs<S> learning_inputs{command, measured, model.request};
+        const auto dithered = dither.step(x.dither, command, period);
+        const compensation::Inputs<S> learning_inputs{command, measured, model.request + dithered.request};
         const compensation::Request<S> learning_request = learning.request(x.learning, learning_inputs);
-        const compensation::Inputs<S> observer_inputs{command, measured, model.request + learning_request};
-        return {model.next, learning_inputs, observer_inputs, learning_request, observer.request(x.observer, observer_inputs)};
+        const compensation::Inputs<S> observer_inputs{command, measured, learning_inputs.request + learning_request};
+        return {model.next,      dithered.next,    learning_inputs,
+                observer_inputs, learning_request, observer.request(x.observer, observer_inputs)};
     }
     /// State after a period in which the motor received `actuation`.
     constexpr State advance(const State& x, const Instant& now, const S& actuation, const S& period) const {
         const S motor_torque = (actuation - actuation_per_speed * now.observer_inputs.measured.input_speed) / actuation_per_torque;
         return {now.next_feedforward, learning.advance(x.learning, now.learning_inputs, now.learning_request, motor_torque, period),
-                observer.advance(x.observer, now.observer_inputs, now.observer_request, motor_torque, period)};
+                observer.advance(x.observer, now.observer_inputs, now.observer_request, motor_torque, period), now.next_dither};
     }
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/angle.hpp>
 #include <strainwave/control/law.hpp>
 
 /// Compensators: additions to a controller that reduce the errors which the gear causes. A sampled controller evaluates them at
@@ -57,5 +58,19 @@ struct Inputs {
     constexpr S input_angle() const { return command.ratio * command.value + request.input_lead; }
     constexpr S input_speed() const { return command.ratio * command.rate + request.input_lead_rate; }
 };
+
+/// Sense of a set-valued friction, in [-1, 1], after its surfaces moved by an angle [rad].
+template <class S>
+constexpr S slid_sense(const S& sense, const S& moved, const S& presliding) {
+    const S towards = sign(moved);
+    const S next = towards + (sense - towards) * exp(-min(abs(moved) / presliding, S(beyond_digits)));
+    return select(towards == S(0.0), sense, next);
+}
+
+template <class S>
+constexpr Angle<S> reduced(const S& angle) {
+    const S turns = rint(angle * S(0.5 / pi));
+    return {angle - S(2.0 * pi) * turns, turns};
+}
 
 }  // namespace strainwave::compensation

@@ -174,9 +174,7 @@ struct ModelFeedforward {
         next.speed = command.rate;
         next.lead_rate = lead_rate;
         next.begun = S(1.0);
-        const S moved = speed * period, towards = sign(moved);
-        next.sense = towards + (x.sense - towards) * exp(-min(abs(moved) / presliding, S(beyond_digits)));
-        next.sense = select(towards == S(0.0), x.sense, next.sense);
+        next.sense = slid_sense(x.sense, speed * period, presliding);
         const S inertial = (motor_inertia + gear.input_inertia) * input_acceleration;
         return {{lead, lead_rate, command.ratio * next.twist, inertial + per_input * carried + friction, friction}, next};
     }
@@ -197,7 +195,7 @@ private:
     template <class Law>
     static constexpr S slid(const Law& law, const typename Law::State& x, const Contact& at, const S& period,
                             typename Law::State& next) {
-        next = friction::clamped(law, friction::update_mode(law, friction::advance(law, x, at, period), at), at);
+        next = friction::slide(law, x, at, period);
         return friction::torque(law, next, at);
     }
     /// The kinematic error at the input angle that the command needs.
@@ -209,10 +207,6 @@ private:
             found = {relief * full.value, relief * full.slope};
         }
         return found;
-    }
-    static constexpr Angle<S> reduced(const S& angle) {
-        const S turns = rint(angle * S(0.5 / pi));
-        return {angle - S(2.0 * pi) * turns, turns};
     }
 };
 

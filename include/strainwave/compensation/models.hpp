@@ -1,6 +1,8 @@
 #pragma once
 #include <strainwave/compensation/adaptive_fourier.hpp>
+#include <strainwave/compensation/bristle_observer.hpp>
 #include <strainwave/compensation/disturbance_observer.hpp>
+#include <strainwave/compensation/dither.hpp>
 #include <strainwave/compensation/friction_scale.hpp>
 #include <strainwave/compensation/lost_motion_map.hpp>
 #include <strainwave/compensation/model_feedforward.hpp>
@@ -13,6 +15,7 @@ namespace strainwave::compensation {
 
 using Feedforwards = List<NoFeedforward, ModelFeedforward, LostMotionMap>;
 using Learners = List<NoLearning, AdaptiveFourier, Repetitive>;
-using Observers = List<NoObserver, DisturbanceObserver, FrictionScale>;
+using Observers = List<NoObserver, DisturbanceObserver, FrictionScale, BristleObserver>;
+using Dithers = List<NoDither, Dither>;
 
 }  // namespace strainwave::compensation

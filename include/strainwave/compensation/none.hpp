@@ -25,6 +25,27 @@ struct NoFeedforward {
 };
 
 template <class S>
+struct NoDither {
+    static constexpr auto name = "no_dither";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        No dither: no torque swings around zero.
+
+        .. math:: \tau_d = 0
+
+        >>> from strainwave.compensation import NoDither
+        >>> NoDither()
+        NoDither())";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    using State = Stateless<S>;
+    static constexpr bool active() { return false; }
+    constexpr RequestAndState<S, State> step(const State&, const control::Command<S>&, const S&) const { return {}; }
+};
+
+template <class S>
 struct NoObserver {
     static constexpr auto name = "no_observer";
     static constexpr auto source = "definition";

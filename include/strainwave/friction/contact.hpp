@@ -181,6 +181,12 @@ constexpr typename Law::State advance(const Law& law, const typename Law::State&
         return x;
 }
 
+/// The state after `dt` [s] under one contact, whatever the step: within its bounds, and its modes decided.
+template <class Law, class S>
+constexpr typename Law::State slide(const Law& law, const typename Law::State& x, const Contact<S>& contact, const S& dt) {
+    return clamped(law, update_mode(law, advance(law, x, contact, dt), contact), contact);
+}
+
 /// The state of a contact that has long been sliding.
 template <class Law, class S>
 constexpr typename Law::State steady_state(const Law& law, const Contact<S>& contact) {

@@ -15,7 +15,7 @@ PARAMETERS = {
         *("friction_input", "friction_mesh", "friction_output", "softening", "structure", "stiffness_variation"),
     ),
     _core.control.Sampled: ("law", "compensation"),
-    _core.Compensation: ("feedforward", "learning", "observer"),
+    _core.Compensation: ("feedforward", "learning", "observer", "dither"),
     _core.compensation.ModelFeedforward: ("gear", "load"),
 }
 NAMESPACES = {"loads": "load"}  # the function `strainwave.load` takes that name in Python

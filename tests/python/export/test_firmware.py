@@ -49,6 +49,11 @@ DRIVES = {
     "fourier": drive(learning=sw.compensation.AdaptiveFourier(order=[1, 2.5], max_frequency=300.0)),
     "table": drive(learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)),
     "map": drive(feedforward=sw.compensation.LostMotionMap(angle=[0.0, 0.1], forward=[1e-4, 2e-4], backward=[-1e-4, 0.0])),
+    "bristles": drive(
+        feedforward=FEEDFORWARD,
+        observer=sw.compensation.BristleObserver(friction=FRICTION, friction_share=0.9, bristle_gain=0.3, gain=2.0),
+        dither=sw.compensation.Dither(amplitude=0.01, frequency=80.0),
+    ),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
     "currents": drive(law=made(sw.control.Cascade), motor=DC.replace(inductance=5e-4)),
 }
@@ -65,7 +70,7 @@ FLOAT_SHARE = 1e-4  # error of single precision over the largest actuation, as t
 CLOSED_LOOP_ERROR = 1e-7  # rad of the output, between the runs under both
 
 
-@pytest.mark.parametrize("name", ["model", "fourier", "table"])
+@pytest.mark.parametrize("name", ["model", "fourier", "table", "bristles"])
 def test_single_precision_is_as_accurate_as_stated(name: str, tmp_path: Path) -> None:
     chosen = DRIVES[name]
     doubled, single = Loaded(chosen, tmp_path / "double", "double"), Loaded(chosen, tmp_path / "float", "float")
@@ -105,8 +110,8 @@ def every_controller() -> Iterator[sw.Drive]:
                 gear = gear.replace(**{place: suited(one_of(sw.Gear, place, number + ahead), gear.kinematics)})
         whole = model(gear=gear, load=made(loads[number % len(loads)]), rounds=0)
         feedforward = made(feedforwards[number]) if number < len(feedforwards) else whole
-        learning, observer = (one_of(sw.Compensation, place, number) for place in ("learning", "observer"))
-        yield drive(law, motor=motor, feedforward=feedforward, learning=learning, observer=observer)
+        others = {place: one_of(sw.Compensation, place, number) for place in ("learning", "observer", "dither")}
+        yield drive(law, motor=motor, feedforward=feedforward, **others)
 
 
 def models(kind: Any, place: str) -> list[Any]:

@@ -78,7 +78,8 @@ def test_the_type_is_that_of_the_laws() -> None:
     assert static_type(drive, "float") == (
         "strainwave::Drive<float, strainwave::control::Sampled<float, strainwave::control::PID<float>, "
         "strainwave::Compensation<float, strainwave::compensation::NoFeedforward<float>, "
-        "strainwave::compensation::NoLearning<float>, strainwave::compensation::NoObserver<float>>>, "
+        "strainwave::compensation::NoLearning<float>, strainwave::compensation::NoObserver<float>, "
+        "strainwave::compensation::NoDither<float>>>, "
         "strainwave::motor::DC<float>, strainwave::Gear<float, strainwave::kinematics::StrainWave<float>, "
         "strainwave::kinematic_error::Fourier<float>, strainwave::kinematic_error::Stochastic<float>, "
         "strainwave::stiffness::Linear<float>, "

@@ -1,0 +1,54 @@
+#pragma once
+#include <strainwave/compensation/compensator.hpp>
+
+namespace strainwave::compensation {
+
+template <class S>
+struct Dither {
+    S amplitude{0.0};
+    S frequency{50.0};
+
+    static constexpr auto name = "dither";
+    static constexpr auto source =
+        "ArmstrongHelouvry1994; mean of Coulomb friction, by the dual-input describing function: GelbVanderVelde1968";
+    static constexpr auto doc = R"(
+        Torque that swings around zero, so that the input never rests: the mean of its friction becomes smooth over the speed.
+
+        .. math:: \tau_d = A \sin(2 \pi \varphi)\, \operatorname{sgn}(\dot r), \qquad \dot\varphi = f \;\text{ where } \dot r \ne 0
+
+        with r the commanded output angle, A = amplitude, f = frequency. The phase stands still while the command rests. An inertia J at
+        the input swings with the speed a = (A - F) / (2 pi f J) at most, F being its friction. The mean of Coulomb friction F_c
+        at a mean speed v is then (2 / pi) F_c asin(v / a) for v < a, a viscous friction of about 2 F_c / (pi a), in place of a
+        jump. So A must exceed the breakaway torque by 2 pi f J v.
+
+        Keep f above the bandwidth of the speed loop, away from the vibrations of the drive, and at most a tenth of the sample
+        rate: the controller holds the torque over a period. Dither heats the motor, wears the gear, and can be heard. It moves
+        friction at the input only: the output follows with the share that gear and load let through.
+
+        >>> from strainwave.compensation import Dither
+        >>> Dither(amplitude=0.05, frequency=80.0).frequency
+        80.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, amplitude, "N.m", "Amplitude A, of the motor", 0));
+        visit(SW_FIELD(m, frequency, "Hz", "Frequency f", smallest));
+    }
+
+    struct State {
+        S phase{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, phase, "1", "Turns of the phase, in [-1/2, 1/2]"));
+        }
+    };
+
+    constexpr RequestAndState<S, State> step(const State& x, const control::Command<S>& command, const S& period) const {
+        const S sense = sign(command.ratio * command.rate), turned = x.phase + abs(sense) * frequency * period;
+        const S torque = sense * amplitude * sin(S(2.0 * pi) * x.phase);
+        return {{S(0.0), S(0.0), S(0.0), torque, S(0.0)}, {turned - rint(turned)}};
+    }
+};
+
+}  // namespace strainwave::compensation
