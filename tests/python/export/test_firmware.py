@@ -49,6 +49,8 @@ DRIVES = {
     "fourier": drive(learning=sw.compensation.AdaptiveFourier(order=[1, 2.5], max_frequency=300.0)),
     "table": drive(learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)),
     "map": drive(feedforward=sw.compensation.LostMotionMap(angle=[0.0, 0.1], forward=[1e-4, 2e-4], backward=[-1e-4, 0.0])),
+    "passes": drive(learning=sw.compensation.IterativeLearning(low=-0.1, high=0.1, gain=20.0)),
+    "twist": drive(feedforward=FEEDFORWARD, learning=sw.compensation.TwistIdentification(order=[1, 2])),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
     "currents": drive(law=made(sw.control.Cascade), motor=DC.replace(inductance=5e-4)),
 }
