@@ -26,7 +26,7 @@ enum class Corrections { learning, observer };
 /// A learner or an observer by any law.
 template <class S, Corrections list>
 struct Correction : Part {
-    using State = Storage<S, 32, 0>;
+    using State = Storage<S, list == Corrections::learning ? 96 : 32, 0>;
 
     void read(kernel::Reader<S>& from);
     void places(Places& found) const;

@@ -9,7 +9,7 @@ namespace strainwave::general {
 template <class S>
 struct Control : Part {
     using State = Storage<S, 4>;
-    using Discrete = Storage<S, 176>;
+    using Discrete = Storage<S, 240>;
     using Command = control::Command<S>;
     using Measurement = control::Measurement<S>;
 

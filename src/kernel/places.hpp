@@ -9,7 +9,7 @@ namespace strainwave::kernel {
 
 /// Indices of slots of a part, in order.
 struct Places {
-    static constexpr int capacity = 176;
+    static constexpr int capacity = 240;
     int slot[capacity];
     int count = 0;
 

@@ -23,6 +23,7 @@ class Instant:
     lead_rate: float = 0.0
     torque: float = 0.0
     friction: float = 0.0
+    torsion: float = 0.0
 
     @property
     def speed(self) -> float:
@@ -57,6 +58,7 @@ class LostMotionMap:
         forward, backward = (np.interp(at, law.angle, line) for line in (law.forward, law.backward))
         lead = float(0.5 * (1.0 + self.sense) * forward + 0.5 * (1.0 - self.sense) * backward)
         now.lead += now.ratio * lead
+        now.torsion += now.ratio * lead
         now.lead_rate += 0.0 if self.angle is None else now.ratio * (lead - self.lead) / now.period
         self.angle, self.lead = at, lead
 
@@ -119,6 +121,115 @@ class Repetitive:
         moved = law.gain * now.error * hats(now.seen.input_angle - self.speed * law.lag)
         moved -= law.smoothing * hats(now.seen.input_angle) * (self.values - even)
         self.values = np.clip(self.values + now.period * moved, -law.limit, law.limit)
+
+
+@dataclass
+class IterativeLearning:
+    law: sw.compensation.IterativeLearning
+    tables: Array = field(default_factory=lambda: np.zeros((2, 32)))  # of forward and of backward motion
+    angle: float | None = None
+    sense: float = 0.0
+    speed: float = 0.0
+
+    @property
+    def angles(self) -> Array:
+        return np.linspace(self.law.low, self.law.high, 32)
+
+    @property
+    def shares(self) -> Array:
+        """Of both tables in the lead."""
+        return 0.5 * (1.0 + np.array([self.sense, -self.sense]))
+
+    def add(self, now: Instant) -> None:
+        law, at, rate = self.law, now.seen.command, now.seen.command_rate
+        self.speed = now.speed
+        moved = 0.0 if self.angle is None else at - self.angle
+        if moved != 0.0:
+            self.sense = np.sign(moved) + (self.sense - np.sign(moved)) * np.exp(-abs(moved) / law.reach)
+        self.angle = at
+        forward, backward = (float(np.interp(at, self.angles, table)) for table in self.tables)
+        now.lead += now.ratio * float(self.shares @ [forward, backward])
+        cell = int(np.searchsorted(self.angles, at)) - 1
+        if 0 <= cell < 31:
+            slopes = np.diff(self.tables)[:, cell] / np.diff(self.angles)[cell]
+            now.lead_rate += now.ratio * float(self.shares @ slopes) * rate
+        now.lead_rate += now.ratio * 0.5 * (forward - backward) * (np.sign(rate) - self.sense) * abs(rate) / law.reach
+
+    def learn(self, now: Instant, given: float) -> None:
+        law, at = self.law, now.seen.command
+        if not (law.low <= at <= law.high and law.min_speed <= abs(self.speed) < law.max_speed):
+            return
+        hat = np.array([np.interp(at, self.angles, row) for row in np.eye(32)])
+        late = np.array([np.interp(at - now.seen.command_rate * law.lag, self.angles, row) for row in np.eye(32)])
+        even = 0.5 * (
+            np.pad(self.tables, ((0, 0), (1, 1)), mode="edge")[:, :-2]
+            + np.pad(self.tables, ((0, 0), (1, 1)), mode="edge")[:, 2:]
+        )
+        width = (law.high - law.low) / 31
+        moved = min(law.gain, abs(now.seen.command_rate) / width) * late * now.error - law.smoothing * hat * (
+            self.tables - even
+        )
+        self.tables = np.clip(self.tables + now.period * self.shares[:, None] * moved, -law.limit, law.limit)
+
+
+@dataclass
+class TwistIdentification:
+    """A Kalman filter in its textbook form: of the numbers that are adapted, given the uncertainty of the others."""
+
+    law: sw.compensation.TwistIdentification
+    torsion: float = 0.0
+    torsion_rate: float = 0.0
+    ahead: float = 0.0
+    speed: float = 0.0
+    begun: bool = False
+    time: float = 0.0
+
+    def __post_init__(self) -> None:
+        law = self.law
+        self.prior = np.array([law.compliance_prior, law.offset_prior] + 2 * len(law.order) * [law.amplitude_prior])
+        self.x, self.p = np.zeros(self.prior.size), np.diag(self.prior**2)
+        self.mean, self.variance = np.zeros(self.prior.size), np.zeros(self.prior.size)
+
+    def waves(self, angle: float) -> Array:
+        """Sine and cosine of each order, one after the other."""
+        order = np.array(self.law.order)
+        return np.column_stack([np.sin(order * angle), np.cos(order * angle)]).ravel()
+
+    def add(self, now: Instant) -> None:
+        at, self.speed, self.ahead, torsion = now.seen.input_angle, now.speed, now.lead, now.torsion
+        turned = np.array([[0.0, 1.0], [-1.0, 0.0]])  # a sin + b cos has the rate n (a cos - b sin)
+        rates = np.repeat(self.law.order, 2) * self.speed * (self.x[2:].reshape(-1, 2) @ turned).ravel()
+        now.lead += self.x[0] * torsion + now.ratio * float(self.x[2:] @ self.waves(at))
+        now.lead_rate += self.x[0] * self.torsion_rate + now.ratio * float(rates @ self.waves(at))
+        now.torsion += self.x[0] * torsion
+        if self.begun:
+            self.next_rate = (torsion - self.torsion) / now.period
+        else:
+            self.next_rate = 0.0
+        self.torsion, self.begun = torsion, True
+
+    def learn(self, now: Instant, given: float) -> None:
+        law, dt = self.law, now.period
+        self.torsion_rate = self.next_rate
+        if abs(self.speed) < law.min_speed:
+            return
+        phi = np.array([self.torsion / now.ratio, 1.0, *self.waves(now.seen.input_angle)])
+        z = (now.seen.input_angle - self.ahead) / now.ratio - now.seen.output_angle
+        share = dt / (self.time + dt)
+        apart = phi - self.mean
+        self.mean, self.variance = self.mean + share * apart, (1.0 - share) * (self.variance + share * apart**2)
+        self.variance[1] = 1.0
+        self.time = min(self.time + dt, law.window)
+        active = self.variance * self.prior**2 >= law.min_excitation * law.noise**2 * law.noise_time
+        kept = np.where(active, np.sqrt(1.0 / (1.0 + 2.0 * dt / law.memory)), 1.0)
+        self.x = kept * self.x
+        e = z - phi @ self.x
+        self.p = np.outer(kept, kept) * self.p + np.diag((1.0 - kept**2) * self.prior**2)
+        cross = self.p @ phi
+        inside = phi @ cross + law.noise**2 * law.noise_time / dt
+        gain = active * cross / inside
+        self.p += np.outer(gain, gain) * inside - np.outer(gain, cross) - np.outer(cross, gain)
+        self.x = np.clip(self.x + gain * e, -law.limit * self.prior, law.limit * self.prior)
 
 
 @dataclass

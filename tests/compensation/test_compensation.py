@@ -40,6 +40,12 @@ PARTS: dict[str, Any] = {
         order=[1.0, 2.0, 2.02], gain=20.0, lag=0.01, max_frequency=130.0, limit=2e-4
     ),
     "repetitive": compensation.Repetitive(gain=30.0, smoothing=5.0, lag=0.01, min_speed=5.0, max_speed=100.0, limit=2e-4),
+    "iterative_learning": compensation.IterativeLearning(
+        low=-0.05, high=0.2, reach=0.02, gain=30.0, smoothing=5.0, lag=0.01, min_speed=5.0, max_speed=130.0, limit=2e-4
+    ),
+    "twist_identification": compensation.TwistIdentification(
+        order=[1.0, 2.0, 2.02], noise=1e-4, window=0.3, memory=2.0, min_excitation=5.0, min_speed=5.0, limit=1.5
+    ),
     "disturbance_observer": compensation.DisturbanceObserver(inertia=2.1e-4, bandwidth=120.0, limit=0.1),
     "friction_scale": compensation.FrictionScale(gain=3.0, max_scale=1.2, min_speed=2.0),
     "bristle_observer": compensation.BristleObserver(
@@ -59,6 +65,8 @@ HANDS = {
     "model_feedforward": lambda law: by_hand.DryFriction(law.gear.friction_input.coulomb, law.presliding),
     "adaptive_fourier": by_hand.AdaptiveFourier,
     "repetitive": by_hand.Repetitive,
+    "iterative_learning": by_hand.IterativeLearning,
+    "twist_identification": by_hand.TwistIdentification,
     "disturbance_observer": by_hand.DisturbanceObserver,
     "friction_scale": by_hand.FrictionScale,
     "bristle_observer": by_hand.BristleObserver,
@@ -73,6 +81,7 @@ TOGETHER = [
     {"feedforward": "lost_motion_map", "learning": "adaptive_fourier", "observer": "disturbance_observer"},
     {"feedforward": "model_feedforward", "dither": "dither", "learning": "adaptive_fourier", "observer": "bristle_observer"},
     {"feedforward": "model_feedforward", "dither": "dither", "observer": "disturbance_observer"},
+    {"feedforward": "lost_motion_map", "learning": "twist_identification", "observer": "disturbance_observer"},
 ]
 # A motor, and what it takes per torque and per input speed.
 MOTORS = {

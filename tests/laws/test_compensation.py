@@ -49,6 +49,10 @@ USED: dict[str, Any] = {
     ),
     "adaptive_fourier": compensation.AdaptiveFourier(order=[1.0, 2.0, 2.02], gain=10.0, lag=0.01, max_frequency=130.0),
     "repetitive": compensation.Repetitive(gain=20.0, smoothing=1.0, lag=0.01, max_speed=100.0),
+    "iterative_learning": compensation.IterativeLearning(
+        low=-0.1, high=0.1, reach=0.01, gain=20.0, smoothing=1.0, lag=0.01, max_speed=200.0
+    ),
+    "twist_identification": compensation.TwistIdentification(order=[1.0, 2.0], noise=1e-4, memory=5.0, min_excitation=0.01),
     "disturbance_observer": compensation.DisturbanceObserver(inertia=1.6e-4, bandwidth=120.0, limit=0.3),
     "friction_scale": compensation.FrictionScale(gain=3.0),
     "bristle_observer": compensation.BristleObserver(
@@ -77,7 +81,7 @@ def drive_of(chosen: dict[str, str]) -> sw.Drive:
 
 def alone(place: str, name: str) -> sw.Drive:
     """A drive with this compensator, and with a model where it needs one."""
-    model = {"feedforward": "model_feedforward"} if name == "friction_scale" else {}
+    model = {"feedforward": "model_feedforward"} if name in ("friction_scale", "twist_identification") else {}
     return drive_of(model | {place: name})
 
 
@@ -98,7 +102,7 @@ def test_the_opposite_command_gives_the_opposite_motion(place: str, name: str) -
     one = alone(place, name)
     forth, back = (sw.simulate(one, sense * COMMAND, sample=PERIOD) for sense in (1.0, -1.0))
     for column in ("input_angle", "input_speed", "output_angle", "torque"):
-        if name in ("repetitive", "lost_motion_map"):
+        if name in ("repetitive", "iterative_learning", "lost_motion_map"):
             assert forth[column] == pytest.approx(-back[column], abs=1e-9 * np.abs(forth[column]).max())
         else:
             assert np.array_equal(forth[column], -back[column])
@@ -131,6 +135,8 @@ VARIED = {
     "lost_motion_map": ["forward[1]", "backward[0]", "reach"],
     "adaptive_fourier": ["gain", "lag"],
     "repetitive": ["gain", "smoothing", "lag"],
+    "iterative_learning": ["reach", "gain", "smoothing", "lag"],
+    "twist_identification": ["compliance_prior", "amplitude_prior", "offset_prior", "noise", "noise_time", "memory"],
     "disturbance_observer": ["inertia", "bandwidth"],
     "friction_scale": ["gain", "position_gain"],
     "bristle_observer": ["friction.coulomb", "friction_share", "bristle_gain", "position_gain", "gain"],
@@ -223,6 +229,8 @@ COMPILED = [
     TOGETHER,
     {"feedforward": "lost_motion_map", "learning": "repetitive", "observer": "disturbance_observer"},
     {"feedforward": "model_feedforward", "observer": "bristle_observer", "dither": "dither"},
+    {"feedforward": "lost_motion_map", "learning": "iterative_learning", "observer": "disturbance_observer"},
+    {"feedforward": "model_feedforward", "learning": "twist_identification", "observer": "disturbance_observer"},
 ]
 
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <strainwave/angle.hpp>
 #include <strainwave/compensation/compensator.hpp>
+#include <strainwave/compensation/wave.hpp>
 
 namespace strainwave::compensation {
 
@@ -80,14 +81,6 @@ struct AdaptiveFourier {
             next.cosine[n] = clip(x.cosine[n] + step * at.cos, -limit, limit);
         }
         return next;
-    }
-
-private:
-    /// Sine and cosine of `order * angle - phase`. Whole turns are taken out first, to keep the digits of large angles.
-    static constexpr SinCos<S> wave(const S& order, const S& angle, const S& phase) {
-        const S turns = rint(angle * S(0.5 / pi)), turned = order * turns;
-        const S within = order * (angle - S(2.0 * pi) * turns);
-        return sincos(within - phase + S(2.0 * pi) * (turned - rint(turned)));
     }
 };
 

@@ -54,6 +54,8 @@ DRIVES = {
         observer=sw.compensation.BristleObserver(friction=FRICTION, friction_share=0.9, bristle_gain=0.3, gain=2.0),
         dither=sw.compensation.Dither(amplitude=0.01, frequency=80.0),
     ),
+    "passes": drive(learning=sw.compensation.IterativeLearning(low=-0.1, high=0.1, gain=20.0)),
+    "twist": drive(feedforward=FEEDFORWARD, learning=sw.compensation.TwistIdentification(order=[1, 2])),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
     "currents": drive(law=made(sw.control.Cascade), motor=DC.replace(inductance=5e-4)),
 }
