@@ -8,7 +8,7 @@ namespace strainwave::general {
 /// A controller by any law, sampled or not.
 template <class S>
 struct Control : Part {
-    using State = Storage<S, 4>;
+    using State = Storage<S, 8>;
     using Discrete = Storage<S, 176>;
     using Command = control::Command<S>;
     using Measurement = control::Measurement<S>;
