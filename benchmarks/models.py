@@ -111,6 +111,15 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     "current_source": [{"torque_constant": 0.1, "inertia": 1e-4}],
     "lead_lag": [{"gain": 2.0, "lead_numerator": 0.02, "lead_denominator": 0.002}],
     "state_feedback": [{"input_angle": 2.0, "input_speed": 0.05}],
+    "state_space": [  # as many states as the regulator of a joint by its input encoder has
+        {
+            "A": [-20.0 if row == column else 1.0 for row in range(5) for column in range(5)],
+            "B": [1.0] * 5,
+            "C": [0.1] * 5,
+            "D": [2.0],
+            "tracking": [1.0] * 5,
+        }
+    ],
     "torsion_spring": [{"inertia": 0.5, "stiffness": 10.0}],
     "aerodynamic": [{"inertia": 0.5, "airspeed": 20.0}],
     "torque_table": [{"inertia": 0.5, "angle": [-1.0, 0.0, 1.0], "held_torque": [-1.0, 0.0, 2.0]}],

@@ -90,6 +90,14 @@ template <class S, class Law>
 struct AtRunTime<S, compensation::BristleObserver<S, Law>> {
     using type = compensation::BristleObserver<S, AnyOf<S, friction::Models>>;
 };
+template <class S, class Gear, class Load>
+struct AtRunTime<S, control::FeedbackLinearisation<S, Gear, Load>> {
+    using type = control::FeedbackLinearisation<S, AnyGear<S>, AnyOf<S, load::Models>>;
+};
+template <class S, class Gear, class Load>
+struct AtRunTime<S, control::KinematicErrorTracking<S, Gear, Load>> {
+    using type = control::KinematicErrorTracking<S, AnyGear<S>, AnyOf<S, load::Models>>;
+};
 template <class S, class Law, class Compensation_>
 struct AtRunTime<S, control::Sampled<S, Law, Compensation_>> {
     using type = control::Sampled<S, AnyOf<S, control::Continuous>,

@@ -36,7 +36,8 @@ AT_REST = "a law of sliding of which the numbers stand in a law of bristles, too
 SAID = "the ratio that a person says of files"
 RIGID = "what a rigid drive that is moved by hand or motor carries"
 HEAT = "another Thermal: the heat of a drive, by any law"
-MODEL = "the gear and the load that a feed-forward knows by default"
+MODEL = "the gear and the load that a model of the drive has by default"
+GEAR_AND_LOAD = "whose gear and load are parameters of its type"
 NOTHING = "what a compensation has where nothing else is said"
 COMPOSED = "tuning/"  # controllers are put together from models there, whatever else they are
 TRIED = "identification/candidates/"  # where a fit of each model starts that is tried on a measurement, is said there
@@ -44,15 +45,25 @@ ELSEWHERE = {
     "ModelFeedforward": {
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/compensation.cpp": BOUND_TO_ANY,
-        "native/static_type.py": "whose gear and load are parameters of its type",
+        "native/static_type.py": GEAR_AND_LOAD,
+    },
+    "FeedbackLinearisation": {
+        "parameter_drive.hpp": BOUND_TO_ANY,
+        "general/control.cpp": BOUND_TO_ANY,
+        "native/static_type.py": GEAR_AND_LOAD,
+    },
+    "KinematicErrorTracking": {
+        "parameter_drive.hpp": BOUND_TO_ANY,
+        "general/control.cpp": BOUND_TO_ANY,
+        "native/static_type.py": GEAR_AND_LOAD,
     },
     "NoObserver": {"compensation/compensation.hpp": NOTHING},
     "NoLearning": {"compensation/compensation.hpp": NOTHING},
     "NoFeedforward": {"compensation/compensation.hpp": NOTHING},
     "NoDither": {"compensation/compensation.hpp": NOTHING},
-    "ThermalSoftening": {"compensation/model_feedforward.hpp": MODEL},
+    "ThermalSoftening": {"drive_model.hpp": MODEL},
     "Fourier": {
-        "compensation/model_feedforward.hpp": MODEL,
+        "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
         "orders/two_encoders.py": "orders that two encoders tell are of this form",
         "kinematic_error/scaled.hpp": "what it scales by default",
@@ -90,7 +101,7 @@ ELSEWHERE = {
     "CurrentSource": {"identification/kinds/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
         "compensation/bristle_observer.hpp": "what follows the measured motion by default",
-        "compensation/model_feedforward.hpp": MODEL,
+        "drive_model.hpp": MODEL,
         "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
         "analysis/linear.py": "holds the input while the output vibrates",
@@ -138,16 +149,16 @@ ELSEWHERE = {
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
-        "compensation/model_feedforward.hpp": MODEL,
+        "drive_model.hpp": MODEL,
         "identification/kinds/prepared_log.py": RIGID,
     },
     "StrainWave": {
-        "compensation/model_feedforward.hpp": MODEL,
+        "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
         "identification/results/ratio.py": SAID,
         "identification/checks/unexplained.py": "the ratio that two encoders show, as one of teeth",
     },
-    "Stochastic": {"analysis/steady.py": STEADY_RUNNING, "compensation/model_feedforward.hpp": MODEL},
+    "Stochastic": {"analysis/steady.py": STEADY_RUNNING, "drive_model.hpp": MODEL},
     "LuGre": {
         "identification/kinds/at_rest.py": "whose breakaway torque ramps tell",
     },
@@ -168,7 +179,7 @@ ELSEWHERE = {
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
     },
     "Linear": {
-        "compensation/model_feedforward.hpp": MODEL,
+        "drive_model.hpp": MODEL,
         "studies/actuator_ramp.py": SERIES,
         "rig/virtual/printed.py": PRINTED,
         "identification/kinds/between_encoders.py": REACHED,
@@ -185,7 +196,7 @@ ELSEWHERE = {
     "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},
     "Backlash": {"parameter_drive.hpp": BOUND_TO_ANY},
     "MaxwellSlip": {
-        "compensation/model_feedforward.hpp": MODEL,
+        "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
     },
 }

@@ -1,8 +1,10 @@
 """What turns the command into the motor's voltage, current or torque."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import strainwave._core
+import strainwave.loads
 
 
 class OpenLoop:
@@ -631,6 +633,328 @@ class StateFeedback:
 
     fields: tuple[dict[str, Any], ...]
 
+class StateSpace:
+    """
+    Linear controller of up to eight states and eight inputs, designed in another tool.
+
+    .. math:: \\dot x = A x + B y + l\\,(u - v), \\qquad v = C x + D y + u_f, \\qquad u = \\operatorname{clip}(v, \\pm u_{max})
+
+    .. math:: y = \\big(i r - \\theta_{in},\\; i \\dot r - \\omega_{in},\\; r - \\theta_{out},\\; \\dot r - \\omega_{out},\\;
+              i_m,\\; T,\\; r,\\; \\dot r\\big)
+
+    with r the commanded output angle, i the signed ratio, i_m the current, T the torque transmitted, u_f the feed-forward of a
+    compensation, l = tracking, u_max = limit or what the motor limits. C has one element for each state. D has one element for each
+    input: the controller takes the first inputs of y, and D determines how many. A and B are written row by row, one row for each
+    state. The states begin at 0. An angle error counts from the input lead of the compensation, as in StateFeedback.
+
+    In ``control.Sampled`` the states go forward by Euler, x + T (A x + B y). A controller of discrete time, x + = A_d x + B_d y, has
+    thus A = (A_d - 1)/T, B = B_d/T and the same C and D, and is then exact.
+
+    Where the output is limited, ``tracking`` leads the states. An observer that contains C takes the actuation limited with l =
+    the input matrix of its model. A PI controller takes l = 1/t, t its tracking time. Without tracking an integral winds up.
+
+    u is a voltage, and the units of a motor that takes one. For a motor that takes a current or a torque read A or N.m in place of V.
+
+    >>> from strainwave.control import StateSpace
+    >>> pi = StateSpace(A=[0.0], B=[1.0], C=[3.0], D=[0.5], tracking=[10.0], limit=10.0)
+    >>> pi.C
+    (3.0,)
+
+    Parameters
+    ----------
+    A: Rates of the states per state, row by row [1/s]; default ()
+    B: Rates of the states per input, row by row; default ()
+    C: Output per state; default ()
+    D: Output per input; its length is the number of inputs; default ()
+    tracking: Rates l of the states per output beyond its limit; none if empty; default ()
+    limit: Largest voltage, of either sign [V], in (0, inf); default 48.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    FranklinPowellEmamiNaeini2002, chapter 7; anti-windup by tracking of the limited output: AstromWittenmark1997, section 9.4
+    """
+
+    def __init__(self, *, A: float | Sequence[float] = ..., B: float | Sequence[float] = ..., C: float | Sequence[float] = ..., D: float | Sequence[float] = ..., tracking: float | Sequence[float] = ..., limit: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, A: float | Sequence[float] = ..., B: float | Sequence[float] = ..., C: float | Sequence[float] = ..., D: float | Sequence[float] = ..., tracking: float | Sequence[float] = ..., limit: float = ...) -> StateSpace:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def A(self) -> tuple[float, ...]:
+        """Rates of the states per state, row by row [1/s]"""
+
+    @property
+    def B(self) -> tuple[float, ...]:
+        """Rates of the states per input, row by row"""
+
+    @property
+    def C(self) -> tuple[float, ...]:
+        """Output per state"""
+
+    @property
+    def D(self) -> tuple[float, ...]:
+        """Output per input; its length is the number of inputs"""
+
+    @property
+    def tracking(self) -> tuple[float, ...]:
+        """Rates l of the states per output beyond its limit; none if empty"""
+
+    @property
+    def limit(self) -> float:
+        """Largest voltage, of either sign [V]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'state_space'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class FeedbackLinearisation:
+    """
+    Position controller of a flexible joint that makes the output obey a linear equation of fourth order, however large its motion.
+
+    .. math:: \\delta = \\theta/i - q - e(\\theta), \\qquad J \\ddot q = T(\\delta) - T_{load}(q, \\dot q), \\qquad
+              \\dot\\delta = g\\,\\omega - \\dot q, \\qquad g = 1/i - e'(\\theta)
+
+    .. math:: v = 4 w\\,(\\hat r^{(3)} - q^{(3)}) + 6 w^2 (\\hat{\\ddot r} - \\ddot q) + 4 w^3 (\\dot r - \\dot q) + w^4 (r - q)
+
+    .. math:: \\ddot\\delta = \\frac{J v + \\ddot T_{load} - T''(\\delta)\\, \\dot\\delta^2}{T'(\\delta)}, \\qquad
+              \\tau = J_{in}\\, \\frac{\\ddot\\delta + e''\\omega^2 + \\ddot q}{g} + g\\, T(\\delta), \\qquad
+              u = \\operatorname{clip}(p\\,\\tau + b\\,\\omega + u_f, \\pm u_{max})
+
+    with r the commanded output angle, theta, omega the measured input angle and speed, q the measured output angle, i the signed
+    ratio, e the kinematic error, T the stiffness of ``gear``, J the inertia of ``load``, J_in = motor_inertia + gear.input_inertia,
+    w = bandwidth, p = actuation_per_torque, b = actuation_per_speed (see ``Compensation``), u_f the feed-forward of a compensation,
+    u_max = limit. Where the model is exact and the limit is not reached, the output has four poles at -w: its error obeys
+    (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
+
+    It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
+    lags of the time reference_time. Derivatives of the load, and of stiffness and error over the motion, are central differences
+    over 0.01 / w.
+
+    Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
+    DisturbanceObserver takes away what is constant. It ignores the input leads of a compensation, because gear and
+    load are in it; a ModelFeedforward beside it must hold the friction alone. Needs a stiffness that is nowhere zero, and sensors
+    and a period that are fast against w. A large w amplifies noise by w^4.
+
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9))
+    >>> sw.control.FeedbackLinearisation(gear=gear, load=sw.loads.Inertia(inertia=0.5), bandwidth=40.0).limit
+    10.0
+
+    Parameters
+    ----------
+    gear: What is known of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
+    load: What the output carries; default Inertia(inertia=0.01)
+    motor_inertia: Inertia of the motor's rotor [kg.m2], in [0, inf); default 0.0001
+    bandwidth: Magnitude w of the four poles of the output [rad/s], in (0, inf); default 50.0
+    reference_time: Time of the lags that the derivatives of the command come from [s], in (0, inf); default 0.005
+    actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
+    actuation_per_speed: What the motor takes, per input speed b: its back-EMF [s/rad]; default 0.0
+    limit: Largest actuation, of either sign, in (0, inf); default 10.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Spong1987, section 3, with the kinematic error and its reaction; document P, which asks for feedback linearisation
+    """
+
+    def __init__(self, *, gear: strainwave._core.Gear = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., motor_inertia: float = ..., bandwidth: float = ..., reference_time: float = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ..., limit: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: strainwave._core.Gear = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., motor_inertia: float = ..., bandwidth: float = ..., reference_time: float = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ..., limit: float = ...) -> FeedbackLinearisation:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def gear(self) -> strainwave._core.Gear:
+        """What is known of the gear"""
+
+    @property
+    def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed:
+        """What the output carries"""
+
+    @property
+    def motor_inertia(self) -> float:
+        """Inertia of the motor's rotor [kg.m2]"""
+
+    @property
+    def bandwidth(self) -> float:
+        """Magnitude w of the four poles of the output [rad/s]"""
+
+    @property
+    def reference_time(self) -> float:
+        """Time of the lags that the derivatives of the command come from [s]"""
+
+    @property
+    def actuation_per_torque(self) -> float:
+        """What the motor takes, per torque p [1/(N.m)]"""
+
+    @property
+    def actuation_per_speed(self) -> float:
+        """What the motor takes, per input speed b: its back-EMF [s/rad]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest actuation, of either sign"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'feedback_linearisation'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class KinematicErrorTracking:
+    """
+    Position controller of a stiff gear with kinematic error, whose output converges although the ratio varies as the input turns.
+
+    .. math:: q = \\theta/i - e(\\theta), \\qquad g = 1/i - e'(\\theta), \\qquad M = J_{in} + J g^2, \\qquad
+              M \\dot\\omega + \\tfrac{1}{2} M' \\omega^2 = \\tau - g\\, T_{load}
+
+    .. math:: \\omega_r = \\frac{\\dot r + \\lambda (r - q)}{g}, \\qquad s = \\omega - \\omega_r, \\qquad
+              \\tau = M \\dot\\omega_r + \\tfrac{1}{2} M' \\omega\\, \\omega_r + g\\, T_{load} - K s
+
+    with r the commanded output angle, theta, omega the measured input angle and speed, i the signed ratio, e the kinematic error of
+    ``gear``, J and T_load inertia and torque of ``load``, J_in = motor_inertia + gear.input_inertia, lambda = bandwidth,
+    K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
+    The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
+
+    V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model exact. Then s falls with the rate K / M, and the error
+    r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
+    the command comes from a lag of the time reference_time.
+
+    The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
+    compensation, whose input leads the law ignores. It has no integral.
+
+    >>> import strainwave as sw
+    >>> error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[3e-4], phase=[0.0])
+    >>> law = sw.control.KinematicErrorTracking(gear=sw.Gear(kinematic_error=error), load=sw.loads.Inertia(inertia=0.5))
+    >>> law.bandwidth
+    20.0
+
+    Parameters
+    ----------
+    gear: What is known of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
+    load: What the output carries; default Inertia(inertia=0.01)
+    motor_inertia: Inertia of the motor's rotor [kg.m2], in [0, inf); default 0.0001
+    bandwidth: Rate lambda at which the error of the output falls [1/s], in (0, inf); default 20.0
+    speed_gain: Torque K per error s of the input speed [N.m.s/rad], in [0, inf); default 0.02
+    reference_time: Time of the lag that the acceleration of the command comes from [s], in (0, inf); default 0.005
+    actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
+    actuation_per_speed: What the motor takes, per input speed b: its back-EMF [s/rad]; default 0.0
+    limit: Largest actuation, of either sign, in (0, inf); default 10.0
+    feedback: The shaft whose encoder gives the output angle, one of ('input', 'output'); default 'output'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    GandhiGhorbel2002, in the form of SlotineLi1991, section 9.1, with the load and the sign convention of this package
+    """
+
+    def __init__(self, *, gear: strainwave._core.Gear = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., motor_inertia: float = ..., bandwidth: float = ..., speed_gain: float = ..., reference_time: float = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ..., limit: float = ..., feedback: str = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: strainwave._core.Gear = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., motor_inertia: float = ..., bandwidth: float = ..., speed_gain: float = ..., reference_time: float = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ..., limit: float = ..., feedback: str = ...) -> KinematicErrorTracking:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def gear(self) -> strainwave._core.Gear:
+        """What is known of the gear"""
+
+    @property
+    def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed:
+        """What the output carries"""
+
+    @property
+    def motor_inertia(self) -> float:
+        """Inertia of the motor's rotor [kg.m2]"""
+
+    @property
+    def bandwidth(self) -> float:
+        """Rate lambda at which the error of the output falls [1/s]"""
+
+    @property
+    def speed_gain(self) -> float:
+        """Torque K per error s of the input speed [N.m.s/rad]"""
+
+    @property
+    def reference_time(self) -> float:
+        """Time of the lag that the acceleration of the command comes from [s]"""
+
+    @property
+    def actuation_per_torque(self) -> float:
+        """What the motor takes, per torque p [1/(N.m)]"""
+
+    @property
+    def actuation_per_speed(self) -> float:
+        """What the motor takes, per input speed b: its back-EMF [s/rad]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest actuation, of either sign"""
+
+    @property
+    def feedback(self) -> str:
+        """The shaft whose encoder gives the output angle"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'kinematic_error_tracking'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
 class Sampled:
     """
     A controller that runs in a computer: it acts at instants and holds its output between them.
@@ -670,15 +994,15 @@ class Sampled:
     AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly for a constant input
     """
 
-    def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., compensation: strainwave._core.Compensation = ..., period: float = ..., delay: float = ...) -> None: ...
+    def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback | StateSpace | FeedbackLinearisation | KinematicErrorTracking = ..., compensation: strainwave._core.Compensation = ..., period: float = ..., delay: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., compensation: strainwave._core.Compensation = ..., period: float = ..., delay: float = ...) -> Sampled:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback | StateSpace | FeedbackLinearisation | KinematicErrorTracking = ..., compensation: strainwave._core.Compensation = ..., period: float = ..., delay: float = ...) -> Sampled:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback:
+    def law(self) -> OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback | StateSpace | FeedbackLinearisation | KinematicErrorTracking:
         """What is worked out at each instant"""
 
     @property

@@ -4,6 +4,7 @@
 #include <strainwave/fastest.hpp>
 
 #include "compensation.hpp"
+#include "drive.hpp"
 #include "laws.hpp"
 
 namespace strainwave::general {
@@ -18,6 +19,20 @@ template <>
 struct Around<control::Sampled<double>, Control<double>> : AroundAny<double> {};
 template <>
 struct Around<control::Sampled<Slope>, Control<Slope>> : AroundAny<Slope> {};
+
+/// A law that contains a model of the drive contains any gear and any load.
+template <class S, template <class, class, class> class Law>
+struct AroundModel {
+    using type = Law<S, GeneralGear<S>, general::Load<S>>;
+};
+#define SW_AROUND_MODEL(Law)                                                                     \
+    template <>                                                                                  \
+    struct Around<control::Law<double>, Control<double>> : AroundModel<double, control::Law> {}; \
+    template <>                                                                                  \
+    struct Around<control::Law<Slope>, Control<Slope>> : AroundModel<Slope, control::Law> {};
+SW_AROUND_MODEL(FeedbackLinearisation)
+SW_AROUND_MODEL(KinematicErrorTracking)
+#undef SW_AROUND_MODEL
 
 }  // namespace detail
 

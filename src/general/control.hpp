@@ -8,8 +8,8 @@ namespace strainwave::general {
 /// A controller by any law, sampled or not.
 template <class S>
 struct Control : Part {
-    using State = Storage<S, 4>;
-    using Discrete = Storage<S, 240>;
+    using State = Storage<S, 8>;
+    using Discrete = Storage<S, 248>;
     using Command = control::Command<S>;
     using Measurement = control::Measurement<S>;
 

@@ -121,3 +121,23 @@ class StateFeedback:
         )
         asked -= law.current * seen.current + law.torque * seen.torque
         return float(np.clip(asked, *within(seen, law.limit)))
+
+
+class StateSpace:
+    """The recursion x + T (A x + B y + l (u - v)) with matrices of numpy."""
+
+    def __init__(self, law: sw.control.StateSpace, period: float, ratio: float = RATIO) -> None:
+        self.law, self.period, self.ratio = law, period, ratio
+        states, inputs = len(law.C), len(law.D)
+        self.a, self.b = np.reshape(law.A, (states, states)), np.reshape(law.B, (states, inputs))
+        self.c, self.d, self.tracking = np.array(law.C), np.array(law.D), np.array(law.tracking or states * [0.0])
+        self.x = np.zeros(states)
+
+    def __call__(self, seen: sw.Seen) -> float:
+        errors = [self.ratio * seen.command - seen.input_angle, self.ratio * seen.command_rate - seen.input_speed]
+        errors += [seen.command - seen.output_angle, seen.command_rate - seen.output_speed]
+        y = np.array([*errors, seen.current, seen.torque, seen.command, seen.command_rate])[: len(self.d)]
+        asked = self.c @ self.x + self.d @ y
+        limited = float(np.clip(asked, *within(seen, self.law.limit)))
+        self.x = self.x + self.period * (self.a @ self.x + self.b @ y + self.tracking * (limited - asked))
+        return limited

@@ -1,17 +1,7 @@
 #pragma once
 #include <strainwave/compensation/compensator.hpp>
 #include <strainwave/compensation/inverse_twist.hpp>
-#include <strainwave/friction/coulomb.hpp>
-#include <strainwave/gear.hpp>
-#include <strainwave/hysteresis/maxwell_slip.hpp>
-#include <strainwave/kinematic_error/fourier.hpp>
-#include <strainwave/kinematic_error/steepest.hpp>
-#include <strainwave/kinematic_error/stochastic.hpp>
-#include <strainwave/kinematics.hpp>
-#include <strainwave/load/inertia.hpp>
-#include <strainwave/load/load.hpp>
-#include <strainwave/softening/thermal_softening.hpp>
-#include <strainwave/stiffness/linear.hpp>
+#include <strainwave/drive_model.hpp>
 
 namespace strainwave::compensation {
 
@@ -32,12 +22,7 @@ struct GearMemory {
     }
 };
 
-template <class S>
-using PlainGear = Gear<S, kinematics::StrainWave<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
-                       stiffness::Linear<S>, hysteresis::MaxwellSlip<S>, friction::Coulomb<S>, friction::Coulomb<S>,
-                       friction::Coulomb<S>, softening::ThermalSoftening<S>>;
-
-template <class S, class Gear_ = PlainGear<S>, class Load_ = load::Inertia<S>>
+template <class S, class Gear_ = drive_model::PlainGear<S>, class Load_ = drive_model::PlainLoad<S>>
 struct ModelFeedforward {
     using Gear = Gear_;
     using Load = Load_;
@@ -96,11 +81,8 @@ struct ModelFeedforward {
     }
 
     constexpr Contradiction<S> problem() const {
-        if (moves_output(load))
-            return {
-                "load must not be Prescribed, which moves the output by itself and needs no torque; give the load that a motor "
-                "moves"};
-        const S contraction = abs(gear.kinematics.ratio()) * kinematic_error::steepest<S>(gear.kinematic_error);
+        if (const auto found = drive_model::problem_of_load<S>(load); found.text) return found;
+        const S contraction = drive_model::contraction<S>(gear);
         if (rounds == 0 || all(contraction < S(1.0))) return {};
         return {
             "the kinematic error cannot be fed forward: |ratio| times its steepest slope is {}, and must be less than 1; set "
@@ -148,7 +130,7 @@ struct ModelFeedforward {
         const S carried = inertia_of<S>(load) * acceleration + load_torque<S>(load, command.value, command.rate, S(0.0)) +
                           output_sense * braking<S>(load, S(0.0)).slip;
         const S inverse = S(1.0) / command.ratio;
-        const Contact output{command.rate, output_sense, reduced(command.value), carried, temperature};
+        const Contact output{command.rate, output_sense, drive_model::reduced(command.value), carried, temperature};
         const S at_output = slid(gear.friction_output, x.gear.friction_output, output, period, next.gear.friction_output);
         const S transmitted = carried + at_output;
 
@@ -164,8 +146,8 @@ struct ModelFeedforward {
         const S input_acceleration = command.ratio * acceleration + changed(lead_rate, x.lead_rate);
 
         const S per_input = inverse - found.slope;
-        const Angle<S> angle = reduced(command.ratio * command.value + lead);
-        const Contact mesh{speed * per_input, output_sense, reduced(command.value), transmitted, temperature};
+        const Angle<S> angle = drive_model::reduced(command.ratio * command.value + lead);
+        const Contact mesh{speed * per_input, output_sense, drive_model::reduced(command.value), transmitted, temperature};
         const S at_mesh = slid(gear.friction_mesh, x.gear.friction_mesh, mesh, period, next.gear.friction_mesh);
         const Contact input{speed, x.sense, angle, per_input * transmitted, temperature};
         const S at_input = slid(gear.friction_input, x.gear.friction_input, input, period, next.gear.friction_input);
@@ -181,14 +163,6 @@ struct ModelFeedforward {
 
 private:
     using Contact = friction::Contact<S>;
-    /// True for a load that prescribes the motion of the output. For a choice, that of the chosen load.
-    template <class Carried>
-    static constexpr bool moves_output(const Carried& carried) {
-        if constexpr (requires { carried.model; })
-            return carried.visit([](const auto& chosen) { return moves_output(chosen); });
-        else
-            return prescribes(carried);
-    }
     static constexpr double least_follow = 0.1;  ///< share of the commanded speed that the input keeps where the error is steep
 
     /// Friction torque after one more period of motion. Sets `next` to the state after it.
@@ -203,7 +177,7 @@ private:
         const S relief = kinematic_error::relief(gear.kinematic_error, torque).factor;
         kinematic_error::Error<S> found{};
         for (int i = 0; i < rounds; ++i) {
-            const auto full = gear.kinematic_error.at(reduced(command.ratio * (command.value + twist + found.value)));
+            const auto full = gear.kinematic_error.at(drive_model::reduced(command.ratio * (command.value + twist + found.value)));
             found = {relief * full.value, relief * full.slope};
         }
         return found;

@@ -76,7 +76,9 @@ struct Sampled {
         }
     };
 
-    constexpr Discrete initial_discrete() const { return {{}, compensation.initial_state(), S(0.0), S(0.0), S(0.0)}; }
+    constexpr Discrete initial_discrete() const {
+        return {strainwave::initial_state(law), compensation.initial_state(), S(0.0), S(0.0), S(0.0)};
+    }
     constexpr auto compile() const {
         return Sampled<S, decltype(compiled(law)), decltype(compensation.compile())>{compiled(law), compensation.compile(), period,
                                                                                      delay};

@@ -17,6 +17,8 @@ PARAMETERS = {
     _core.control.Sampled: ("law", "compensation"),
     _core.Compensation: ("feedforward", "learning", "observer", "dither"),
     _core.compensation.ModelFeedforward: ("gear", "load"),
+    _core.control.FeedbackLinearisation: ("gear", "load"),
+    _core.control.KinematicErrorTracking: ("gear", "load"),
 }
 NAMESPACES = {"loads": "load"}  # the function `strainwave.load` takes that name in Python
 

@@ -1,8 +1,9 @@
-"""A linear-quadratic regulator: gains of a state feedback for a drive and the period of its controller."""
+"""A linear-quadratic regulator for a drive and the period of its controller: by all that is measured, or by the input alone."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,41 @@ from strainwave import Drive, Sensors, arguments, control, friction, meter, ther
 from strainwave.analysis.linear import linearise
 from strainwave.files.gear_set import GearSet
 from strainwave.tuning.cascade import Plant, gear_set_of, line_of_friction
+from strainwave.tuning.kalman import HeldPlant, Noise, held, with_filter
 
 Array = NDArray[np.float64]
+RESOLUTION = 2.0 * np.pi / 2**14  # rad: an encoder of 14 bit on the motor
+NOISE_SHARE = 0.01  # of the torque limit, as the standard deviation of the torque over a period
+RATE_SHARE = 1.0  # of the torque limit, by which the disturbance wanders in 1 s
+
+
+@overload
+def regulator(
+    drive: GearSet | Drive | str | Path,
+    *,
+    period: float = ...,
+    delay: float = ...,
+    error: float = ...,
+    effort: float | None = ...,
+    speed_error: float | None = ...,
+    encoder: Literal["output"] = ...,
+) -> control.StateFeedback: ...
+
+
+@overload
+def regulator(
+    drive: GearSet | Drive | str | Path,
+    *,
+    period: float = ...,
+    delay: float = ...,
+    error: float = ...,
+    effort: float | None = ...,
+    speed_error: float | None = ...,
+    encoder: Literal["input"],
+    resolution: float = ...,
+    torque_noise: float | None = ...,
+    disturbance_rate: float | None = ...,
+) -> control.StateSpace: ...
 
 
 def regulator(
@@ -23,16 +57,28 @@ def regulator(
     error: float = 1e-4,
     effort: float | None = None,
     speed_error: float | None = None,
-) -> control.StateFeedback:
+    encoder: Literal["output", "input"] = "output",
+    resolution: float = RESOLUTION,
+    torque_noise: float | None = None,
+    disturbance_rate: float | None = None,
+) -> control.StateFeedback | control.StateSpace:
     r"""Return the state feedback that minimises a sum of squares of errors and effort, as a sampled controller can.
 
     .. math:: \sum_k (\theta_{out} / e)^2 + (\omega_{out} / v)^2 + (u / u_0)^2
 
     with e = error, v = speed_error, u_0 = effort: what is as bad as the other (Bryson's rule). The drive is linearised where it
     rests at the output angle 0, hanging down, with viscous friction alone; its input is held over each period. Put the result
-    into `control.Sampled`, with a `Compensation` whose observer takes away constant disturbances, as it has no integral.
+    into `control.Sampled` of the same period and delay.
 
-    Source: AstromWittenmark1997, section 11.2 (discrete regulator), FranklinPowellEmamiNaeini2002, section 7.6 (weights).
+    With encoder="output" all is measured, and the result is a `StateFeedback`. It has no integral: add a `Compensation` whose
+    observer takes away constant disturbances.
+
+    With encoder="input" the angle of the motor alone is measured, and the result is a `StateSpace`: a stationary Kalman filter
+    estimates the motion of motor and output and a constant torque at the motor, which the law takes away. The design contains
+    the delay. A load torque at the output is estimated as one at the motor, so the twist that it causes stays as an error.
+
+    Source: AstromWittenmark1997, sections 11.2 (discrete regulator) and 11.3 (Kalman filter), FranklinPowellEmamiNaeini2002,
+    section 7.6 (weights).
 
     Args:
         drive: with motor and load: a set, a drive, or the name or path of a file
@@ -40,13 +86,21 @@ def regulator(
         error: of the output angle [rad]
         effort: of the motor, in what it takes [A] or [N.m]; a tenth of its limit if not given
         speed_error: of the output [rad/s]; its speed does not count if not given
+        encoder: shafts that are measured: the input and the output, or the input alone
+        resolution: step of the input encoder [rad]; its noise is that of rounding
+        torque_noise: standard deviation of the motor torque that the model lacks, over each period [N.m]; 1 % of its limit if
+            not given
+        disturbance_rate: standard deviation by which the constant torque changes in 1 s [N.m/s^(1/2)]; the limit if not
+            given. A larger one takes disturbances away faster
 
     Raises:
-        ValueError: as `compensate`; or the loop is not stable with this delay
+        ValueError: as `compensate`; or the loop is not stable with this delay; or the drive has more states than a `StateSpace`
 
     >>> law = regulator("robot-joint", error=1e-3)
     >>> law.input_angle != 0.0 and law.output_angle != 0.0
     True
+    >>> len(regulator("robot-joint", error=1e-3, encoder="input").C)
+    5
     """
     plant = Plant.of(
         gear_set_of(drive),
@@ -59,7 +113,17 @@ def regulator(
     speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
     cost = weight * np.outer(output, output)
     cost[states.index("output_speed"), states.index("output_speed")] += speed
-    gains = _gains(a, b, cost, 1.0 / limit**2, plant.period)
+    if arguments.one_of("encoder", encoder, ("output", "input")) == "input":
+        late = HeldPlant.of(a, b, plant.period, plant.delay)
+        largest = plant.limit / plant.actuation_per_torque
+        noise = Noise(
+            angle=arguments.number("resolution", resolution, "rad", low=0.0) / np.sqrt(12.0),
+            effort=plant.actuation_per_torque * _or_share("torque_noise", torque_noise, "N.m", NOISE_SHARE * largest),
+            effort_rate=plant.actuation_per_torque
+            * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
+        )
+        return with_filter(late, late.gains(cost, 1.0 / limit**2), states.index("input_angle"), noise, plant.limit)
+    gains = HeldPlant.of(a, b, plant.period, 0.0).gains(cost, 1.0 / limit**2)
     _check_with_delay(a, b, gains, plant)
     found = dict(zip(states, gains, strict=True))
     of_twist = found["transmission_error"]
@@ -70,6 +134,10 @@ def regulator(
         output_speed=found["output_speed"],
         limit=plant.limit,
     )
+
+
+def _or_share(name: str, value: float | None, unit: str, usual: float) -> float:
+    return usual if value is None else arguments.number(name, value, unit, low=0.0)
 
 
 def _linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
@@ -83,35 +151,12 @@ def _linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
     return linear.A, linear.B[:, linear.inputs.index("command")], linear.states, output
 
 
-def _held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
-    """Return the transition over a time [s] and the effect of an input that is held over it."""
-    from scipy.linalg import expm
-
-    count = len(a)
-    whole = np.zeros((count + 1, count + 1))
-    whole[:count, :count], whole[:count, count] = a, b
-    exact = expm(whole * time)
-    return exact[:count, :count], exact[:count, count]
-
-
-def _gains(a: Array, b: Array, cost: Array, effort: float, period: float) -> Array:
-    """Return the gains K of u = -K x that minimise the sum of squares, by the discrete Riccati equation."""
-    from scipy.linalg import solve_discrete_are
-
-    step, held = _held(a, b, period)
-    try:
-        value = solve_discrete_are(step, held[:, np.newaxis], cost, np.array([[effort]]))
-    except np.linalg.LinAlgError as error:
-        raise ValueError(f"no regulator is found for this drive and these weights: {error}") from None
-    return np.asarray(held @ value @ step / (effort + held @ value @ held))
-
-
 def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:
     """
     Raises:
         ValueError: the loop is not stable where the output comes late
     """
-    (late, late_input), (rest, rest_input) = _held(a, b, plant.delay), _held(a, b, plant.period - plant.delay)
+    (late, late_input), (rest, rest_input) = held(a, b, plant.delay), held(a, b, plant.period - plant.delay)
     before = (rest @ late_input)[:, np.newaxis]
     loop = np.block([[rest @ late - np.outer(rest_input, gains), before], [-gains[np.newaxis, :], np.zeros((1, 1))]])
     radius = float(np.abs(np.linalg.eigvals(loop)).max())

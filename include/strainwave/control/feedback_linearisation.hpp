@@ -1,0 +1,158 @@
+#pragma once
+#include <strainwave/control/reference.hpp>
+#include <strainwave/drive_model.hpp>
+
+namespace strainwave::control {
+
+template <class S, class Gear_ = drive_model::PlainGear<S>, class Load_ = drive_model::PlainLoad<S>>
+struct FeedbackLinearisation {
+    using Gear = Gear_;
+    using Load = Load_;
+
+    Gear gear{};
+    Load load{};
+    S motor_inertia{1e-4};
+    S bandwidth{50.0};
+    S reference_time{0.005};
+    S actuation_per_torque{1.0};
+    S actuation_per_speed{0.0};
+    S limit{10.0};
+
+    static constexpr auto name = "feedback_linearisation";
+    static constexpr auto command_unit = "rad";
+    static constexpr auto source =
+        "Spong1987, section 3, with the kinematic error and its reaction; document P, which asks for feedback linearisation";
+    static constexpr auto doc = R"(
+        Position controller of a flexible joint that makes the output obey a linear equation of fourth order, however large its motion.
+
+        .. math:: \delta = \theta/i - q - e(\theta), \qquad J \ddot q = T(\delta) - T_{load}(q, \dot q), \qquad
+                  \dot\delta = g\,\omega - \dot q, \qquad g = 1/i - e'(\theta)
+
+        .. math:: v = 4 w\,(\hat r^{(3)} - q^{(3)}) + 6 w^2 (\hat{\ddot r} - \ddot q) + 4 w^3 (\dot r - \dot q) + w^4 (r - q)
+
+        .. math:: \ddot\delta = \frac{J v + \ddot T_{load} - T''(\delta)\, \dot\delta^2}{T'(\delta)}, \qquad
+                  \tau = J_{in}\, \frac{\ddot\delta + e''\omega^2 + \ddot q}{g} + g\, T(\delta), \qquad
+                  u = \operatorname{clip}(p\,\tau + b\,\omega + u_f, \pm u_{max})
+
+        with r the commanded output angle, theta, omega the measured input angle and speed, q the measured output angle, i the signed
+        ratio, e the kinematic error, T the stiffness of ``gear``, J the inertia of ``load``, J_in = motor_inertia + gear.input_inertia,
+        w = bandwidth, p = actuation_per_torque, b = actuation_per_speed (see ``Compensation``), u_f the feed-forward of a compensation,
+        u_max = limit. Where the model is exact and the limit is not reached, the output has four poles at -w: its error obeys
+        (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
+
+        It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
+        lags of the time reference_time. Derivatives of the load, and of stiffness and error over the motion, are central differences
+        over 0.01 / w.
+
+        Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
+        DisturbanceObserver takes away what is constant. It ignores the input leads of a compensation, because gear and
+        load are in it; a ModelFeedforward beside it must hold the friction alone. Needs a stiffness that is nowhere zero, and sensors
+        and a period that are fast against w. A large w amplifies noise by w^4.
+
+        >>> import strainwave as sw
+        >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9))
+        >>> sw.control.FeedbackLinearisation(gear=gear, load=sw.loads.Inertia(inertia=0.5), bandwidth=40.0).limit
+        10.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, gear, "What is known of the gear"));
+        visit(SW_PART(m, load, "What the output carries"));
+        visit(SW_FIELD(m, motor_inertia, "kg.m2", "Inertia of the motor's rotor", 0));
+        visit(SW_FIELD(m, bandwidth, "rad/s", "Magnitude w of the four poles of the output", smallest));
+        visit(SW_FIELD(m, reference_time, "s", "Time of the lags that the derivatives of the command come from", smallest));
+        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
+        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed b: its back-EMF"));
+        visit(SW_FIELD(m, limit, "1", "Largest actuation, of either sign", smallest));
+    }
+
+    constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
+
+    constexpr auto compile() const {
+        return FeedbackLinearisation<S, decltype(gear.compile()), decltype(compiled(load))>{
+            gear.compile(), compiled(load),       motor_inertia,       bandwidth,
+            reference_time, actuation_per_torque, actuation_per_speed, limit};
+    }
+
+    using State = ReferenceLags<S>;
+
+    constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
+        const Motion at = motion(measured);
+        const S torque = motor_torque(at, measured.input_speed, snap(x, command, measured, at));
+        const S asked = actuation_per_torque * torque + actuation_per_speed * measured.input_speed + command.feedforward;
+        return measured.limits.within(limit).limited(asked);
+    }
+    constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
+        return ReferenceMotion<S>(x, command, reference_time).rate();
+    }
+    constexpr State relaxation_rate() const { return {S(1.0) / reference_time, S(1.0) / reference_time}; }
+    /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
+    constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
+
+private:
+    static constexpr double share_of_difference = 0.01;  ///< of 1 / bandwidth, over which derivatives are differences
+    static constexpr double least_stiffness = 1e-3;      ///< of inertia times bandwidth squared: what the law divides by at least
+
+    /// What the model determines from the measurements.
+    struct Motion {
+        S per_input;          ///< twist per input angle g
+        S per_input_rate;     ///< 1/s
+        S torque;             ///< of the spring, N.m
+        S tangent;            ///< N.m/rad
+        S tangent_rate;       ///< N.m/(rad.s)
+        S twist_rate;         ///< rad/s
+        S acceleration;       ///< of the output, rad/s2
+        S jerk;               ///< rad/s3
+        S load_acceleration;  ///< second derivative of the load torque over time, N.m/s2
+    };
+
+    constexpr Motion motion(const Measurement<S>& measured) const {
+        const S inverse = gear.kinematics.inverse_ratio(), inertia = inertia_of<S>(load), step = S(share_of_difference) / bandwidth;
+        const auto error = error_at(measured.input_angle);
+        const S turned = step * measured.input_speed, per_step = S(0.5) / step;
+        Motion at{};
+        at.per_input = inverse - error.slope;
+        at.per_input_rate =
+            (error_at(measured.input_angle - turned).slope - error_at(measured.input_angle + turned).slope) * per_step;
+        const S twist = inverse * measured.input_angle - measured.output_angle - error.value;
+        at.twist_rate = at.per_input * measured.input_speed - measured.output_speed;
+        const S twisted = step * at.twist_rate;
+        at.torque = gear.stiffness.torque(twist);
+        at.tangent = gear.stiffness.tangent(twist);
+        at.tangent_rate = (gear.stiffness.tangent(twist + twisted) - gear.stiffness.tangent(twist - twisted)) * per_step;
+
+        const S carried = carried_after(measured, S(0.0), S(0.0), S(0.0));
+        at.acceleration = (at.torque - carried) / inertia;
+        const S load_rate =
+            (carried_after(measured, at.acceleration, S(0.0), step) - carried_after(measured, at.acceleration, S(0.0), -step)) *
+            per_step;
+        at.jerk = (at.tangent * at.twist_rate - load_rate) / inertia;
+        const S around =
+            carried_after(measured, at.acceleration, at.jerk, step) + carried_after(measured, at.acceleration, at.jerk, -step);
+        at.load_acceleration = (around - S(2.0) * carried) / (step * step);
+        return at;
+    }
+    /// Fourth derivative of the output angle that is to be [rad/s4].
+    constexpr S snap(const State& x, const Command<S>& command, const Measurement<S>& measured, const Motion& at) const {
+        const ReferenceMotion<S> wanted(x, command, reference_time);
+        const S w = bandwidth;
+        const S position = command.value - measured.output_angle, speed = command.rate - measured.output_speed;
+        return w * (S(4.0) * (wanted.jerk - at.jerk) +
+                    w * (S(6.0) * (wanted.acceleration - at.acceleration) + w * (S(4.0) * speed + w * position)));
+    }
+    constexpr S motor_torque(const Motion& at, const S& input_speed, const S& snap) const {
+        const S inertia = inertia_of<S>(load), tangent = max(at.tangent, S(least_stiffness) * inertia * bandwidth * bandwidth);
+        const S twist_acceleration = (inertia * snap + at.load_acceleration - at.tangent_rate * at.twist_rate) / tangent;
+        const S input_acceleration = (twist_acceleration - at.per_input_rate * input_speed + at.acceleration) / at.per_input;
+        return (motor_inertia + gear.input_inertia) * input_acceleration + at.per_input * at.torque;
+    }
+    constexpr auto error_at(const S& angle) const { return gear.kinematic_error.at(drive_model::reduced(angle)); }
+    /// Torque of the load after a time [s] of a motion from the measured one on [N.m].
+    constexpr S carried_after(const Measurement<S>& measured, const S& acceleration, const S& jerk, const S& time) const {
+        const S angle = measured.output_angle + time * (measured.output_speed + S(0.5) * time * acceleration);
+        const S speed = measured.output_speed + time * (acceleration + S(0.5) * time * jerk);
+        return load_torque<S>(load, angle, speed, S(0.0));
+    }
+};
+
+}  // namespace strainwave::control
