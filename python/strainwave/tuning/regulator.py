@@ -55,7 +55,7 @@ def regulator(
     )
     weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
-    a, b, states, output = _linear(plant)
+    a, b, states, output = linear(plant)
     speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
     cost = weight * np.outer(output, output)
     cost[states.index("output_speed"), states.index("output_speed")] += speed
@@ -72,18 +72,18 @@ def regulator(
     )
 
 
-def _linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
+def linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
     """Return A, B of the actuation, the names of the states, and the output angle as their sum."""
     _, viscous = line_of_friction(plant.drive.gear)
     none = friction.Viscous()
     gear = plant.drive.gear.replace(friction_input=friction.Viscous(viscous=viscous), friction_mesh=none, friction_output=none)
     alone = plant.drive.replace(gear=gear, sensors=Sensors(), meter=meter.NoMeter(), thermal=thermal.Isothermal())
-    linear = linearise(alone)
-    output = np.array([{"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}.get(name, 0.0) for name in linear.states])
-    return linear.A, linear.B[:, linear.inputs.index("command")], linear.states, output
+    found = linearise(alone)
+    output = np.array([{"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}.get(name, 0.0) for name in found.states])
+    return found.A, found.B[:, found.inputs.index("command")], found.states, output
 
 
-def _held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
+def held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
     """Return the transition over a time [s] and the effect of an input that is held over it."""
     from scipy.linalg import expm
 
@@ -98,12 +98,12 @@ def _gains(a: Array, b: Array, cost: Array, effort: float, period: float) -> Arr
     """Return the gains K of u = -K x that minimise the sum of squares, by the discrete Riccati equation."""
     from scipy.linalg import solve_discrete_are
 
-    step, held = _held(a, b, period)
+    step, driven = held(a, b, period)
     try:
-        value = solve_discrete_are(step, held[:, np.newaxis], cost, np.array([[effort]]))
+        value = solve_discrete_are(step, driven[:, np.newaxis], cost, np.array([[effort]]))
     except np.linalg.LinAlgError as error:
         raise ValueError(f"no regulator is found for this drive and these weights: {error}") from None
-    return np.asarray(held @ value @ step / (effort + held @ value @ held))
+    return np.asarray(driven @ value @ step / (effort + driven @ value @ driven))
 
 
 def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:
@@ -111,7 +111,7 @@ def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:
     Raises:
         ValueError: the loop is not stable where the output comes late
     """
-    (late, late_input), (rest, rest_input) = _held(a, b, plant.delay), _held(a, b, plant.period - plant.delay)
+    (late, late_input), (rest, rest_input) = held(a, b, plant.delay), held(a, b, plant.period - plant.delay)
     before = (rest @ late_input)[:, np.newaxis]
     loop = np.block([[rest @ late - np.outer(rest_input, gains), before], [-gains[np.newaxis, :], np.zeros((1, 1))]])
     radius = float(np.abs(np.linalg.eigvals(loop)).max())
