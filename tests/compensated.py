@@ -16,9 +16,10 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.tuning.candidates import candidates
 from strainwave.tuning.cascade import Plant
-from strainwave.tuning.compensate import Judged, best_cascade, judged
+from strainwave.tuning.compensate import best_cascade
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import Goal, position
+from strainwave.tuning.judging import Judged, judged
 
 SPREADS = (0.0, 0.1, 0.3)
 FIGURES = ("tracking error", "error at reversals")
@@ -77,7 +78,7 @@ def main() -> int:
             draws = drawn_gears(spread(gear_set, by), wanted.members)
             few = {path: values[:TUNED] for path, values in draws.items()}
             cascades = [best_cascade(plant, goal, few, encoder).candidate for encoder in ("input", "output")]
-            others = candidates(plant, [each.setting for each in cascades])
+            others = candidates(plant, [each.setting for each in cascades], goal, few)
             for candidate in (*cascades, *others):
                 found = judged(candidate, goal, draws, plant)
                 failures += found.failures

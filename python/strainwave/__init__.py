@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from strainwave.simulation.scenario_file import ScenarioFile
     from strainwave.tuning.approach import LostMotion, PositioningPath, lost_motion, positioning_path
     from strainwave.tuning.compensate import Compensated, compensate
+    from strainwave.tuning.loops import LoopMargins, cascade, loop_margins
     from strainwave.tuning.pulses import (
         PulsedMove,
         PulsePlan,
@@ -121,8 +122,10 @@ _LAZY = {
     "Seen": "simulation.controller",
     "Slot": "tuning.slots",
     "TransmissionError": "orders.two_encoders",
+    "LoopMargins": "tuning.loops",
     "bearing_orders": "orders.order_spectrum",
     "bootstrap": "identification.fitting.bootstrap",
+    "cascade": "tuning.loops",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
     "combinations": "identification.fitting.combinations",
@@ -138,6 +141,7 @@ _LAZY = {
     "identify": "identification.identify",
     "linearise": "analysis.linear",
     "load": "files.gear_set",
+    "loop_margins": "tuning.loops",
     "lost_motion": "tuning.approach",
     "minima": "identification.fitting.minima",
     "modes": "analysis.linear",
@@ -190,6 +194,7 @@ __all__ = [
     "Identified",
     "KernelWarning",
     "Linearisation",
+    "LoopMargins",
     "LostMotion",
     "Minima",
     "Orders",
@@ -213,6 +218,7 @@ __all__ = [
     "TransmissionError",
     "bearing_orders",
     "bootstrap",
+    "cascade",
     "catalogue",
     "check_ratings",
     "combinations",
@@ -235,6 +241,7 @@ __all__ = [
     "linearise",
     "load",
     "loads",
+    "loop_margins",
     "lost_motion",
     "meter",
     "minima",

@@ -15,12 +15,15 @@ if TYPE_CHECKING:
 
 def compensate(
     drive: Annotated[str, typer.Argument(help="A drive with motor and load: a set by name, or a file as identify writes it.")],
-    goal: Annotated[str, typer.Option(help="position (to and fro), speed (constant) or smooth (creeping).")] = "position",
+    goal: Annotated[
+        str, typer.Option(help="position (to and fro), speed (constant), smooth (creeping) or torque.")
+    ] = "position",
     period: Annotated[float, typer.Option(help="Period of the controller [s].")] = 1e-3,
     delay: Annotated[float, typer.Option(help="From a sample to the output of the controller [s].")] = 0.0,
     encoder: Annotated[str, typer.Option(help="output if the controller sees the output angle too.")] = "input",
     travel: Annotated[float, typer.Option(help="Travel of the output, for position [rad].")] = 0.2,
     speed: Annotated[float | None, typer.Option(help="Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
+    torque: Annotated[float | None, typer.Option(help="Torque of the output, for torque [N.m].")] = None,
     members: Annotated[int, typer.Option(help="Number of drawn gears.")] = 40,
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
     slot: Annotated[
@@ -60,8 +63,8 @@ def compensate(
         raise ValueError(f"--{next(iter(given)).replace('_', '-')} belongs to a slot; name one by --slot")
     with progress(None) as turn:
         found = compensated(
-            gear_set, goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed, members=members,
-            seed=seed, progress=turn,
+            gear_set, goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed, torque=torque,
+            members=members, seed=seed, progress=turn,
         )  # fmt: skip
         turn("report")
         files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))

@@ -16,7 +16,8 @@ from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
 from strainwave.simulation.run import simulate
 from strainwave.tuning.candidates import EFFECTS
-from strainwave.tuning.compensate import Compensated, Judged
+from strainwave.tuning.compensate import Compensated
+from strainwave.tuning.judging import Judged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,16 +48,25 @@ def compensate_summary(found: Compensated) -> str:
 def _lines(found: Compensated) -> Iterator[str]:
     yield verdict(found)
     figure = found.goal.judged_by
-    yield f"  {figure + ': the gear as it is stated, median, 95 % below':70}"
+    yield f"  {figure}: the gear as it is stated, median, 95 % below; median of {found.goal.second}"
     for judged in found.tried[: 1 + MAX_LISTED]:
-        yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}"
-    yield from (f"  {line}" for line in removed(found))
+        yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}; {_second(judged, found)}"
+    yield from (f"  {line}" for line in (*removed(found), *too_much(found), *elsewhere(found), margins(found)))
     yield from (f"  note: {remark}" for remark in found.remarks)
 
 
 def _figures(judged: Judged, found: Compensated) -> list[str]:
     figure, unit = found.goal.judged_by, found.goal.units[found.goal.judged_by]
-    return [typeset.quantity(value, unit) for value in (judged.nominal[figure], judged.median(figure), judged.upper(figure))]
+    return [_or_none(value, unit) for value in (judged.nominal[figure], judged.median(figure), judged.upper(figure))]
+
+
+def _second(judged: Judged, found: Compensated) -> str:
+    return _or_none(judged.median(found.goal.second), found.goal.units[found.goal.second])
+
+
+def _or_none(value: float, unit: str) -> str:
+    """Return a number with its unit; a dash for one that is not reached, as a time that ends before the output settles."""
+    return typeset.quantity(value, unit) if np.isfinite(value) else "\N{EN DASH}"
 
 
 def removed(found: Compensated) -> Iterator[str]:
@@ -71,6 +81,52 @@ def removed(found: Compensated) -> Iterator[str]:
             does = "removes" if after < before else "adds"
             change, left = (typeset.quantity(each, found.goal.units[figure]) for each in (abs(before - after), after))
             yield f"{effect}: its model {does} {change} of {figure}; {left} are left with the models of all effects"
+
+
+def too_much(found: Compensated) -> Iterator[str]:
+    """Yield for each effect how much less of it the drive may have than the model of the chosen controller."""
+    for each in found.over_compensation:
+        most = each.factors[-1]
+        gains = f"gains up to {each.gains_up_to:g} times less" if each.gains_up_to > 1.0 else "does not gain"
+        fails = "" if each.stable_up_to == most else f", and fails above {each.stable_up_to:g} times less"
+        yield f"{each.effect}: if the drive has less of it than the model, the controller {gains} (of {most:g} tried){fails}"
+
+
+def _too_much(found: Compensated) -> Iterator[tuple[str, str, str, str]]:
+    """Yield effect, factor and the figures of cascade and chosen controller."""
+    unit = found.goal.units[found.goal.judged_by]
+    for each in found.over_compensation:
+        for factor, before, after in zip(each.factors, each.baseline, each.chosen, strict=True):
+            yield each.effect, f"{factor:g}", _or_none(before, unit), _or_none(after, unit)
+
+
+def elsewhere(found: Compensated) -> Iterator[str]:
+    """Yield the medians of cascade and chosen controller under other conditions, if one was chosen."""
+    if found.is_compensated:
+        for name, before, after in _conditions(found):
+            yield f"{name}: {before} with the cascade, {after} with the chosen controller"
+
+
+def _conditions(found: Compensated) -> Iterator[tuple[str, str, str]]:
+    figure, unit = found.goal.judged_by, found.goal.units[found.goal.judged_by]
+    for each in found.conditions:
+        yield each.name, _or_none(each.baseline.median(figure), unit), _or_none(each.chosen.median(figure), unit)
+
+
+def margins(found: Compensated) -> str:
+    """Return the margins of both loops of the chosen controller."""
+    return "; ".join(f"{name} loop: {', '.join(values)}" for name, *values in _margins(found, named=True))
+
+
+def _margins(found: Compensated, named: bool = False) -> Iterator[tuple[str, ...]]:
+    for name, loop in (("speed", found.margins.speed), ("position", found.margins.position)):
+        yield (
+            name,
+            f"{'crossover ' if named else ''}{typeset.quantity(loop.crossover, 'rad/s')}",
+            f"{'gain margin ' if named else ''}{f'{loop.gain:.3g}' if np.isfinite(loop.gain) else 'any'}",
+            f"{'phase margin ' if named else ''}{f'{np.degrees(loop.phase):.0f}°' if np.isfinite(loop.phase) else 'any'}",
+            f"{'modulus margin ' if named else ''}{loop.modulus:.2f}",
+        )
 
 
 def compensate_files(found: Compensated, provenance: Provenance | None = None) -> dict[str, str]:
@@ -100,6 +156,26 @@ def _results(found: Compensated) -> dict[str, Any]:
         "members": found.members,
         "chosen": found.chosen.candidate.name,
         "remarks": list(found.remarks),
+        "margins": found.margins,
+        "over_compensation": [
+            {
+                "effect": each.effect,
+                "smaller_by": each.factors,
+                "cascade": each.baseline,
+                "chosen": each.chosen,
+                "gains_up_to": each.gains_up_to,
+                "stable_up_to": each.stable_up_to,
+            }
+            for each in found.over_compensation
+        ],
+        "conditions": [
+            {
+                "name": each.name,
+                "cascade": each.baseline.median(found.goal.judged_by),
+                "chosen": each.chosen.median(found.goal.judged_by),
+            }
+            for each in found.conditions
+        ],
         "controllers": [
             {
                 "name": each.candidate.name,
@@ -125,14 +201,25 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "figure": figure,
             "cascade": found.baseline.candidate.name,
             "rows": [
-                (each.candidate.name, *_figures(each, found), each.failures, each.candidate is found.chosen.candidate)
+                (
+                    each.candidate.name,
+                    *_figures(each, found),
+                    _second(each, found),
+                    each.failures,
+                    each.candidate is found.chosen.candidate,
+                )
                 for each in found.tried
             ],
             "others": [
-                (name, typeset.quantity(found.baseline.median(name), unit), typeset.quantity(found.chosen.median(name), unit))
+                (name, _or_none(found.baseline.median(name), unit), _or_none(found.chosen.median(name), unit))
                 for name, unit in units.items()
             ],
             "removed": list(removed(found)),
+            "second": found.goal.second,
+            "too_much": list(_too_much(found)),
+            "limits": list(too_much(found)),
+            "conditions": list(_conditions(found)) if found.is_compensated else [],
+            "margins": list(_margins(found)),
             "remarks": found.remarks,
             "members": found.members,
             "picture": figures.inline(lambda canvas: _errors(canvas, found), (figures.WIDTH, 3.0), "errors", _title(found)),
@@ -151,7 +238,9 @@ def _errors(canvas: Figure, found: Compensated) -> None:
     command = found.goal.command
     runs = {"cascade": found.baseline} | ({"compensated": found.chosen} if found.is_compensated else {})
     for (label, judged), (colour, line, width) in zip(runs.items(), (figures.RUNS[1], figures.RUNS[0]), strict=False):
-        run = simulate(judged.candidate.drive, command, sample=command.duration / 2000.0)
+        control: Any = judged.candidate.drive.control
+        sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
+        run = simulate(judged.candidate.drive, command, sample=sample)
         error = np.asarray(command.value(run.time) - run["output_angle"])
         figures.curve(axes, run.time, error, color=figures.LIGHT[colour], linestyle=line, linewidth=width, label=label)
     figures.label_axes(axes, "error of the output", "rad", "time", "s")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave import Compensation, Drive, Gear, _core, compensation, stiffness
 from strainwave.tuning.cascade import (
@@ -20,7 +22,11 @@ from strainwave.tuning.cascade import (
     speed_bandwidth,
     tuned_law,
 )
+from strainwave.tuning.goals import Goal
+from strainwave.tuning.loops import Loops, sampled_cascade
 from strainwave.tuning.steady_torque import steady_torque
+
+Array = NDArray[np.float64]
 
 EFFECTS = {
     "friction": ("friction_input", "friction_mesh", "friction_output"),
@@ -31,6 +37,11 @@ MAX_ORDERS = 4  # that an AdaptiveFourier holds
 LEARNING_SHARE = 0.2  # rate of learning over the gain of the position loop
 MAX_WAVE_SHARE = 0.9  # frequency of a wave that is learnt over the gain of the position loop, which lags by 45 degrees at 1
 MAX_AMPLITUDE = 2e-3  # rad at the output, that is learnt
+MAX_TABLE_ORDER = 8  # that a Repetitive learns whole
+TABLE_CELLS = 32  # of a Repetitive
+MAX_SHARE_OF_PASS = 0.3  # of an error, that a cell learns while the input passes it
+MAP_POINTS = 5  # of a map of lost motion
+MAP_REACH_SHARES, MAP_REACHES = (1e-3, 1.0), 13  # over the travel, of which the best is taken
 SCALE_TIME = 1.0  # s, in which the scale of friction follows
 USUAL_SPEED = 20.0  # rad/s of the input
 MIN_FRICTION = 1e-6  # N.m
@@ -69,11 +80,11 @@ def baseline(plant: Plant, setting: Setting) -> Candidate:
     return Candidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
 
 
-def candidates(plant: Plant, settings: Sequence[Setting]) -> Iterator[Candidate]:
+def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Mapping[str, Array]) -> Iterator[Candidate]:
     """Yield the cascade of each setting with models of each choice of effects, and with what observes or learns.
 
     Waves over the input are learnt where the controller follows the input encoder and sees the output, so only if there are
-    settings of both encoders.
+    settings of both encoders. A map of lost motion is for a motion that turns back.
     """
     gear = plant.drive.gear
     present = [effect for effect in EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
@@ -87,10 +98,13 @@ def candidates(plant: Plant, settings: Sequence[Setting]) -> Iterator[Candidate]
             yield _with_model(plant, setting, effects)
             if "friction" in effects:
                 yield _with_scale(plant, setting, effects)
+        if "torsion" in present and goal.pace and setting.feedback == "input":
+            yield _with_map(plant, setting, goal)
         if sees_output and setting.feedback == "input" and orders:
+            learners = list(_learners(plant, setting, orders, goal, draws))
             for effects in [(), *choices]:
                 if "kinematic error" not in effects:
-                    yield _with_learning(plant, setting, effects, orders)
+                    yield from (_with_learning(plant, setting, effects, *each) for each in learners)
 
 
 def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
@@ -108,19 +122,108 @@ def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Can
     return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
 
 
-def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], orders: list[float]) -> Candidate:
-    """Return the same with orders of the input that are learnt."""
-    law = tuned_law(plant, setting)
-    learner = compensation.AdaptiveFourier(
-        order=orders,
-        gain=LEARNING_SHARE * law.position_gain,
-        max_frequency=MAX_WAVE_SHARE * law.position_gain,
-        limit=MAX_AMPLITUDE,
+def _with_map(plant: Plant, setting: Setting, goal: Goal) -> Candidate:
+    """Return the cascade with a map of lost motion, and friction that the law feeds forward if no observer supplies it."""
+    law, per_torque = tuned_law(plant, setting), plant.actuation_per_torque
+    if not setting.observer_share:
+        coulomb, viscous = (per_torque * each for each in line_of_friction(plant.drive.gear))
+        law = law.replace(coulomb_feedforward=coulomb, viscous_feedforward=viscous)
+    added = Compensation(
+        feedforward=lost_motion_map(plant, goal), observer=observer_of(plant, setting), actuation_per_torque=per_torque
     )
+    return Candidate("map of lost motion", ("torsion",), setting, plant.controlled(law, added), 1)
+
+
+def lost_motion_map(plant: Plant, goal: Goal) -> compensation.LostMotionMap:
+    """Return the lead that torsion and friction of the output ask for along a motion to and fro, as a table over the angle.
+
+    `reach` is that of the least squares of what the table leaves of the lead.
+    """
+    gear = with_effects(plant.drive.gear, ("torsion",)).replace(friction_output=plant.drive.gear.friction_output)
+    model, count = model_of(plant, gear), round(2.0 * np.pi / goal.pace / plant.period)
+    time = plant.period * np.arange(2 * count)
+    angle, rate = goal.command.value(time), goal.command.rate(time)
+    lead = model.requests(angle, rate, ratio=plant.ratio, period=plant.period)[0] / plant.ratio
+    rising = rate > 0.0
+    points = np.linspace(angle.min(), angle.max(), 2 * MAP_POINTS + 1)[1::2]  # away from the ends, where it turns back
+    last = np.arange(2 * count) >= count
+    forward, backward = (_over_angle(points, angle[last & sense], lead[last & sense]) for sense in (rising, ~rising))
+    reach = min(
+        np.ptp(angle) * np.geomspace(*MAP_REACH_SHARES, MAP_REACHES),
+        key=lambda each: np.sum((lead - _mapped(points, forward, backward, each, angle))[last] ** 2),
+    )
+    angles, leads = points.tolist(), (forward.tolist(), backward.tolist())
+    return compensation.LostMotionMap(angle=angles, forward=leads[0], backward=leads[1], reach=float(reach))
+
+
+def _over_angle(points: Array, angle: Array, lead: Array) -> Array:
+    order = np.argsort(angle)
+    return np.interp(points, angle[order], lead[order])
+
+
+def _mapped(points: Array, forward: Array, backward: Array, reach: float, angle: Array) -> Array:
+    """Return the lead of a `LostMotionMap` along a motion."""
+    above, below = np.interp(angle, points, forward), np.interp(angle, points, backward)
+    sense, now = np.zeros(len(angle)), 0.0
+    for k, moved in enumerate(np.diff(angle), 1):
+        now = np.sign(moved) + (now - np.sign(moved)) * np.exp(-abs(moved) / reach) if moved else now
+        sense[k] = now
+    return np.asarray(0.5 * (above + below + sense * (above - below)))
+
+
+def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], name: str, learner: Any) -> Candidate:
+    """Return a model with what is learnt over the input."""
     added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(learning=learner)
-    which = f"order {orders[0]:g}" if len(orders) == 1 else f"orders {_and([f'{order:g}' for order in orders])}"
-    name = f"{_name(effects, setting)}, {which} learnt"
-    return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
+    drive = plant.controlled(tuned_law(plant, setting), added)
+    return Candidate(f"{_name(effects, setting)}, {name} learnt", effects, setting, drive, len(effects) + 1)
+
+
+def _learners(
+    plant: Plant, setting: Setting, orders: list[float], goal: Goal, draws: Mapping[str, Array]
+) -> Iterator[tuple[str, Any]]:
+    """Yield what learns, with its name; nothing if the loop follows no order with a phase that is known."""
+    law, speed = tuned_law(plant, setting), goal.speed * abs(plant.ratio)
+    max_frequency = MAX_WAVE_SHARE * law.position_gain
+    learnt, lag = learnable(plant, setting, orders, np.minimum(np.multiply(orders, speed), max_frequency), draws)
+    if not learnt:
+        return
+    which = f"order {learnt[0]:g}" if len(learnt) == 1 else f"orders {_and([f'{order:g}' for order in learnt])}"
+    gain = LEARNING_SHARE * law.position_gain
+    yield (
+        which,
+        compensation.AdaptiveFourier(order=learnt, gain=gain, lag=lag, max_frequency=max_frequency, limit=MAX_AMPLITUDE),
+    )
+    if all(order.is_integer() and order <= MAX_TABLE_ORDER for order in learnt):
+        yield (
+            "a turn of the input",
+            compensation.Repetitive(
+                gain=min(0.5 * TABLE_CELLS * gain, MAX_SHARE_OF_PASS * TABLE_CELLS * speed / (2.0 * np.pi)),
+                lag=lag,
+                max_speed=max_frequency / max(learnt),
+                limit=MAX_AMPLITUDE,
+            ),
+        )
+
+
+def learnable(
+    plant: Plant, setting: Setting, orders: Sequence[float], frequency: Array, draws: Mapping[str, Array]
+) -> tuple[list[float], float]:
+    """Return those orders whose waves the loops of all drawn gears follow within 90 degrees of a lag, and this lag [s].
+
+    Args:
+        plant, setting: the drive and its cascade
+        orders: of the waves over the input
+        frequency: of each [rad/s]
+        draws: numbers of drawn gears, by path
+    """
+    sampled = sampled_cascade(plant, setting)
+    lag = float(-np.mean(np.angle(Loops.of(plant, sampled).following(frequency)) / frequency))
+    known = np.ones(len(orders), dtype=bool)
+    for k in range(len(next(iter(draws.values()), ()))):
+        drawn = replace(plant, drive=plant.drive.replace({path: float(each[k]) for path, each in draws.items()}))
+        follows = Loops.of(drawn, sampled).following(frequency) * np.exp(1j * frequency * lag)
+        known &= follows.real > 0.0
+    return [order for order, within in zip(orders, known, strict=True) if within], max(lag, 0.0)
 
 
 def _name(effects: tuple[str, ...], setting: Setting) -> str:

@@ -2,39 +2,39 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import product
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, arguments, loads
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
 from strainwave.parameters import Parameter, every
-from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.tuning import goals
-from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, Candidate, baseline, candidates, has_effect, too_steep
+from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting, gear_set_of, tuned_law
+from strainwave.tuning.conditions import Condition, OverCompensation, conditions, over_compensation
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
+from strainwave.tuning.judging import Judged, judged
+from strainwave.tuning.loops import LoopMargins, margins_of, sharpest
 
 Array = NDArray[np.float64]
 
-SHARPNESSES = (1.0, 0.5, 0.25, 0.125)  # of the cascade, of which the best one is taken
+SHARPNESS_SHARES = (1.0, 0.5, 0.25)  # of the largest sharpness that the margins allow; the best one is taken
 OBSERVER_SHARES = (0.5, 0.0)  # bandwidth of its observer over that of its speed loop, likewise; 0 for none
-AT_LIMIT = 0.999  # of the limit of the motor
-MAX_SHARE_AT_LIMIT = 0.01  # of the time, of a run that counts
 MIN_SAMPLES = 100  # periods of a motion
 MIN_MEMBERS = 3
 MIN_GAIN = 0.05  # relative: what gains less is not worth another part
 CREEP_SPEED_SHARE = 0.01  # of the usual speed, for the goal `smooth`
-MAX_STEP = 2e-4  # s, of the simulation
-STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a stiffer gear is followed, too
-TURNS = 8.0  # of the input, over which the speed is judged
+SPEED_GOAL_TURNS = 8.0  # of the input, over which the speed is judged
+TORQUE_SHARE = 0.2  # of the largest torque of the motor, times the ratio, for the goal `torque`
+TORQUE_FREQUENCY = 1.0  # Hz, at which the torque goes to and fro
+STOP_STIFFNESS_RATIO = 1.0  # of the stop over the gear at the torque that is wanted
 CREEP_DURATION = 4.0  # s
 MIN_BANDWIDTH_RATIO = 5.0  # of the position loop over the pace of the motion
 MEASUREMENTS = {
@@ -42,36 +42,6 @@ MEASUREMENTS = {
     "torsion": "a torsion loop determines it",
     "kinematic error": "a record of both encoders over whole turns of the output determines it",
 }  # by the effect
-
-
-@dataclass(frozen=True)
-class Judged:
-    """A controller, and its figures on drawn gears.
-
-    Attributes:
-        candidate: the controller
-        figures: on each drawn gear, shape (members,), by name; not a number where a run did not end
-        nominal: on the gear as its numbers have it, by name
-        reason: why a run failed; empty if none did
-    """
-
-    candidate: Candidate
-    figures: Mapping[str, Array]
-    nominal: Mapping[str, float]
-    reason: str = ""
-
-    @property
-    def failures(self) -> int:
-        """Number of runs that failed."""
-        return int(np.isnan(next(iter(self.figures.values()))).sum())
-
-    def median(self, name: str) -> float:
-        """Return the median of a figure; infinite if half of the runs did not end."""
-        return float(np.median(np.nan_to_num(self.figures[name], nan=np.inf)))
-
-    def upper(self, name: str) -> float:
-        """Return what 95 % of the drawn gears stay below."""
-        return float(np.quantile(np.nan_to_num(self.figures[name], nan=np.inf), goals.UPPER_QUANTILE, method="higher"))
 
 
 @dataclass(frozen=True)
@@ -86,6 +56,9 @@ class Compensated:
         baseline: the cascade, on as many gears drawn anew
         chosen: the controller of the fewest parts that gains about as much as the best, likewise; the cascade if none gains
         members: number of gears of each draw
+        margins: of the loops of the chosen controller, linearised
+        over_compensation: cascade and chosen controller where the drive has less of an effect than the model, for each effect
+        conditions: both at other speeds, load inertias and temperatures, on the gears drawn anew
         remarks: what was assumed
     """
 
@@ -95,6 +68,9 @@ class Compensated:
     baseline: Judged
     chosen: Judged
     members: int
+    margins: LoopMargins
+    over_compensation: tuple[OverCompensation, ...]
+    conditions: tuple[Condition, ...]
     remarks: tuple[str, ...]
 
     @property
@@ -134,6 +110,7 @@ def compensate(
     encoder: str = "input",
     travel: float = 0.2,
     speed: float | None = None,
+    torque: float | None = None,
     members: int = 40,
     seed: int = 0,
     progress: Callable[[str], None] = lambda stage: None,
@@ -142,11 +119,14 @@ def compensate(
 
     Args:
         drive: with motor and load: a set, a drive, or the name or path of a file
-        goal: "position" (tracking of a motion to and fro), "speed" (ripple at constant speed) or "smooth" (creeping)
+        goal: "position" (tracking of a motion to and fro), "speed" (ripple at constant speed), "smooth" (creeping) or "torque"
+            (to and fro against a stop as stiff as the gear, in place of the load)
         period, delay: of the controller [s]
         encoder: "output" if the controller sees the output angle, too
         travel: of the output for the goal of position [rad]
-        speed: of the output [rad/s]; if not given, that of 20 rad/s of the input, for "smooth" a hundredth of it
+        speed: of the output [rad/s]; if not given, that of 20 rad/s of the input, for "smooth" a hundredth of it, for "torque"
+            that of one motion a second
+        torque: of the output for the goal of torque, from end to end [N.m]; a fifth of the largest one if not given
         members: number of drawn gears
         seed: of the draw
         progress: called with what is done next
@@ -166,8 +146,23 @@ def compensate(
     plant = Plant.of(
         gear_set, arguments.number("period", period, "s", low=0.0), arguments.number("delay", delay, "s", "[]", 0.0, period)
     )
-    wanted = goal_of(goal, plant, travel, speed)
-    draws = drawn_gears(gear_set, members, seed)
+    arguments.one_of("goal", goal, ("position", "speed", "smooth", "torque"))
+    if goal == "torque":
+        torque = _wanted_torque(plant, torque)
+        gear_set = _against_stop(gear_set, plant, torque)
+        plant = replace(plant, drive=plant.drive.replace(load=gear_set.load))
+        travel = torque / gear_set.load.stiffness
+
+    def goal_at(pace: float) -> Goal:
+        return goal_of(goal, plant, travel, speed, pace)
+
+    wanted = goal_at(1.0)
+    if wanted.command.duration < MIN_SAMPLES * plant.period:
+        raise ValueError(
+            f"the motion lasts {wanted.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
+            "take a lower speed, a longer travel or a shorter period"
+        )
+    draws, anew = (_drawn(gear_set, plant, members, each) for each in (seed, seed + 1))
     encoders = ("input", "output") if encoder == "output" else ("input",)
     cascades = [best_cascade(plant, wanted, draws, each, progress) for each in encoders]
     cascades.sort(key=lambda found: found.upper(wanted.judged_by))
@@ -175,18 +170,54 @@ def compensate(
     if best.failures == members:
         raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}")
     others = []
-    for candidate in candidates(plant, [each.candidate.setting for each in cascades]):
+    for candidate in candidates(plant, [each.candidate.setting for each in cascades], wanted, draws):
         progress(candidate.name)
         others.append(judged(candidate, wanted, draws, plant))
     others.sort(key=lambda found: found.median(wanted.judged_by))
-    chosen, anew = _chosen(best, others, wanted), drawn_gears(gear_set, members, seed + 1)
+    chosen = _chosen(best, others, wanted)
     before, after = (judged(each.candidate, wanted, anew, plant) for each in (best, chosen))
     remarks = list(_remarks(gear_set, plant, wanted, best))
     figure = wanted.judged_by
     if chosen is not best and not after.median(figure) < (1.0 - MIN_GAIN) * before.median(figure):
         remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
+        chosen = best
+    if chosen is best:
         after = before
-    return Compensated(gear_set, wanted, (best, *others), before, before if chosen is best else after, members, tuple(remarks))
+    progress("other conditions")
+    return Compensated(
+        gear_set,
+        wanted,
+        (best, *others),
+        before,
+        after,
+        members,
+        margins_of(plant, after.candidate.setting),
+        tuple(over_compensation((before, after), wanted, plant)),
+        tuple(conditions((before, after), goal_at, anew, plant)),
+        tuple(remarks),
+    )
+
+
+def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int) -> dict[str, Array]:
+    """Return numbers of drives under an ideal current loop; a stop is as the goal states it."""
+    ideal = gear_set.with_parts(motor=plant.drive.motor, control=plant.drive.control, source="current loop")
+    draws = drawn_gears(ideal, members, seed)
+    stop = isinstance(gear_set.load, loads.TorsionSpring)
+    return {path: values for path, values in draws.items() if not (stop and path.startswith("load."))}
+
+
+def _wanted_torque(plant: Plant, torque: float | None) -> float:
+    if torque is not None:
+        return arguments.number("torque", torque, "N.m", low=0.0)
+    return TORQUE_SHARE * plant.limit / plant.actuation_per_torque * abs(plant.ratio)
+
+
+def _against_stop(gear_set: GearSet, plant: Plant, torque: float) -> GearSet:
+    """Return a set whose load is a spring to the ground, with the inertia of its load."""
+    twist = float(np.abs(plant.drive.gear.twist(np.array([0.0, torque])))[-1])
+    load: Any = gear_set.load
+    stop = loads.TorsionSpring(inertia=load.inertia, stiffness=STOP_STIFFNESS_RATIO * torque / twist)
+    return gear_set.with_parts(load=stop, source="goal torque: a stop in place of the load")
 
 
 def best_cascade(
@@ -194,10 +225,12 @@ def best_cascade(
 ) -> Judged:
     """Return the cascade of which 95 % of the drawn gears stay below the least, of all settings of an encoder."""
     tried = []
-    for sharpness, share in product(SHARPNESSES, OBSERVER_SHARES):
-        setting = Setting(sharpness, encoder, share)
-        progress(f"cascade, {encoder} encoder, sharpness {sharpness:g}, observer {share:g}")
-        tried.append(judged(baseline(plant, setting), goal, draws, plant))
+    for observer_share in OBSERVER_SHARES:
+        largest = sharpest(plant, encoder, observer_share)
+        for share in SHARPNESS_SHARES:
+            setting = replace(largest, sharpness=share * largest.sharpness)
+            progress(f"cascade, {encoder} encoder, sharpness {setting.sharpness:.2g}, observer {observer_share:g}")
+            tried.append(judged(baseline(plant, setting), goal, draws, plant))
     return min(tried, key=lambda found: found.upper(goal.judged_by))
 
 
@@ -214,59 +247,20 @@ def _chosen(best: Judged, others: Sequence[Judged], goal: Goal) -> Judged:
     )
 
 
-def goal_of(name: str, plant: Plant, travel: float, speed: float | None) -> Goal:
-    """Return a goal by its name.
-
-    Raises:
-        ValueError: there is none of that name
-    """
-    arguments.one_of("goal", name, ("position", "speed", "smooth"))
+def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: float = 1.0) -> Goal:
+    """Return a goal by its name, at `pace` times its speed."""
     usual = USUAL_SPEED / abs(plant.ratio) * (CREEP_SPEED_SHARE if name == "smooth" else 1.0)
-    given = usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0)
+    usual = np.pi * TORQUE_FREQUENCY * travel if name == "torque" else usual
+    given = pace * (usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0))
     unit = plant.effort_unit
     if name == "position":
-        goal = goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit)
-    elif name == "speed":
-        goal = goals.speed(given, TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
-    else:
-        goal = goals.smooth(given, CREEP_DURATION, unit)
-    if goal.command.duration < MIN_SAMPLES * plant.period:
-        raise ValueError(
-            f"the motion lasts {goal.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
-            "take a lower speed, a longer travel or a shorter period"
-        )
-    return goal
-
-
-def judged(candidate: Candidate, goal: Goal, draws: Mapping[str, Array], plant: Plant) -> Judged:
-    """Return a controller with its figures on drawn gears; the gear as its numbers have it is run first among them.
-
-    A run fails if it does not end, or drives the motor at its limit for more than a hundredth of the time, as a loop does that
-    is not stable.
-    """
-    nominal = _numbers(candidate.drive, draws)
-    whole = {path: np.concatenate(([nominal[path]], values)) for path, values in draws.items()}
-    step = min(MAX_STEP, STEP_OF_VIBRATION / _core.max_rate(candidate.drive, 0.0))
-    effort = "current" if candidate.drive.motor.name == "current_source" else "motor_torque"
-    recorded = ["output_angle", "output_speed", effort]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EnsembleWarning)  # failures are counted
-        runs = simulate_many(candidate.drive, goal.command, whole, step, record=recorded, sample=plant.period)
-    later = runs.time >= goals.SETTLING_SHARE * goal.command.duration
-    at_limit = np.mean(np.abs(runs[effort][:, later]) > AT_LIMIT * plant.limit, axis=1) > MAX_SHARE_AT_LIMIT
-    figures = {name: np.where(at_limit, np.nan, values) for name, values in goal.figures(runs, goal.command).items()}
-    reason = next(iter(runs.failures.values()), "the motor is at its limit" if at_limit.any() else "")
-    return Judged(
-        candidate,
-        {name: values[1:] for name, values in figures.items()},
-        {name: float(values[0]) for name, values in figures.items()},
-        reason,
-    )
-
-
-def _numbers(drive: Drive, paths: Mapping[str, Array]) -> dict[str, float]:
-    known = every(drive)
-    return {path: known[path].value for path in paths}
+        return goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit, plant.period)
+    if name == "torque":
+        load: Any = plant.drive.load
+        return goals.torque(load.stiffness * travel, load.stiffness, given, unit, plant.period)
+    if name == "speed":
+        return goals.speed(given, SPEED_GOAL_TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
+    return goals.smooth(given, CREEP_DURATION, unit)
 
 
 def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
@@ -278,6 +272,10 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
             "the inertia of the motor is 0, and that of the load may contain it: with the true one, that of a data sheet, a "
             "faster cascade is possible, and a compensation gains less"
         )
+    if goal.name == "torque":
+        load: Any = gear_set.load
+        highest = load.stiffness * float(goal.command.value(goal.command.duration))
+        yield f"the load is a stop of {load.stiffness:.3g} N·m/rad, against which the torque goes from 0 to {highest:.3g} N·m"
     if cogging := getattr(gear_set.motor, "cogging_torque", 0.0):
         yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
     for effect in EFFECTS:

@@ -13,7 +13,10 @@ from strainwave.parameters import every
 Array = NDArray[np.float64]
 
 ASSUMED_SPREAD = 0.3  # drawn factor up to 1 + this, either way, of a number that is assumed or has no stated spread
-ASSUMED_LOAD_SPREAD = 0.2  # likewise, of inertia and weight of a load
+ASSUMED_SPREADS = {
+    "load": 0.2,
+    "motor.torque_constant": 0.05,
+}  # likewise, of a load, and of a motor: magnets scatter by some percent and lose 0.1 % per kelvin
 # Numbers that a gear has more than once, or of which no effect is larger or smaller.
 SHAPES = {"pressure_angle", "pitch_radius", "major_radius", "minor_radius", "offset", "reference_temperature"}
 SCALED = {
@@ -24,9 +27,10 @@ SCALED = {
     "N.m.s/rad",
     "rad",
     "kg.m2",
+    "N.m/A",
 }  # units of numbers that a gear may have more or less of
 PARTS = ("gear.stiffness", "gear.hysteresis", "gear.kinematic_error", "gear.friction_input", "gear.friction_mesh",
-         "gear.friction_output", "load")  # fmt: skip
+         "gear.friction_output", "load", "gear.damping", "motor.torque_constant")  # fmt: skip
 
 
 def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Array]:
@@ -34,7 +38,8 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
 
     Identified numbers are drawn from their covariance. All other numbers of a part are multiplied by one factor, as a stiffer
     gear is stiffer at every twist: by up to 1 + the spread that the set states, either way, by 1.3 if it states none, 1.2 for
-    the load. A phase that is assumed may be any. Exponents, characteristic speeds, damping and the motor are not drawn.
+    the load, 1.05 for the torque constant of a motor. A phase that is assumed may be any. Exponents, characteristic speeds and
+    the inertia of the motor are not drawn.
 
     Args:
         gear_set: a drive with the sources of its numbers
@@ -47,7 +52,7 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
     >>> import strainwave as sw
     >>> draws = drawn_gears(sw.GearSet.read("robot-joint"), 3)
     >>> sorted({path.split(".")[1] for path in draws})
-    ['friction_input', 'gravity_torque', 'hysteresis', 'inertia', 'kinematic_error', 'stiffness']
+    ['damping', 'friction_input', 'gravity_torque', 'hysteresis', 'inertia', 'kinematic_error', 'stiffness']
     """
     chance = np.random.default_rng(seed)
     numbers = every(gear_set.drive)
@@ -57,7 +62,7 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
         spread = _spread(gear_set, part)
         factor = (1.0 + spread) ** chance.uniform(-1.0, 1.0, members)
         for path, number in numbers.items():
-            if not path.startswith(f"{part}."):
+            if not _belongs(path, part):
                 continue
             if path in identified:
                 draws[path] = np.clip(identified[path], number.low, number.high)
@@ -93,5 +98,9 @@ def _identified(gear_set: GearSet, members: int, chance: np.random.Generator) ->
 
 def _spread(gear_set: GearSet, part: str) -> float:
     """Return the largest spread that a set states of the numbers of a part; that of numbers without one if it states none."""
-    stated = [entry.spread for path, entry in gear_set.sources.items() if path.startswith(f"{part}.") and entry.spread]
-    return max(stated, default=ASSUMED_LOAD_SPREAD if part == "load" else ASSUMED_SPREAD)
+    stated = [entry.spread for path, entry in gear_set.sources.items() if _belongs(path, part) and entry.spread]
+    return max(stated, default=ASSUMED_SPREADS.get(part, ASSUMED_SPREAD))
+
+
+def _belongs(path: str, part: str) -> bool:
+    return path == part or path.startswith(f"{part}.")

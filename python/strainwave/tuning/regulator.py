@@ -109,7 +109,7 @@ def regulator(
     )
     weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
-    a, b, states, output = _linear(plant)
+    a, b, states, output = linear(plant)
     speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
     cost = weight * np.outer(output, output)
     cost[states.index("output_speed"), states.index("output_speed")] += speed
@@ -140,15 +140,15 @@ def _or_share(name: str, value: float | None, unit: str, usual: float) -> float:
     return usual if value is None else arguments.number(name, value, unit, low=0.0)
 
 
-def _linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
+def linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
     """Return A, B of the actuation, the names of the states, and the output angle as their sum."""
     _, viscous = line_of_friction(plant.drive.gear)
     none = friction.Viscous()
     gear = plant.drive.gear.replace(friction_input=friction.Viscous(viscous=viscous), friction_mesh=none, friction_output=none)
     alone = plant.drive.replace(gear=gear, sensors=Sensors(), meter=meter.NoMeter(), thermal=thermal.Isothermal())
-    linear = linearise(alone)
-    output = np.array([{"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}.get(name, 0.0) for name in linear.states])
-    return linear.A, linear.B[:, linear.inputs.index("command")], linear.states, output
+    found = linearise(alone)
+    output = np.array([{"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}.get(name, 0.0) for name in found.states])
+    return found.A, found.B[:, found.inputs.index("command")], found.states, output
 
 
 def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:

@@ -532,7 +532,7 @@ def torque_offset(request: Request) -> Slot:
 
 def _to_and_fro(request: Request) -> Scenario:
     usual = USUAL_SPEED / abs(request.ratio) if request.speed is None else request.speed
-    return goals.position(request.travel, arguments.number("speed", usual, "rad/s", low=0.0), "N.m").command
+    return goals.to_and_fro(request.travel, arguments.number("speed", usual, "rad/s", low=0.0))
 
 
 def _rated_torque(request: Request) -> float:

@@ -32,7 +32,8 @@ def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: 
     assert drive.control == known.drive.control
     command = known.goal.command
     run = sw.simulate(drive, command, sample=1e-3, method="exponential")
-    later = run.time >= 0.5 * command.duration
+    period = 2.0 * np.pi / known.goal.pace
+    later = (run.time >= period) & (run.time < 2.0 * period)
     error = (command.value(run.time) - run["output_angle"])[later]
     assert np.sqrt(np.mean(error**2)) == pytest.approx(known.chosen.nominal["tracking error"], rel=0.05)
 
@@ -61,7 +62,8 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"goal": "torque"}, "goal"),
+        ({"goal": "force"}, "goal"),
+        ({"goal": "torque", "torque": -1.0}, "torque"),
         ({"encoder": "both"}, "encoder"),
         ({"period": 0.0}, "period"),
         ({"delay": 2e-3}, "delay"),

@@ -7,7 +7,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.files.identified_tables import Covariance
-from strainwave.tuning.drawn import ASSUMED_SPREAD, drawn_gears
+from strainwave.tuning.drawn import ASSUMED_SPREAD, ASSUMED_SPREADS, drawn_gears
 
 SET = sw.GearSet.read("robot-joint")
 SIGMA = 0.002
@@ -45,3 +45,17 @@ def test_the_same_seed_draws_the_same_gears() -> None:
     one, same, other = (drawn_gears(SET, 5, seed=seed) for seed in (1, 1, 2))
     assert all(np.array_equal(one[path], same[path]) for path in one)
     assert not np.array_equal(one["load.inertia"], other["load.inertia"])
+
+
+def test_damping_and_torque_constant_are_drawn_within_their_own_spreads() -> None:
+    """A motor's magnets scatter by some percent; nobody knows the damping of a gear."""
+    ideal = sw.motor.CurrentSource(torque_constant=0.1, inertia=1e-4)
+    draws = drawn_gears(SET.with_parts(motor=ideal, control=sw.control.OpenLoop(), source="stated"), 400)
+    for path, value, spread in (
+        ("gear.damping", SET.gear.damping, ASSUMED_SPREAD),
+        ("motor.torque_constant", 0.1, ASSUMED_SPREADS["motor.torque_constant"]),
+    ):
+        factor = draws[path] / value
+        assert factor.max() == pytest.approx(1.0 + spread, rel=0.01)
+        assert factor.min() == pytest.approx(1.0 / (1.0 + spread), rel=0.01)
+    assert "motor.inertia" not in draws

@@ -1,0 +1,267 @@
+"""Loops of a cascade in a computer, linearised: their margins, their poles and their frequency response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import Compensation, Drive, arguments, compensation, control
+from strainwave.files.gear_set import GearSet
+from strainwave.tuning.cascade import Plant, Setting, gear_set_of, observer_of, tuned_law
+from strainwave.tuning.kalman import held
+from strainwave.tuning.regulator import linear
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MIN_MODULUS = 0.5  # modulus margin of the sharpest cascade: no disturbance is more than doubled
+MAX_SHARPNESS = 2.0  # of a cascade; at 1 the delay takes half a radian at the crossover of its speed loop
+SHARPNESS_HALVINGS = 10  # of the sharpness that are tried, in steps of a root of 2
+FREQUENCIES = 1000  # at which a loop is evaluated, up to half the sample rate
+FREQUENCIES_OF_PEAK = 100  # likewise, around each vibration
+LOWEST_SHARE = 1e-5  # lowest frequency over half the sample rate
+MAX_JUMP = 0.5  # of half a turn of the loop, or of the logarithm of its size, from one frequency to the next
+MAX_POLE_RADIUS = 1.0 + 1e-7  # of a loop that is stable: a free angle has 1
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Stability margins of a loop.
+
+    Attributes:
+        gain: factor by which the gain may rise; infinite if any
+        phase: lag that may be added where the gain is 1 [rad]; infinite if the gain is below 1 everywhere
+        modulus: least distance of the loop from -1, the inverse of the peak of its sensitivity; 0 if the loop is not stable
+        crossover: highest frequency at which the gain is 1 [rad/s]; 0 if there is none
+    """
+
+    gain: float
+    phase: float
+    modulus: float
+    crossover: float
+
+
+@dataclass(frozen=True)
+class LoopMargins:
+    """Margins of both loops of a cascade.
+
+    Attributes:
+        speed: of the speed loop, with the observer, while the position loop is open
+        position: of the position loop around it
+    """
+
+    speed: Margins
+    position: Margins
+
+    @property
+    def modulus(self) -> float:
+        """Smaller modulus margin of both."""
+        return min(self.speed.modulus, self.position.modulus)
+
+
+def loop_margins(drive: Drive) -> LoopMargins:
+    """Return the stability margins of a drive under `PositionSpeed` in a computer, linearised at rest.
+
+    Delay, hold and the vibration of the gear count; of its friction the viscous part alone, of its hysteresis the slope after a
+    reversal. The current loop of the motor is taken as ideal.
+
+    Source: AstromWittenmark1997, section 3.3 (loops with delay and hold), AstromMurray2008, section 9.3 (margins).
+
+    Raises:
+        ValueError: the drive has no `control.Sampled` of a `PositionSpeed`, or its load or motor is refused by `compensate`
+
+    >>> import strainwave as sw
+    >>> drive = sw.load("robot-joint")
+    >>> law = sw.cascade("robot-joint", period=1e-3)
+    >>> margins = loop_margins(drive.replace(control=sw.control.Sampled(law=law, period=1e-3)))
+    >>> margins.modulus >= 0.5
+    True
+    """
+    sampled = arguments.drive(drive).control
+    if not (isinstance(sampled, control.Sampled) and isinstance(sampled.law, control.PositionSpeed)):
+        raise ValueError(
+            "margins are those of a PositionSpeed in a computer: control must be control.Sampled(law=PositionSpeed(…))"
+        )
+    gear_set = GearSet.of(drive.replace(control=control.OpenLoop()), name="the drive", source="given")
+    return Loops.of(Plant.of(gear_set, sampled.period, sampled.delay), sampled).margins()
+
+
+def cascade(
+    drive: GearSet | Drive | str | Path, *, period: float = 1e-3, delay: float = 0.0, encoder: str = "input"
+) -> control.PositionSpeed:
+    """Return position around speed, as sharp as the period, the delay and the vibration of the gear allow.
+
+    Both loops keep a modulus margin of 0.5, so that no disturbance is more than doubled; `loop_margins` computes all margins.
+    The law feeds the speed forward. Friction, weight and inertia are for the compensation to feed forward.
+
+    Args:
+        drive: with motor and load: a set, a drive, or the name or path of a file
+        period, delay: of the controller [s]
+        encoder: "input" or "output", on which the position loop closes
+
+    Raises:
+        ValueError: as `compensate`; or no setting has that margin
+
+    >>> law = cascade("robot-joint", period=1e-3, delay=5e-4)
+    >>> faster = cascade("robot-joint", period=2.5e-4)
+    >>> faster.position_gain > law.position_gain
+    True
+    """
+    arguments.one_of("encoder", encoder, ("input", "output"))
+    plant = Plant.of(
+        gear_set_of(drive),
+        arguments.number("period", period, "s", low=0.0),
+        arguments.number("delay", delay, "s", "[]", 0.0, period),
+    )
+    setting = sharpest(plant, encoder, 0.0)
+    if margins_of(plant, setting).modulus < MIN_MODULUS:
+        raise ValueError(
+            f"no cascade with {encoder} encoder has a modulus margin of {MIN_MODULUS:g} with a period of {period:g} s and a "
+            f"delay of {delay:g} s; add damping of the gear if it has none, or take the other encoder"
+        )
+    law: control.PositionSpeed = tuned_law(plant, setting)
+    return law
+
+
+def sharpest(plant: Plant, encoder: str, observer_share: float) -> Setting:
+    """Return the setting of the largest sharpness that keeps `MIN_MODULUS`; the smallest of all if none does."""
+    linearised, setting = linear(plant), Setting(MAX_SHARPNESS, encoder, observer_share)
+    for halvings in range(2 * SHARPNESS_HALVINGS + 1):
+        setting = Setting(MAX_SHARPNESS * 0.5 ** (0.5 * halvings), encoder, observer_share)
+        if Loops.around(linearised, plant, sampled_cascade(plant, setting)).margins().modulus >= MIN_MODULUS:
+            break
+    return setting
+
+
+def margins_of(plant: Plant, setting: Setting) -> LoopMargins:
+    """Return the margins of the cascade of a setting."""
+    return Loops.of(plant, sampled_cascade(plant, setting)).margins()
+
+
+def sampled_cascade(plant: Plant, setting: Setting) -> Any:
+    """Return the cascade of a setting in a computer, with its observer."""
+    added = Compensation(observer=observer_of(plant, setting), actuation_per_torque=plant.actuation_per_torque)
+    return plant.controlled(tuned_law(plant, setting), added).control
+
+
+@dataclass(frozen=True)
+class Loops:
+    r"""A cascade and its plant from one sample to the next, x' = A x + B s + W w.
+
+    s is the error of the speed, w the commanded speed as the observer has it. The states are those of the drive, the output
+    that is held, the integral and the filter of the observer.
+    """
+
+    a: Array
+    of_error: Array
+    of_command: Array
+    input_speed: Array
+    feedback: Array
+    output: Array
+    position_gain: float
+    period: float
+    ratio: float
+    vibrations: Array
+
+    @classmethod
+    def of(cls, plant: Plant, sampled: Any) -> Loops:
+        """Return the loops of a sampled `PositionSpeed`, whose observer is none or a `DisturbanceObserver`."""
+        return cls.around(linear(plant), plant, sampled)
+
+    @classmethod
+    def around(cls, linearised: tuple[Array, Array, tuple[str, ...], Array], plant: Plant, sampled: Any) -> Loops:
+        """Return the same around a plant that is linearised already."""
+        a, b, states, output = linearised
+        law, observer, count = sampled.law, sampled.compensation.observer, len(states)
+        late, late_input = held(a, b, plant.delay)
+        rest, rest_input = held(a, b, plant.period - plant.delay)
+        unit = np.eye(count + 3)
+        speed, angle = unit[states.index("input_speed")], unit[states.index("input_angle")]
+        at_output = np.append(output, np.zeros(3))
+        output_held, integral, filtered = unit[count:]
+        per_torque = sampled.compensation.actuation_per_torque
+        observes = isinstance(observer, compensation.DisturbanceObserver)
+        momentum = observer.bandwidth * observer.inertia if observes else 0.0
+        passed = -np.expm1(-observer.bandwidth * plant.period) if observes else 0.0
+        actuated = np.append(rest_input, np.zeros(3)) + output_held + passed / per_torque * filtered
+        actuation = law.speed_integral * integral + observes * per_torque * (filtered - momentum * speed)
+        free = np.zeros((count + 3, count + 3))
+        free[:count, :count], free[:count, count] = rest @ late, rest @ late_input
+        free += np.outer(integral, integral) + (1.0 - passed) * np.outer(filtered, filtered)
+        free += passed * momentum * np.outer(filtered, speed)
+        return cls(
+            a=free + np.outer(actuated, actuation),
+            of_error=law.speed_proportional * actuated + plant.period * integral,
+            of_command=per_torque * momentum * actuated - passed * momentum * filtered,
+            input_speed=speed,
+            feedback=angle if law.feedback == "input" else plant.ratio * at_output,
+            output=at_output,
+            position_gain=law.position_gain,
+            period=plant.period,
+            ratio=plant.ratio,
+            vibrations=np.abs(np.linalg.eigvals(a)),
+        )
+
+    @property
+    def under_speed(self) -> Array:
+        """Transition while the speed loop is closed."""
+        return self.a - np.outer(self.of_error, self.input_speed)
+
+    @property
+    def closed(self) -> Array:
+        """Transition while both loops are closed."""
+        return self.under_speed - self.position_gain * np.outer(self.of_error, self.feedback)
+
+    def margins(self) -> LoopMargins:
+        """Return the margins of both loops."""
+        at = self._frequencies()
+        speed = self._response(self.a, self.of_error, self.input_speed, at)
+        position = self.position_gain * self._response(self.under_speed, self.of_error, self.feedback, at)
+        return LoopMargins(_margins(at, speed, self.under_speed), _margins(at, position, self.closed))
+
+    def following(self, frequency: ArrayLike) -> Complex:
+        """Return how the output, times the ratio, follows a lead of the input that is a wave of these frequencies [rad/s]."""
+        at = np.atleast_1d(np.asarray(frequency, float))
+        of_lead = self.position_gain * self.of_error + 1j * at[:, np.newaxis] * (self.of_error + self.of_command)
+        return self.ratio * self._response(self.closed, of_lead, self.output, at)
+
+    def _frequencies(self) -> Array:
+        highest = np.pi / self.period
+        whole = np.geomspace(LOWEST_SHARE * highest, highest, FREQUENCIES, endpoint=False)
+        peaks = [each * np.geomspace(0.8, 1.25, FREQUENCIES_OF_PEAK) for each in self.vibrations if each]
+        found = np.unique(np.concatenate([whole, *peaks]))
+        return np.asarray(found[found < highest])
+
+    def _response(self, transition: Array, given: NDArray[Any], read: Array, at: Array) -> Complex:
+        shift = np.exp(1j * at * self.period)[:, np.newaxis, np.newaxis] * np.eye(len(transition))
+        given = np.broadcast_to(given, (len(at), len(transition)))
+        return np.asarray(np.linalg.solve(shift - transition, given[..., np.newaxis])[..., 0] @ read)
+
+
+def _margins(at: Array, loop: Complex, closed: Array) -> Margins:
+    if not np.abs(np.linalg.eigvals(closed)).max() <= MAX_POLE_RADIUS:
+        return Margins(1.0, 0.0, 0.0, 0.0)
+    size = np.log(np.abs(loop))
+    angle = np.unwrap(np.angle(loop))
+    half_turns = (angle / np.pi - 1.0) / 2.0  # whole where the loop is real and negative
+    behind = np.exp(_at_crossings(half_turns - np.round(half_turns), size))
+    lags = _at_crossings(size, angle)
+    crossovers = np.exp(_at_crossings(size, np.log(at)))
+    return Margins(
+        gain=float(1.0 / behind[behind < 1.0].max(initial=0.0)) if (behind < 1.0).any() else np.inf,
+        phase=float(np.abs(np.angle(-np.exp(1j * lags))).min(initial=np.inf)),
+        modulus=float(np.abs(1.0 + loop).min()),
+        crossover=float(crossovers.max(initial=0.0)),
+    )
+
+
+def _at_crossings(series: Array, values: Array) -> Array:
+    """Return values where a series crosses 0, between two of its elements; a jump is no crossing."""
+    before, after = series[:-1], series[1:]
+    k = np.flatnonzero((np.sign(before) != np.sign(after)) & (np.abs(after - before) < MAX_JUMP))
+    share = before[k] / (before[k] - after[k])
+    return np.asarray(values[k] + share * (values[k + 1] - values[k]))
