@@ -388,3 +388,31 @@ def test_a_feedforward_leaves_what_a_gust_does(gallery: Callable[[str], dict[str
         assert deviation["model and observer", air] == pytest.approx(deviation["cascade with observer", air], rel=0.01)
         assert deviation["cascade with observer", air] < 0.33 * deviation["cascade", air]
     assert tracking["cascade with model", "calm"] < 0.33 * tracking["cascade", "calm"]
+
+
+def test_a_slow_integral_of_the_arm_has_no_limit_cycle(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """At 5 1/s it is five times slower than the softest vibration, sqrt(3000 / 5) = 24 rad/s, so steps and pushes die out."""
+    found = gallery("23")
+    for (name, kind), swing in found["swings"].items():
+        if name.startswith("loop on the arm"):
+            continue
+        assert swing.max() < 1e-3, (name, kind)
+        if name != "loop on the motor":
+            assert np.abs(found["errors"][name, kind]).max() < 1e-3, (name, kind)
+    assert found["swings"]["loop on the arm", "step"].max() > 0.5
+    assert found["swings"]["loop on the arm, model", "path"].max() < 1e-3
+    assert found["swings"]["loop on the arm, model", "push"].max() > 0.5  # feed-forward does not change a loop
+    assert np.abs(found["errors"]["loop on the motor", "step"]).max() > 0.05
+
+
+def test_the_model_of_a_soft_gear_leads_also_if_its_loop_is_wide_or_narrow(gallery: Callable[[str], dict[str, Any]]) -> None:
+    found = gallery("23")
+
+    def lag(name: str) -> float:
+        commands = [np.degrees(found["along"](step).value(found["time"])) for step in found["steps"]]
+        return max(float(np.abs(run - to).max()) for run, to in zip(found["runs"][name, "path"], commands, strict=True))
+
+    assert lag("and model") < 0.1 * lag("motor, arm integrated")
+    for name in ("20 % less lost motion", "20 % more lost motion"):
+        assert lag("and model") < lag(name) < 0.33 * lag("motor, arm integrated")
+    assert abs(found["apart"]["one side"]) < 0.15 * abs(found["apart"]["both sides"])
