@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
+from scipy import signal
 
 ROOT = Path(__file__).resolve().parents[2] / "examples"
 SCRIPTS = sorted(ROOT.glob("*.py"))
@@ -343,3 +344,75 @@ def test_pulses_and_paths_reach_where_friction_and_lost_motion_leave(gallery: Ca
     for name in ("document T's gear", "CSG-20-100"):
         assert found["apart"][name, "plain"] == pytest.approx(-1.0, abs=0.03)
         assert abs(found["apart"][name, "one side"]) < 0.002
+
+
+def linear_deviation(found: dict[str, Any], torque: sw.scenario.Scenario, bandwidth: float) -> float:
+    """Largest output angle [rad] by a torque at the output: two inertias on a spring, the loops, an observer or 0 for none.
+
+    The states are the angle and speed of input and output, the integral of the speed error and the torque observed.
+    """
+    plant, law, surface = found["plant"], found["law"], found["surface"]
+    gear, constant = plant.drive.gear, plant.drive.motor.torque_constant
+    ratio, stream = 101.0, 0.5 * 1.225 * 40.0**2 * 0.4 * 0.2 * 0.4
+    angle, speed, output_angle, output_speed, integral, observed = np.eye(6)
+    error = -law.position_gain * ratio * output_angle - speed
+    drive = constant * (law.speed_proportional * error + law.speed_integral * integral) + observed
+    twisting = gear.stiffness.k * (angle / ratio - output_angle) + gear.damping * (speed / ratio - output_speed)
+    rate = (drive - twisting / ratio) / plant.input_inertia
+    load = gear.friction_output.viscous * output_speed + stream * output_angle
+    observing = bandwidth * (drive - observed - plant.total_inertia * rate)
+    a = np.array([speed, rate, output_speed, (twisting - load) / surface.inertia, error, observing])
+    b = np.array([[0.0], [0.0], [0.0], [-1.0 / surface.inertia], [0.0], [0.0]])
+    time = np.linspace(0.0, torque.duration, 20001)
+    _, moved, _ = signal.lsim((a, b, output_angle[np.newaxis], np.zeros((1, 1))), torque.value(time), time)
+    return float(np.abs(moved).max())
+
+
+def test_a_gust_moves_a_surface_as_two_inertias_under_the_loop(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Without the kinematic error, whose ripple of the torque is not linear in the gust; the speed keeps its sign meanwhile."""
+    found = gallery("22")
+    for name, bandwidth in (("cascade", 0.0), ("cascade with observer", found["observer"].bandwidth)):
+        added = sw.Compensation(**found["parts"][name], actuation_per_torque=found["plant"].actuation_per_torque)
+        drive = found["plant"].controlled(found["law"], added).replace({"gear.kinematic_error": sw.kinematic_error.Fourier()})
+        calm = sw.simulate(drive, found["command"], sample=1e-3)["output_angle"]
+        for torque in list(found["gusts"].values())[1:]:
+            moved = sw.simulate(drive, found["command"], sample=1e-3, load_torque=torque)["output_angle"] - calm
+            assert np.abs(moved).max() == pytest.approx(linear_deviation(found, torque, bandwidth), rel=0.05)
+
+
+def test_a_feedforward_leaves_what_a_gust_does(gallery: Callable[[str], dict[str, Any]]) -> None:
+    found = gallery("22")
+    tracking, deviation = found["tracking"], found["deviation"]
+    for air in list(found["gusts"])[1:]:
+        assert deviation["cascade with model", air] == pytest.approx(deviation["cascade", air], rel=0.01)
+        assert deviation["model and observer", air] == pytest.approx(deviation["cascade with observer", air], rel=0.01)
+        assert deviation["cascade with observer", air] < 0.33 * deviation["cascade", air]
+    assert tracking["cascade with model", "calm"] < 0.33 * tracking["cascade", "calm"]
+
+
+def test_a_slow_integral_of_the_arm_has_no_limit_cycle(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """At 5 1/s it is five times slower than the softest vibration, sqrt(3000 / 5) = 24 rad/s, so steps and pushes die out."""
+    found = gallery("23")
+    for (name, kind), swing in found["swings"].items():
+        if name.startswith("loop on the arm"):
+            continue
+        assert swing.max() < 1e-3, (name, kind)
+        if name != "loop on the motor":
+            assert np.abs(found["errors"][name, kind]).max() < 1e-3, (name, kind)
+    assert found["swings"]["loop on the arm", "step"].max() > 0.5
+    assert found["swings"]["loop on the arm, model", "path"].max() < 1e-3
+    assert found["swings"]["loop on the arm, model", "push"].max() > 0.5  # feed-forward does not change a loop
+    assert np.abs(found["errors"]["loop on the motor", "step"]).max() > 0.05
+
+
+def test_the_model_of_a_soft_gear_leads_also_if_its_loop_is_wide_or_narrow(gallery: Callable[[str], dict[str, Any]]) -> None:
+    found = gallery("23")
+
+    def lag(name: str) -> float:
+        commands = [np.degrees(found["along"](step).value(found["time"])) for step in found["steps"]]
+        return max(float(np.abs(run - to).max()) for run, to in zip(found["runs"][name, "path"], commands, strict=True))
+
+    assert lag("and model") < 0.1 * lag("motor, arm integrated")
+    for name in ("20 % less lost motion", "20 % more lost motion"):
+        assert lag("and model") < lag(name) < 0.33 * lag("motor, arm integrated")
+    assert abs(found["apart"]["one side"]) < 0.15 * abs(found["apart"]["both sides"])
