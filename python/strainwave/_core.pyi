@@ -204,12 +204,12 @@ class Compensation:
 
     .. math:: \\theta_r = i r + \\theta_f + \\theta_l, \\qquad u_f = p\\,(\\tau_f + \\tau_d + \\tau_l + \\tau_o) + q\\,\\dot\\theta_r
 
-    with r the commanded output angle, theta_f, theta_l the leads of the input, tau_f, tau_d, tau_l, tau_o the torques that feed-forward,
-    dither, learner and observer ask for, one after the other; p = actuation_per_torque, q = actuation_per_speed. The controller
-    follows theta_r with the input and r with the output, and adds u_f to what it asks for, before any limit.
+    with r the commanded output angle, theta_f, theta_l the leads of the input by feed-forward and learner, tau_f, tau_d, tau_l,
+    tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The controller follows
+    theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
 
-    p is 1 N.m/(N.m) for a motor that takes a torque, 1 over the torque constant for one that takes a current and for a
-    Cascade, and the resistance over the torque constant for one that takes a voltage, with q the back-EMF constant.
+    p is 1 for a motor that takes a torque, 1 over the torque constant for a motor that takes a current and for a Cascade, and
+    the resistance over the torque constant for a motor that takes a voltage, with q the back-EMF constant.
 
     >>> import strainwave as sw
     >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))
@@ -235,9 +235,9 @@ class Compensation:
     definition
     """
 
-    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver = ..., dither: strainwave.compensation.NoDither | strainwave.compensation.Dither = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
+    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver = ..., dither: strainwave.compensation.NoDither | strainwave.compensation.Dither = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver = ..., dither: strainwave.compensation.NoDither | strainwave.compensation.Dither = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
+    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver = ..., dither: strainwave.compensation.NoDither | strainwave.compensation.Dither = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -247,7 +247,7 @@ class Compensation:
         """Feed-forward of a model of the drive"""
 
     @property
-    def learning(self) -> strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive:
+    def learning(self) -> strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification:
         """Learning of errors that repeat"""
 
     @property

@@ -9,7 +9,7 @@ namespace strainwave::general {
 template <class S>
 struct Control : Part {
     using State = Storage<S, 8>;
-    using Discrete = Storage<S, 248>;
+    using Discrete = Storage<S, 240>;
     using Command = control::Command<S>;
     using Measurement = control::Measurement<S>;
 
