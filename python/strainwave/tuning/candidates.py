@@ -32,6 +32,8 @@ LEARNING_SHARE = 0.2  # rate of learning over the gain of the position loop
 MAX_WAVE_SHARE = 0.9  # frequency of a wave that is learnt over the gain of the position loop, which lags by 45 degrees at 1
 MAX_AMPLITUDE = 2e-3  # rad at the output, that is learnt
 SCALE_TIME = 1.0  # s, in which the scale of friction follows
+BRISTLE_SHARE = 0.9  # of the friction of the law, supplied by the measured motion, so that less friction is not over-compensated
+BRISTLE_GAIN = 2.0  # of the error, that bends the bristles of a shaft at rest; larger ones swing with lags of the loop
 USUAL_SPEED = 20.0  # rad/s of the input
 MIN_FRICTION = 1e-6  # N.m
 RANGE_OF_SPEED = (0.1, 100.0)  # rad/s of the input, over which friction is compared with a line
@@ -69,11 +71,11 @@ def baseline(plant: Plant, setting: Setting) -> Candidate:
     return Candidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
 
 
-def candidates(plant: Plant, settings: Sequence[Setting]) -> Iterator[Candidate]:
+def candidates(plant: Plant, settings: Sequence[Setting], creeps: bool = False) -> Iterator[Candidate]:
     """Yield the cascade of each setting with models of each choice of effects, and with what observes or learns.
 
     Waves over the input are learnt where the controller follows the input encoder and sees the output, so only if there are
-    settings of both encoders.
+    settings of both encoders. For a motion that creeps, friction is also supplied by the measured motion.
     """
     gear = plant.drive.gear
     present = [effect for effect in EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
@@ -87,6 +89,8 @@ def candidates(plant: Plant, settings: Sequence[Setting]) -> Iterator[Candidate]
             yield _with_model(plant, setting, effects)
             if "friction" in effects:
                 yield _with_scale(plant, setting, effects)
+        if creeps and gear.friction_input != Gear().friction_input:
+            yield from (_with_bristles(plant, setting, effects) for effects in [(), *choices] if "friction" not in effects)
         if sees_output and setting.feedback == "input" and orders:
             for effects in [(), *choices]:
                 if "kinematic error" not in effects:
@@ -106,6 +110,20 @@ def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Can
     added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(observer=scale)
     name = f"{_name(effects, setting)}, scale of friction observed"
     return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
+
+
+def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+    """Return the same with the friction at the input by the measured motion, in place of that of the model."""
+    law, gear = tuned_law(plant, setting), plant.drive.gear
+    bristles = compensation.BristleObserver(
+        friction=gear.friction_input,
+        friction_share=BRISTLE_SHARE,
+        bristle_gain=BRISTLE_GAIN,
+        position_gain=law.position_gain,
+    )
+    added = _compensation(plant, with_effects(gear, effects), setting).replace(observer=bristles)
+    name = f"{_name(effects, setting)}, friction by the measured motion"
+    return Candidate(name, ("friction", *effects), setting, plant.controlled(law, added), len(effects) + 1)
 
 
 def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], orders: list[float]) -> Candidate:

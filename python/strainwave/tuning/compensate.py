@@ -175,7 +175,7 @@ def compensate(
     if best.failures == members:
         raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}")
     others = []
-    for candidate in candidates(plant, [each.candidate.setting for each in cascades]):
+    for candidate in candidates(plant, [each.candidate.setting for each in cascades], creeps=goal == "smooth"):
         progress(candidate.name)
         others.append(judged(candidate, wanted, draws, plant))
     others.sort(key=lambda found: found.median(wanted.judged_by))
