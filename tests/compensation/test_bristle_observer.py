@@ -152,9 +152,7 @@ def test_its_lyapunov_function_does_not_grow(true: float, share: float) -> None:
     period, gain = 5e-5, 100.0
     observer = BristleObserver(friction=LEVEL, friction_share=share, gain=gain, max_scale=3.0)
     one = drive(observer, LEVEL.replace(coulomb=true * LEVEL.coulomb, breakaway=true * LEVEL.coulomb), period=period)
-    now = one.rest().replace(
-        {"input_speed": RATIO * SPEED, "output_speed": SPEED, "control.compensation.observer.sense": -1.0}
-    )
+    now = one.rest().replace({"input_speed": RATIO * SPEED, "output_speed": SPEED, "control.compensation.observer.sense": -1.0})
     values = []
     for number in range(3000):
         now = one.step(now, command=SPEED * number * period, command_rate=SPEED, dt=period)
@@ -187,6 +185,6 @@ def test_it_supplies_the_friction_that_the_feedforward_supplies_too_early() -> N
         ({"presliding": 0.0}, r"bristle_observer\.presliding = 0"),
     ],
 )
-def test_what_is_wrong_is_refused(changed: dict[str, float], words: str) -> None:
+def test_what_is_wrong_is_refused(changed: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         BristleObserver(**changed)

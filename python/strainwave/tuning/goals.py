@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 AROUND_REVERSAL = 0.1  # of a period, either side of a reversal
 SETTLING_SHARE = 0.5  # of a run, left out at its begin
 MAX_STICKING_SPEED_SHARE = 0.1  # of the commanded speed: below it the output rests
+# Of the time, of a run that counts: an output that does not move has a ripple of 1, which is less than that of one that slips.
+MAX_REST_SHARE = 0.9
 UPPER_QUANTILE = 0.95  # of figures over drawn gears
 
 
@@ -100,7 +102,9 @@ def _of_speed(runs: Ensemble, command: Scenario) -> dict[str, Array]:
 def _of_creeping(runs: Ensemble, command: Scenario) -> dict[str, Array]:
     later = runs.time >= SETTLING_SHARE * command.duration
     share = (runs["output_speed"] / command.rate(runs.time))[:, later]
-    return _of_speed(runs, command) | {"time at rest": np.mean(np.abs(share) < MAX_STICKING_SPEED_SHARE, axis=1)}
+    at_rest = np.mean(np.abs(share) < MAX_STICKING_SPEED_SHARE, axis=1)
+    figures = _of_speed(runs, command) | {"time at rest": at_rest}
+    return {name: np.where(at_rest > MAX_REST_SHARE, np.nan, values) for name, values in figures.items()}
 
 
 def _effort(runs: Ensemble) -> Array:
