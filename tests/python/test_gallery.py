@@ -343,3 +343,21 @@ def test_pulses_and_paths_reach_where_friction_and_lost_motion_leave(gallery: Ca
     for name in ("document T's gear", "CSG-20-100"):
         assert found["apart"][name, "plain"] == pytest.approx(-1.0, abs=0.03)
         assert abs(found["apart"][name, "one side"]) < 0.002
+
+
+def test_friction_by_the_measured_motion_creeps_where_others_stick(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """At the input, at all speeds. At the output nothing does below the jump of friction over the root of stiffness and inertia."""
+    example = gallery("20")
+    found, cases = example["found"], example["cases"]
+    at_input = {name: rows[:, 0] for name, rows in found["friction at the input"].items()}
+    assert (at_input["bristle observer"] == 0.0).all()
+    for name in ("cascade, disturbance observer", "friction of a model"):
+        assert (at_input[name][:3] > 0.1).all()
+        assert at_input[name][-1] == 0.0
+    drives, speeds = cases["friction at the output, too"]
+    gear, load = next(iter(drives.values())).gear, next(iter(drives.values())).load
+    stiffness = gear.stiffness.k1 + sum(gear.hysteresis.stiffness)
+    critical = 100.0 * (0.6 - 0.3) / np.sqrt(stiffness * load.inertia)
+    for rows in found["friction at the output, too"].values():
+        assert (rows[np.array(speeds) < 0.75 * critical, 0] > 0.1).all()
+        assert (rows[np.array(speeds) > 1.25 * critical, 0] == 0.0).all()
