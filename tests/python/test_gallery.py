@@ -346,7 +346,7 @@ def test_pulses_and_paths_reach_where_friction_and_lost_motion_leave(gallery: Ca
 
 
 def test_friction_by_the_measured_motion_creeps_where_others_stick(gallery: Callable[[str], dict[str, Any]]) -> None:
-    """At the input, at all speeds. At the output nothing does below the jump of friction over the root of stiffness and inertia."""
+    """At the input, at all speeds. At the output none does below the jump of friction over the root of K J."""
     example = gallery("20")
     found, cases = example["found"], example["cases"]
     at_input = {name: rows[:, 0] for name, rows in found["friction at the input"].items()}
