@@ -45,7 +45,7 @@ class Case:
 
 
 @dataclasses.dataclass(frozen=True)
-class Rests:
+class CreepFigures:
     """Figures of a controller: ripple and share of the time at rest, first of the joint as it is stated, then of drawn ones."""
 
     ripple: np.ndarray
@@ -105,14 +105,14 @@ def controllers(plant: Plant, sharpness: float) -> Iterator[tuple[str, sw.Drive]
         yield name, plant.controlled(law, part.replace(actuation_per_torque=plant.actuation_per_torque))
 
 
-def crept(drive: sw.Drive, speed: float, numbers: dict[str, np.ndarray], sharpness: float) -> Rests:
+def crept(drive: sw.Drive, speed: float, numbers: dict[str, np.ndarray], sharpness: float) -> CreepFigures:
     """Return the figures over the second half of a ramp."""
     duration = min(max(4.0, 6.0 / speed), LONGEST)
     command = sw.scenario.ramp(speed / RATIO, duration)
     runs = sw.simulate_many(drive, command, numbers, 2e-4, record=["output_speed"], sample=2e-3 if duration < 10.0 else 1e-2)
     share = RATIO * runs["output_speed"][:, runs.time > SETTLING_SHARE * duration] / speed
     at_rest = np.mean(np.abs(share) < MAX_STICKING_SPEED_SHARE, axis=1)
-    return Rests(np.sqrt(np.mean((share - 1.0) ** 2, axis=1)), at_rest, sharpness)
+    return CreepFigures(np.sqrt(np.mean((share - 1.0) ** 2, axis=1)), at_rest, sharpness)
 
 
 def main() -> int:
@@ -124,14 +124,14 @@ def main() -> int:
         draws = drawn_gears(sw.GearSet.of(drive, name="pointing joint", source="assumed"), wanted.members, seed=3)
         numbers = {path: np.concatenate(([every(drive)[path].value], values)) for path, values in draws.items()}
         for speed in case.speeds:
-            tried: dict[str, list[Rests]] = {}
+            tried: dict[str, list[CreepFigures]] = {}
             for sharpness in case.sharpnesses:
                 for name, each in controllers(case.plant, sharpness):
                     tried.setdefault(name, []).append(crept(each, speed, numbers, sharpness))
             print(f"\n{case.name}, {speed:g} rad/s of the input")
             print(f"{'':42} ripple   rest  median   95 % at rest longest   sharpness")
             for name, found in tried.items():
-                print(f"{name:42} {min(found, key=lambda rests: rests.upper)}", flush=True)
+                print(f"{name:42} {min(found, key=lambda each: each.upper)}", flush=True)
     return 0
 
 

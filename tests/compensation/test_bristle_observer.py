@@ -164,6 +164,20 @@ def test_its_lyapunov_function_does_not_grow(true: float, share: float) -> None:
     assert values[-1] < 0.6 * values[0]
 
 
+@pytest.mark.parametrize("share", [0.6, 0.8])
+def test_over_compensated_friction_drives_a_shaft_by_itself(share: float) -> None:
+    """Without a controller: J d omega / dt = share F_c - F_true, so a share below the true scale lets it come to rest."""
+    true, duration, speed = 0.7 * LEVEL.coulomb, 0.5, 5.0  # N.m, s, rad/s
+    one = drive(BristleObserver(friction=LEVEL, friction_share=share), LEVEL.replace(coulomb=true, breakaway=true))
+    free = one.replace({"control.law.proportional": 0.0, "control.law.derivative": 0.0})
+    start = free.rest().replace(
+        {"input_speed": speed, "output_speed": speed / RATIO, "control.compensation.observer.sense": 1.0}
+    )
+    reached = sw.simulate(free, sw.scenario.constant(0.0, duration), sample=1e-2, start=start)["input_speed"][-1]
+    wanted = max(speed + (share * LEVEL.coulomb - true) * duration / (INERTIA + LIGHT.inertia / RATIO**2), 0.0)
+    assert reached == pytest.approx(wanted, rel=1e-3, abs=1e-9)
+
+
 def test_it_supplies_the_friction_that_the_feedforward_supplies_too_early() -> None:
     """A shaft that another torque keeps at rest: the feed-forward pushes it away, the observer does not."""
     ahead = ModelFeedforward(gear=gear(LEVEL), load=LIGHT, motor_inertia=INERTIA)
