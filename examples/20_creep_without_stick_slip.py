@@ -67,8 +67,10 @@ for (case, each), speed in zip(found.items(), (0.2, 0.05), strict=True):
 
 figure = Figure(figsize=(9.0, 3.6), layout="constrained")
 for axes, (case, each) in zip(figure.subplots(1, 2, sharey=True), found.items(), strict=True):
-    for (name, rows), style in zip(each.items(), ("o-", "s--", "^-", "v:"), strict=True):
+    for (name, rows), style in zip(each.items(), ("o-", "s--", "D-", ".:"), strict=True):
         axes.semilogx(cases[case][1], 100.0 * rows[:, 0], style, label=name)
+    axes.minorticks_off()
+    axes.set_xticks(cases[case][1], [f"{speed:g}" for speed in cases[case][1]])
     axes.set(xlabel="speed of the input [rad/s]", title=case)
     axes.grid(alpha=0.3)
 figure.axes[0].set(ylabel="time at rest [%]")
