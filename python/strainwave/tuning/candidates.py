@@ -120,6 +120,7 @@ def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> 
         friction_share=BRISTLE_SHARE,
         bristle_gain=BRISTLE_GAIN,
         position_gain=law.position_gain,
+        temperature=plant.start_temperature,
     )
     added = _compensation(plant, with_effects(gear, effects), setting).replace(observer=bristles)
     name = f"{_name(effects, setting)}, friction by the measured motion"

@@ -13,6 +13,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
 from strainwave.tuning.steady_torque import steady_torque
 
+ROOM_TEMPERATURE = 293.15  # K
 RIGID = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
 PHASE_OF_DELAY = 0.5  # rad that the delay takes where the speed loop crosses over: 60 degrees are left
 POSITION_SHARE = 0.25  # bandwidth of the position loop over that of the speed loop, so that it does not overshoot
@@ -96,6 +97,11 @@ class Plant:
         """The same with that of the load over the ratio squared [kg.m2]."""
         load: Any = self.drive.load
         return float(self.input_inertia + load.inertia / self.ratio**2)
+
+    @property
+    def start_temperature(self) -> float:
+        """Temperature of the gear at the begin of a motion [K]."""
+        return float(getattr(self.drive.thermal, "initial_temperature", ROOM_TEMPERATURE))
 
     def controlled(self, law: Any, added: Compensation) -> Drive:
         """Return the drive under a sampled law with a compensation."""
@@ -201,4 +207,6 @@ def model_of(plant: Plant, gear: Gear) -> compensation.ModelFeedforward:
         ValueError: the kinematic error of the gear is too steep to be fed forward
     """
     inertia = float(plant.drive.motor.inertia)
-    return compensation.ModelFeedforward(gear=gear, load=plant.drive.load, motor_inertia=inertia)
+    return compensation.ModelFeedforward(
+        gear=gear, load=plant.drive.load, motor_inertia=inertia, temperature=plant.start_temperature
+    )
