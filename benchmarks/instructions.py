@@ -78,6 +78,7 @@ def controllers() -> dict[str, sw.Compensation]:
         return sw.compensation.ModelFeedforward(gear=gear, load=load, motor_inertia=2e-5)
 
     observer = sw.compensation.DisturbanceObserver(inertia=8e-5, limit=0.5)
+    bristles = sw.compensation.BristleObserver(friction=friction, friction_share=0.9, bristle_gain=2.0)
     fourier = sw.compensation.AdaptiveFourier(order=[1, 2, 4, 2.02], max_frequency=300.0)
     lost_motion = sw.compensation.LostMotionMap(angle=[-1.0, 0.0, 1.0], forward=[1e-4] * 3, backward=[-1e-4] * 3)
     every = sw.Compensation
@@ -90,6 +91,8 @@ def controllers() -> dict[str, sw.Compensation]:
         "repetitive": every(learning=sw.compensation.Repetitive(max_speed=100.0)),
         "disturbance observer": every(observer=observer),
         "friction and inertia, friction scale": every(feedforward=model(bare), observer=sw.compensation.FrictionScale()),
+        "friction and inertia, bristle observer": every(feedforward=model(bare), observer=bristles),
+        "dither": every(dither=sw.compensation.Dither(amplitude=0.02, frequency=80.0)),
         "whole gear, adaptive Fourier, observer": every(feedforward=model(gear), learning=fourier, observer=observer),
     }
 

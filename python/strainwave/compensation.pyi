@@ -1119,14 +1119,14 @@ class Dither:
 
     .. math:: \\tau_d = A \\sin(2 \\pi \\varphi)\\, \\operatorname{sgn}(\\dot r), \\qquad \\dot\\varphi = f \\;\\text{ where } \\dot r \\ne 0
 
-    with r the commanded output angle, A = amplitude, f = frequency. The phase stands still while the command rests. An inertia J at
-    the input swings with the speed a = (A - F) / (2 pi f J) at most, F being its friction. The mean of Coulomb friction F_c
-    at a mean speed v is then (2 / pi) F_c asin(v / a) for v < a, a viscous friction of about 2 F_c / (pi a), in place of a
-    jump. So A must exceed the breakaway torque by 2 pi f J v.
+    with r the commanded output angle, A = amplitude, f = frequency. The phase stands still while the command rests. An inertia
+    J with Coulomb friction F_c swings with the speed a = sqrt(A^2 - (4 F_c / pi)^2) / (2 pi f J). At a mean speed v its
+    mean friction is (2 / pi) F_c asin(v / a) if v < a: about that of a viscous friction, in place of a jump. Choose A so
+    that a exceeds the speeds at which the drive sticks.
 
-    Keep f above the bandwidth of the speed loop, away from the vibrations of the drive, and at most a tenth of the sample
-    rate: the controller holds the torque over a period. Dither heats the motor, wears the gear, and can be heard. It moves
-    friction at the input only: the output follows with the share that gear and load let through.
+    Keep f above the bandwidth of the speed loop, away from the vibrations of the drive, and below half of the sample rate.
+    Dither heats the motor, wears the gear, and can be heard. It swings the input; the output follows with the share that gear
+    and load let through.
 
     >>> from strainwave.compensation import Dither
     >>> Dither(amplitude=0.05, frequency=80.0).frequency

@@ -152,9 +152,7 @@ def test_its_lyapunov_function_does_not_grow(true: float, share: float) -> None:
     period, gain = 5e-5, 100.0
     observer = BristleObserver(friction=LEVEL, friction_share=share, gain=gain, max_scale=3.0)
     one = drive(observer, LEVEL.replace(coulomb=true * LEVEL.coulomb, breakaway=true * LEVEL.coulomb), period=period)
-    now = one.rest().replace(
-        {"input_speed": RATIO * SPEED, "output_speed": SPEED, "control.compensation.observer.sense": -1.0}
-    )
+    now = one.rest().replace({"input_speed": RATIO * SPEED, "output_speed": SPEED, "control.compensation.observer.sense": -1.0})
     values = []
     for number in range(3000):
         now = one.step(now, command=SPEED * number * period, command_rate=SPEED, dt=period)
@@ -164,6 +162,20 @@ def test_its_lyapunov_function_does_not_grow(true: float, share: float) -> None:
         values.append(INERTIA * (error**2 + (POSITION * angle) ** 2) + missing**2 / gain)
     assert np.diff(values).max() < 2e-4 * values[0]  # what a period leaves of it
     assert values[-1] < 0.6 * values[0]
+
+
+@pytest.mark.parametrize("share", [0.6, 0.8])
+def test_over_compensated_friction_drives_a_shaft_by_itself(share: float) -> None:
+    """Without a controller: J d omega / dt = share F_c - F_true, so a share below the true scale lets it come to rest."""
+    true, duration, speed = 0.7 * LEVEL.coulomb, 0.5, 5.0  # N.m, s, rad/s
+    one = drive(BristleObserver(friction=LEVEL, friction_share=share), LEVEL.replace(coulomb=true, breakaway=true))
+    free = one.replace({"control.law.proportional": 0.0, "control.law.derivative": 0.0})
+    start = free.rest().replace(
+        {"input_speed": speed, "output_speed": speed / RATIO, "control.compensation.observer.sense": 1.0}
+    )
+    reached = sw.simulate(free, sw.scenario.constant(0.0, duration), sample=1e-2, start=start)["input_speed"][-1]
+    wanted = max(speed + (share * LEVEL.coulomb - true) * duration / (INERTIA + LIGHT.inertia / RATIO**2), 0.0)
+    assert reached == pytest.approx(wanted, rel=1e-3, abs=1e-9)
 
 
 def test_it_supplies_the_friction_that_the_feedforward_supplies_too_early() -> None:
@@ -187,6 +199,6 @@ def test_it_supplies_the_friction_that_the_feedforward_supplies_too_early() -> N
         ({"presliding": 0.0}, r"bristle_observer\.presliding = 0"),
     ],
 )
-def test_what_is_wrong_is_refused(changed: dict[str, float], words: str) -> None:
+def test_what_is_wrong_is_refused(changed: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         BristleObserver(**changed)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.compensation import Dither, DisturbanceObserver, NoDither
+from strainwave.compensation import DisturbanceObserver, Dither, NoDither
 
 from tests.compensation.ideal import LIGHT, RATIO, gear
 
@@ -16,7 +16,7 @@ INERTIA = 2e-4  # kg.m2
 STIFFNESS, DAMPING = 0.02, 2.8e-3  # N.m/rad, N.m.s/rad of the position loop
 LEVEL = 0.02  # N.m
 AMPLITUDE, FREQUENCY = 0.2, 20.0  # N.m, Hz
-SWUNG = np.sqrt(AMPLITUDE**2 - (4.0 * LEVEL / np.pi) ** 2) / (2.0 * np.pi * FREQUENCY * INERTIA)  # rad/s: of torque and friction
+SWUNG = np.sqrt(AMPLITUDE**2 - (4.0 * LEVEL / np.pi) ** 2) / (2.0 * np.pi * FREQUENCY * INERTIA)  # rad/s
 DRY = sw.friction.Coulomb(coulomb=LEVEL, breakaway=LEVEL)
 
 

@@ -416,3 +416,21 @@ def test_the_model_of_a_soft_gear_leads_also_if_its_loop_is_wide_or_narrow(galle
     for name in ("20 % less lost motion", "20 % more lost motion"):
         assert lag("and model") < lag(name) < 0.33 * lag("motor, arm integrated")
     assert abs(found["apart"]["one side"]) < 0.15 * abs(found["apart"]["both sides"])
+
+
+def test_friction_by_the_measured_motion_creeps_where_others_stick(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """At the input, at all speeds. At the output none does below the jump of friction over the root of K J."""
+    example = gallery("20")
+    found, cases = example["found"], example["cases"]
+    at_input = {name: rows[:, 0] for name, rows in found["friction at the input"].items()}
+    assert (at_input["bristle observer"] == 0.0).all()
+    for name in ("cascade, disturbance observer", "friction of a model"):
+        assert (at_input[name][:3] > 0.1).all()
+        assert at_input[name][-1] == 0.0
+    drives, speeds = cases["friction at the output, too"]
+    gear, load = next(iter(drives.values())).gear, next(iter(drives.values())).load
+    stiffness = gear.stiffness.k1 + sum(gear.hysteresis.stiffness)
+    critical = 100.0 * (0.6 - 0.3) / np.sqrt(stiffness * load.inertia)
+    for rows in found["friction at the output, too"].values():
+        assert (rows[np.array(speeds) < 0.75 * critical, 0] > 0.1).all()
+        assert (rows[np.array(speeds) > 1.25 * critical, 0] == 0.0).all()

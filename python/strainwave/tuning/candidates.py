@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Compensation, Drive, Gear, _core, compensation, stiffness
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning.cascade import (
     RIGID,
     Plant,
@@ -43,6 +44,8 @@ MAX_SHARE_OF_PASS = 0.3  # of an error, that a cell learns while the input passe
 MAP_POINTS = 5  # of a map of lost motion
 MAP_REACH_SHARES, MAP_REACHES = (1e-3, 1.0), 13  # over the travel, of which the best is taken
 SCALE_TIME = 1.0  # s, in which the scale of friction follows
+BRISTLE_SHARE = 0.9  # of the friction of the law, so that a gear with less is not over-compensated
+BRISTLE_GAIN = 2.0  # of the error, that bends the bristles of a shaft at rest; larger ones swing with lags of the loop
 USUAL_SPEED = 20.0  # rad/s of the input
 MIN_FRICTION = 1e-6  # N.m
 RANGE_OF_SPEED = (0.1, 100.0)  # rad/s of the input, over which friction is compared with a line
@@ -75,7 +78,7 @@ def baseline(plant: Plant, setting: Setting) -> Candidate:
     """Return the cascade with feed-forward of inertia, weight, Coulomb and viscous friction, and the observer of a setting."""
     observed = " and disturbance observer" if setting.observer_share else ""
     encoder = ", position by the output encoder" if setting.feedback == "output" else ""
-    added = _compensation(plant, bare(plant.drive.gear), setting)
+    added = _compensation(plant, bare(plant.drive.gear, plant.start_temperature), setting)
     drive = plant.controlled(tuned_law(plant, setting), added)
     return Candidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
 
@@ -85,6 +88,7 @@ def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Map
 
     Waves over the input are learnt where the controller follows the input encoder and sees the output, so only if there are
     settings of both encoders. A map of lost motion is for a motion that turns back.
+    For a motion that creeps, friction is also supplied by the measured motion.
     """
     gear = plant.drive.gear
     present = [effect for effect in EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
@@ -100,6 +104,8 @@ def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Map
                 yield _with_scale(plant, setting, effects)
         if "torsion" in present and goal.pace and setting.feedback == "input":
             yield _with_map(plant, setting, goal)
+        if goal.name == "smooth" and gear.friction_input != Gear().friction_input:
+            yield from (_with_bristles(plant, setting, effects) for effects in [(), *choices] if "friction" not in effects)
         if sees_output and setting.feedback == "input" and orders:
             learners = list(_learners(plant, setting, orders, goal, draws))
             for effects in [(), *choices]:
@@ -108,7 +114,7 @@ def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Map
 
 
 def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
-    added = _compensation(plant, with_effects(plant.drive.gear, effects), setting)
+    added = _compensation(plant, with_effects(plant.drive.gear, effects, plant.start_temperature), setting)
     drive = plant.controlled(tuned_law(plant, setting), added)
     return Candidate(_name(effects, setting), effects, setting, drive, len(effects), is_plain=True)
 
@@ -117,16 +123,33 @@ def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Can
     """Return the same with an observer of the scale of friction in place of one of the disturbance."""
     law = tuned_law(plant, setting)
     scale = compensation.FrictionScale(gain=_scale_gain(plant, setting), position_gain=law.position_gain)
-    added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(observer=scale)
+    added = _compensation(plant, with_effects(plant.drive.gear, effects, plant.start_temperature), setting).replace(
+        observer=scale
+    )
     name = f"{_name(effects, setting)}, scale of friction observed"
     return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
+
+
+def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+    """Return the same with the friction at the input by the measured motion, in place of that of the model."""
+    law, gear = tuned_law(plant, setting), plant.drive.gear
+    bristles = compensation.BristleObserver(
+        friction=gear.friction_input,
+        friction_share=BRISTLE_SHARE,
+        bristle_gain=BRISTLE_GAIN,
+        position_gain=law.position_gain,
+        temperature=plant.start_temperature,
+    )
+    added = _compensation(plant, with_effects(gear, effects, plant.start_temperature), setting).replace(observer=bristles)
+    name = f"{_name(effects, setting)}, friction by the measured motion"
+    return Candidate(name, ("friction", *effects), setting, plant.controlled(law, added), len(effects) + 1)
 
 
 def _with_map(plant: Plant, setting: Setting, goal: Goal) -> Candidate:
     """Return the cascade with a map of lost motion, and friction that the law feeds forward if no observer supplies it."""
     law, per_torque = tuned_law(plant, setting), plant.actuation_per_torque
     if not setting.observer_share:
-        coulomb, viscous = (per_torque * each for each in line_of_friction(plant.drive.gear))
+        coulomb, viscous = (per_torque * each for each in line_of_friction(plant.drive.gear, plant.start_temperature))
         law = law.replace(coulomb_feedforward=coulomb, viscous_feedforward=viscous)
     added = Compensation(
         feedforward=lost_motion_map(plant, goal), observer=observer_of(plant, setting), actuation_per_torque=per_torque
@@ -139,7 +162,9 @@ def lost_motion_map(plant: Plant, goal: Goal) -> compensation.LostMotionMap:
 
     `reach` is that of the least squares of what the table leaves of the lead.
     """
-    gear = with_effects(plant.drive.gear, ("torsion",)).replace(friction_output=plant.drive.gear.friction_output)
+    gear = with_effects(plant.drive.gear, ("torsion",), plant.start_temperature).replace(
+        friction_output=plant.drive.gear.friction_output
+    )
     model, count = model_of(plant, gear), round(2.0 * np.pi / goal.pace / plant.period)
     time = plant.period * np.arange(2 * count)
     angle, rate = goal.command.value(time), goal.command.rate(time)
@@ -173,7 +198,9 @@ def _mapped(points: Array, forward: Array, backward: Array, reach: float, angle:
 
 def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], name: str, learner: Any) -> Candidate:
     """Return a model with what is learnt over the input."""
-    added = _compensation(plant, with_effects(plant.drive.gear, effects), setting).replace(learning=learner)
+    added = _compensation(plant, with_effects(plant.drive.gear, effects, plant.start_temperature), setting).replace(
+        learning=learner
+    )
     drive = plant.controlled(tuned_law(plant, setting), added)
     return Candidate(f"{_name(effects, setting)}, {name} learnt", effects, setting, drive, len(effects) + 1)
 
@@ -241,16 +268,16 @@ def _compensation(plant: Plant, gear: Gear, setting: Setting) -> Compensation:
 
 def _scale_gain(plant: Plant, setting: Setting) -> float:
     """Return the gain at which the scale follows in `SCALE_TIME` of motion at the usual speed."""
-    coulomb, viscous = line_of_friction(plant.drive.gear)
+    coulomb, viscous = line_of_friction(plant.drive.gear, plant.start_temperature)
     torque = max(coulomb + viscous * USUAL_SPEED, MIN_FRICTION)
     per_speed = speed_bandwidth(plant, setting) * plant.total_inertia
     return per_speed / (torque**2 * SCALE_TIME)
 
 
-def with_effects(gear: Gear, effects: tuple[str, ...]) -> Gear:
-    """Return a gear of which only some effects are known, and the line of its friction."""
+def with_effects(gear: Gear, effects: tuple[str, ...], temperature: float = ROOM_TEMPERATURE) -> Gear:
+    """Return a gear of which only some effects are known, and the line of its friction at a temperature [K]."""
     parts = {part: getattr(gear, part) for effect in effects for part in EFFECTS[effect]}
-    return bare(gear).replace(**parts)
+    return bare(gear, temperature).replace(**parts)
 
 
 def has_effect(gear: Gear, effect: str) -> bool:

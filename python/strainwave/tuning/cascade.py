@@ -11,6 +11,7 @@ import numpy as np
 from strainwave import Compensation, Drive, Gear, _core, compensation, control, friction, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning.steady_torque import steady_torque
 
 RIGID = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
@@ -104,6 +105,11 @@ class Plant:
         load: Any = self.drive.load
         return float(self.input_inertia + load.inertia / self.ratio**2)
 
+    @property
+    def start_temperature(self) -> float:
+        """Temperature of the gear at the begin of a motion [K]."""
+        return float(getattr(self.drive.thermal, "initial_temperature", ROOM_TEMPERATURE))
+
     def controlled(self, law: Any, added: Compensation) -> Drive:
         """Return the drive under a sampled law with a compensation."""
         sampled = control.Sampled(law=law, compensation=added, period=self.period, delay=self.delay)
@@ -133,17 +139,19 @@ def _usual_limit(drive: Drive) -> float:
     return float(LIMIT_OF_LEVELS * levels + LIMIT_OF_ACCELERATION * inertia)
 
 
-def line_of_friction(gear: Gear) -> tuple[float, float]:
+def line_of_friction(gear: Gear, temperature: float = ROOM_TEMPERATURE) -> tuple[float, float]:
     """Return Coulomb [N.m] and viscous friction [N.m.s/rad] at the input: the line through its mean at two speeds."""
     turn = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
-    slow, fast = (float(steady_torque(gear, speed, turn).friction.mean()) for speed in (SLOW_SPEED, FAST_SPEED))
+    slow, fast = (
+        float(steady_torque(gear, speed, turn, temperature=temperature).friction.mean()) for speed in (SLOW_SPEED, FAST_SPEED)
+    )
     viscous = max((fast - slow) / (FAST_SPEED - SLOW_SPEED), 0.0)
     return max(slow - viscous * SLOW_SPEED, 0.0), viscous
 
 
-def bare(gear: Gear) -> Gear:
-    """Return a gear of which only the ratio, the inertia and the line of its friction are known."""
-    coulomb, viscous = line_of_friction(gear)
+def bare(gear: Gear, temperature: float = ROOM_TEMPERATURE) -> Gear:
+    """Return a gear of which only the ratio, the inertia and the line of its friction at a temperature [K] are known."""
+    coulomb, viscous = line_of_friction(gear, temperature)
     law = friction.Coulomb(coulomb=coulomb, viscous=viscous)
     spring = stiffness.Linear(k=RIGID)
     return Gear(kinematics=gear.kinematics, stiffness=spring, friction_input=law, input_inertia=gear.input_inertia)
@@ -208,4 +216,6 @@ def model_of(plant: Plant, gear: Gear) -> compensation.ModelFeedforward:
         ValueError: the kinematic error of the gear is too steep to be fed forward
     """
     inertia = float(plant.drive.motor.inertia)
-    return compensation.ModelFeedforward(gear=gear, load=plant.drive.load, motor_inertia=inertia)
+    return compensation.ModelFeedforward(
+        gear=gear, load=plant.drive.load, motor_inertia=inertia, temperature=plant.start_temperature
+    )

@@ -65,8 +65,8 @@ def judged(
 ) -> Judged:
     """Return a controller with its figures on drawn gears; the gear as its numbers have it is run first among them.
 
-    A run fails if it does not end, or drives the motor at its limit for more than a hundredth of the time, as a loop does that
-    is not stable.
+    A run fails if it does not end, if the goal has no figures for it, or if it drives the motor at its limit for more than a
+    hundredth of the time, as a loop does that is not stable.
     """
     nominal = numbers(candidate.drive, draws)
     whole = {path: np.concatenate(([nominal[path]], values)) for path, values in draws.items()}
@@ -83,7 +83,8 @@ def judged(
     with np.errstate(over="ignore", invalid="ignore"):  # of a run that grows without bound
         measured = goal.figures(runs, goal.command)
     figures = {name: np.where(at_limit, np.nan, values) for name, values in measured.items()}
-    reason = next(iter(runs.failures.values()), "the motor is at its limit" if at_limit.any() else "")
+    stopped = "the motor is at its limit" if at_limit.any() else "the output does not move"
+    reason = next(iter(runs.failures.values()), stopped if np.isnan(figures[goal.judged_by]).any() else "")
     return Judged(
         candidate,
         {name: values[1:] for name, values in figures.items()},

@@ -19,13 +19,14 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.messages import shortened
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import USUAL_SPEED
 from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
 from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
-from strainwave.tuning.steady_torque import ROOM_TEMPERATURE, steady_torque
+from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Gear
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
-ROOM_TEMPERATURE = 293.15  # K
 
 
 class SteadyTorque(NamedTuple):

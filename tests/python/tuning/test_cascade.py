@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.tuning.cascade import PHASE_OF_DELAY, POSITION_SHARE, Plant, Setting, line_of_friction, tuned_law
+from strainwave.tuning.cascade import PHASE_OF_DELAY, POSITION_SHARE, Plant, Setting, line_of_friction, model_of, tuned_law
 
 GEAR = sw.Gear(
     kinematics=sw.kinematics.PlainRatio(reduction=100.0),
@@ -86,3 +86,12 @@ def test_a_load_without_inertia_is_refused() -> None:
     drive = sw.Drive(gear=GEAR, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=1e-12))
     with pytest.raises(ValueError, match=r"joint: load and gear vibrate at up to 1\.73e\+08 rad/s.*inertia is 1e-12 kg\.m2"):
         Plant.of(sw.GearSet.of(drive, name="joint", source="stated"), 1e-3, 0.0)
+
+
+def test_a_model_has_the_temperature_at_which_the_drive_starts() -> None:
+    """The file of the pointing joint states -20 degC; the robot joint of the catalogue starts in a room of 20 degC."""
+    for name, celsius in (("space-pointing-joint", -20.0), ("robot-joint", 20.0)):
+        plant = Plant.of(sw.GearSet.read(name), 1e-3, 0.0)
+        assert model_of(plant, plant.drive.gear).temperature == pytest.approx(273.15 + celsius)
+    plant = Plant.of(sw.GearSet.of(plant.drive.replace(thermal=sw.thermal.Isothermal()), name="x", source="x"), 1e-3, 0.0)
+    assert model_of(plant, plant.drive.gear).temperature == sw.Gear().softening.reference_temperature

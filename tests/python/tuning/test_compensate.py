@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
-from strainwave.tuning.candidates import baseline
+from strainwave.tuning.candidates import baseline, candidates
 from strainwave.tuning.cascade import Plant, Setting
 
 STATED = sw.GearSet.read("robot-joint")
@@ -44,6 +44,32 @@ def test_an_error_of_unknown_phase_is_not_fed_forward() -> None:
     with_error = [each for each in found.tried if each.candidate.is_plain and "kinematic error" in each.candidate.effects]
     assert all(each.median("speed ripple") > each.nominal["speed ripple"] for each in with_error)
     assert any("kinematic error is assumed" in remark and "both encoders" in remark for remark in found.remarks)
+
+
+def test_a_motion_that_creeps_may_have_its_friction_by_the_measured_motion() -> None:
+    """A loop at 100 Hz sticks in friction that falls with the speed; friction along the command does not help it, this does."""
+    joint = sw.GearSet.read("space-pointing-joint")
+    lagging = sw.Sensors(input_speed=sw.sensor.FirstOrder(time_constant=5e-3))
+    cold = {"gear.friction_input.reference_temperature": 333.15}
+    drive = joint.drive.replace(sensors=lagging, thermal=sw.thermal.Isothermal()).replace(cold)
+    found = sw.compensate(drive, goal="smooth", period=0.01, speed=4e-3, members=4)
+    observer = found.drive.control.compensation.observer
+    assert isinstance(observer, sw.compensation.BristleObserver)
+    assert observer.friction == drive.gear.friction_input
+    assert found.gain > 0.5
+    assert found.chosen.median("time at rest") == 0.0 < found.baseline.median("time at rest")
+
+
+def test_friction_is_by_the_measured_motion_only_where_it_creeps() -> None:
+    plant, setting = Plant.of(STATED, 1e-3, 0.0), Setting(0.5, "input", 0.5)
+    usual, creeping = (list(candidates(plant, [setting], creeps=creeps)) for creeps in (False, True))
+    more = [each for each in creeping if each.name not in {other.name for other in usual}]
+    assert len(creeping) > len(usual)
+    for each in more:
+        part = each.drive.control.compensation
+        assert isinstance(part.observer, sw.compensation.BristleObserver)
+        assert part.observer.position_gain == each.drive.control.law.position_gain
+        assert "friction" in each.effects
 
 
 def test_a_gear_without_effects_needs_none() -> None:

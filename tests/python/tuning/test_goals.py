@@ -92,3 +92,12 @@ def test_ripple_and_rest() -> None:
     assert found["speed ripple"] == pytest.approx([0.1 / np.sqrt(2.0), np.sqrt(0.75 + 0.25 * 9.0)], rel=0.01)
     assert found["time at rest"] == pytest.approx([0.0, 0.75], abs=1e-3)
     assert found["position error"] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_an_output_that_does_not_move_does_not_count_as_smooth() -> None:
+    """Its ripple would be 1, less than that of an output that slips now and then."""
+    goal = goals.smooth(0.01, 2.0, "N.m")
+    time = np.linspace(0.0, 2.0, 2001)
+    speed = np.stack([np.zeros(2001), np.where(np.arange(2001) % 4 < 3, 0.0, 0.04)])
+    found = goal.figures(ensemble(time, output_angle=speed, output_speed=speed, motor_torque=speed), goal.command)
+    assert {name: list(np.isnan(values)) for name, values in found.items()} == {name: [True, False] for name in goal.units}
