@@ -234,9 +234,9 @@ class Compensation:
     definition
     """
 
-    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
+    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
+    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -246,7 +246,7 @@ class Compensation:
         """Feed-forward of a model of the drive"""
 
     @property
-    def learning(self) -> strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive:
+    def learning(self) -> strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification:
         """Learning of errors that repeat"""
 
     @property
