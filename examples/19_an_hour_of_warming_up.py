@@ -1,9 +1,10 @@
 """An hour in which a joint warms up: the numbers of its model change, and the compensation follows them while the joint works.
 
-The feed-forward knows the cold joint. As the joint warms up, its friction falls and its gear becomes softer, so the feed-forward asks
-for too much torque and too little twist. `FrictionScale` follows the friction by the error of speed and angle. `TwistIdentification`
-follows the compliance by both encoders and states its standard deviation. Neither has a thermometer. The dashed lines are true.
-The heat capacities are a twentieth of those of a joint, so that three minutes stand for an hour. All thermal numbers are assumed.
+The feed-forward knows the cold joint. As the joint warms up, its friction falls and its gear becomes softer. So the feed-forward
+is wrong by more and more torque and twist. `FrictionScale` follows the friction by the error of speed and angle.
+`TwistIdentification` follows the compliance by both encoders and states its standard deviation. Neither has a thermometer. The
+dashed lines are true. The speed loop has no integral, which would hide the friction from its observer. The heat capacities are a
+thirtieth of those of a joint, so that two minutes stand for an hour. All thermal numbers are assumed.
 """
 
 import numpy as np
@@ -15,23 +16,26 @@ from strainwave.tuning.cascade import Plant, Setting, model_of, observer_of, tun
 plant = Plant.of(sw.GearSet.read("robot-joint"), period=1e-3, delay=0.0)
 falls = {"friction_input.dry_fall": 0.02, "softening.stiffness_fall": 0.005, "softening.hysteresis_fall": 0.005}  # 1/K
 gear = plant.drive.gear.replace(falls)
-heat = sw.thermal.Heating(winding_capacity=20.0, winding_resistance=1.0, gear_capacity=4.0, gear_resistance=10.0)
+heat = sw.thermal.Heating(winding_capacity=12.0, winding_resistance=1.0, gear_capacity=2.5, gear_resistance=10.0)
 setting = Setting(sharpness=0.25, feedback="input", observer_share=0.5)
-law, swing = tuned_law(plant, setting), sw.scenario.sine(0.3, 0.2, 5.0, phase=-np.pi / 2, offset=0.3)
-scale = sw.compensation.FrictionScale(gain=100.0, position_gain=law.position_gain, min_speed=15.0)
-twist = sw.compensation.TwistIdentification(order=[2], compliance_prior=0.1, offset_prior=1e-4, memory=180.0)
+law, swing = (
+    tuned_law(plant, setting).replace(speed_integral=0.0),
+    sw.scenario.sine(0.3, 0.2, 5.0, phase=-np.pi / 2, offset=0.3),
+)
+scale = sw.compensation.FrictionScale(gain=30.0, position_gain=law.position_gain, min_speed=15.0)
+twist = sw.compensation.TwistIdentification(order=[2], compliance_prior=0.1, offset_prior=1e-4, memory=120.0)
 number = "control.compensation.learning.{}_compliance"
+model = model_of(plant, with_effects(gear, tuple(EFFECTS)))
+plain = sw.Compensation(feedforward=model, actuation_per_torque=plant.actuation_per_torque)
 COMPENSATIONS = {
-    "model of the cold joint": {},
-    "with a disturbance observer": {"observer": observer_of(plant, setting)},
-    "with both scales identified": {"observer": scale, "learning": twist},
+    "model of the cold joint": plain,
+    "with a disturbance observer": plain.replace(observer=observer_of(plant, setting)),
+    "with both scales identified": plain.replace(observer=scale, learning=twist),
 }
 
 
-def worked(rounds: int = 36, **parts: object) -> np.ndarray:
-    """Error [rad], friction and compliance: each identified and true, and the deviation of the latter; after each of the rounds."""
-    model = model_of(plant, with_effects(gear, tuple(EFFECTS)))
-    added = sw.Compensation(feedforward=model, actuation_per_torque=plant.actuation_per_torque, **parts)
+def worked(added: sw.Compensation, rounds: int = 24) -> np.ndarray:
+    """Error [rad], friction and compliance, each identified and true, deviation and temperature, after each round."""
     drive = plant.controlled(law, added).replace(gear=gear, thermal=heat, sensors=sw.Sensors())
     state, rows = drive.rest(), []
     for _ in range(rounds):
@@ -46,7 +50,7 @@ def worked(rounds: int = 36, **parts: object) -> np.ndarray:
     return np.array(rows, dtype=float).T
 
 
-results = {name: worked(**parts) for name, parts in COMPENSATIONS.items()}
+results = {name: worked(added) for name, added in COMPENSATIONS.items()}
 error, friction, true_friction, compliance, true_compliance, deviation, warm = results["with both scales identified"]
 print(f"the gear warms up from 20 degC to {warm[-1] - 273.15:.0f} degC")
 print(f"friction over that of the cold joint: identified {friction[-1]:.2f}, true {true_friction[-1]:.2f}")
