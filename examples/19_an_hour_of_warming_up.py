@@ -1,10 +1,10 @@
 """An hour in which a joint warms up: the numbers of its model change, and the compensation follows them while the joint works.
 
-The feed-forward knows the cold joint. As the joint warms up, its friction falls and its gear becomes softer. So the feed-forward
-is wrong by more and more torque and twist. `FrictionScale` follows the friction by the error of speed and angle.
+The feed-forward knows the cold joint. As the joint warms up, its friction falls and its gear becomes softer. So the torque and
+the twist of the feed-forward become wrong. `FrictionScale` follows the friction by the error of speed and angle.
 `TwistIdentification` follows the compliance by both encoders and states its standard deviation. Neither has a thermometer. The
-dashed lines are true. The speed loop has no integral, which would hide the friction from its observer. The heat capacities are a
-thirtieth of those of a joint, so that two minutes stand for an hour. All thermal numbers are assumed.
+dashed lines are true. The speed loop has no integral, which would hide the friction from its observer. The heat capacities are
+a thirtieth of those of a joint, so that two minutes stand for an hour. All thermal numbers are assumed.
 """
 
 import numpy as np
@@ -70,7 +70,7 @@ scales.fill_between(minutes, *band, color="#2166ac", alpha=0.2, label="two stand
 for name, found in results.items():
     errors.plot(minutes, 1e6 * found[0], label=name)
 scales.set(xlabel="time [min]", ylabel="over that of the cold joint [1]")
-errors.set(xlabel="time [min]", ylabel="tracking error [µrad]")
+errors.set(xlabel="time [min]", ylabel="tracking error [µrad]", yscale="log")
 for axes in (scales, errors):
     axes.legend()
     axes.grid(alpha=0.3)

@@ -504,9 +504,9 @@ class IterativeLearning:
 
     Parameters
     ----------
-    low: Least output angle of the tables [rad]; default -1.0
-    high: Largest output angle of the tables [rad]; default 1.0
-    reach: Output angle r_0 after a reversal over which the old sense falls to 1/e [rad], in (0, inf); default 0.001
+    low: Least output angle of the tables [rad], in [-1000000, 1000000]; default -1.0
+    high: Largest output angle of the tables [rad], in [-1000000, 1000000]; default 1.0
+    reach: Output angle r_0 after a reversal over which the old sense falls to 1/e [rad], in [1e-09, inf); default 0.001
     gain: Rate gamma at which a value follows the error [1/s], in [0, inf); default 5.0
     smoothing: Rate sigma at which a value follows its neighbours [1/s], in [0, inf); default 0.0
     lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
@@ -622,16 +622,16 @@ class TwistIdentification:
     Parameters
     ----------
     order: Orders n: periods per revolution of the input, in (0, inf); default ()
-    compliance_prior: Standard deviation of the compliance over that of the model, a priori, in [0, inf); default 0.3
-    amplitude_prior: Standard deviation of each sine and cosine at the output, a priori [rad], in [0, inf); default 0.0003
-    offset_prior: Standard deviation of the offset of the encoders at the output, a priori [rad], in [0, inf); default 0.001
-    noise: Standard deviation sigma of the measured twist about the model [rad], in (0, inf); default 2e-05
-    noise_time: Time t_n over which the error of the model repeats itself [s], in (0, inf); default 0.1
-    memory: Time t_m of motion over which the numbers change by their priors [s], in (0, inf); default 600.0
+    compliance_prior: Standard deviation of the compliance over that of the model, a priori, in [0, 10]; default 0.3
+    amplitude_prior: Standard deviation of each sine and cosine at the output, a priori [rad], in [0, 1]; default 0.0003
+    offset_prior: Standard deviation of the offset of the encoders at the output, a priori [rad], in [0, 100]; default 0.001
+    noise: Standard deviation sigma of the measured twist about the model [rad], in [1e-09, 1]; default 2e-05
+    noise_time: Time t_n over which the error of the model repeats itself [s], in [1e-06, 1000000]; default 0.1
+    memory: Time t_m of motion over which the numbers change by their priors [s], in [1e-06, inf); default 600.0
     window: Time of motion over which the excitation is measured [s], in (0, inf); default 10.0
     min_excitation: Excitation below which a number is kept [1/s], in [0, inf); default 1.0
     min_speed: Input speed below which nothing is adapted [rad/s], in [0, inf); default 1.0
-    limit: Largest change of a number, over its prior, in [0, inf); default 3.0
+    limit: Largest change of a number, over its prior, in [0, 1000000]; default 3.0
 
     Raises
     ------

@@ -48,9 +48,9 @@ struct IterativeLearning {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, low, "rad", "Least output angle of the tables"));
-        visit(SW_FIELD(m, high, "rad", "Largest output angle of the tables"));
-        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 after a reversal over which the old sense falls to 1/e", smallest));
+        visit(SW_FIELD(m, low, "rad", "Least output angle of the tables", -1e6, 1e6));
+        visit(SW_FIELD(m, high, "rad", "Largest output angle of the tables", -1e6, 1e6));
+        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 after a reversal over which the old sense falls to 1/e", 1e-9));
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which a value follows the error", 0));
         visit(SW_FIELD(m, smoothing, "1/s", "Rate sigma at which a value follows its neighbours", 0));
         visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
@@ -59,7 +59,9 @@ struct IterativeLearning {
         visit(SW_FIELD(m, limit, "rad", "Largest value at the output", 0));
     }
 
-    constexpr const char* problem() const { return all(low < high) ? nullptr : "high must exceed low"; }
+    constexpr const char* problem() const {
+        return all(high - low >= S(1e-6)) ? nullptr : "high must exceed low by 1e-6 rad or more";
+    }
 
     struct State {
         Array<S, cells> forward{}, backward{};

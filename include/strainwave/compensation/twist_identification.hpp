@@ -87,16 +87,16 @@ struct TwistIdentification {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input", smallest));
-        visit(SW_FIELD(m, compliance_prior, "1", "Standard deviation of the compliance over that of the model, a priori", 0));
-        visit(SW_FIELD(m, amplitude_prior, "rad", "Standard deviation of each sine and cosine at the output, a priori", 0));
-        visit(SW_FIELD(m, offset_prior, "rad", "Standard deviation of the offset of the encoders at the output, a priori", 0));
-        visit(SW_FIELD(m, noise, "rad", "Standard deviation sigma of the measured twist about the model", smallest));
-        visit(SW_FIELD(m, noise_time, "s", "Time t_n over which the error of the model repeats itself", smallest));
-        visit(SW_FIELD(m, memory, "s", "Time t_m of motion over which the numbers change by their priors", smallest));
+        visit(SW_FIELD(m, compliance_prior, "1", "Standard deviation of the compliance over that of the model, a priori", 0, 10));
+        visit(SW_FIELD(m, amplitude_prior, "rad", "Standard deviation of each sine and cosine at the output, a priori", 0, 1));
+        visit(SW_FIELD(m, offset_prior, "rad", "Standard deviation of the offset of the encoders at the output, a priori", 0, 100));
+        visit(SW_FIELD(m, noise, "rad", "Standard deviation sigma of the measured twist about the model", 1e-9, 1));
+        visit(SW_FIELD(m, noise_time, "s", "Time t_n over which the error of the model repeats itself", 1e-6, 1e6));
+        visit(SW_FIELD(m, memory, "s", "Time t_m of motion over which the numbers change by their priors", 1e-6));
         visit(SW_FIELD(m, window, "s", "Time of motion over which the excitation is measured", smallest));
         visit(SW_FIELD(m, min_excitation, "1/s", "Excitation below which a number is kept", 0));
         visit(SW_FIELD(m, min_speed, "rad/s", "Input speed below which nothing is adapted", 0));
-        visit(SW_FIELD(m, limit, "1", "Largest change of a number, over its prior", 0));
+        visit(SW_FIELD(m, limit, "1", "Largest change of a number, over its prior", 0, 1e6));
     }
 
     struct State {
