@@ -147,7 +147,7 @@ struct TwistIdentification {
         next.begun = S(1.0);
         const S moves = select(abs(inputs.input_speed()) < min_speed, S(0.0), S(1.0));
         const S lead = (inputs.measured.input_angle - inputs.request.input_lead) / inputs.command.ratio;
-        const Numbers regressor = regressors(inputs);
+        const Vector regressor = regressors(inputs);
         observe(next, regressor, moves * period);
         adapt(next, regressor, lead - inputs.measured.output_angle, moves, period);
         return next;
@@ -155,6 +155,7 @@ struct TwistIdentification {
 
 private:
     static constexpr double least_variance = 1e-30;  ///< of a number: it keeps correlations finite
+    using Vector = Array<S, Numbers::capacity>;
     struct Covariance {
         S item[Numbers::capacity][Numbers::capacity];
     };
@@ -165,19 +166,19 @@ private:
     constexpr S prior(int j) const { return j == 0 ? compliance_prior : j == 1 ? offset_prior : amplitude_prior; }
     static constexpr int place(int row, int column) { return row * (row - 1) / 2 + column; }
 
-    constexpr Numbers regressors(const Inputs<S>& inputs) const {
-        Numbers regressor{};
-        regressor.compliance = inputs.request.torsion / inputs.command.ratio;
-        regressor.offset = S(1.0);
+    constexpr Vector regressors(const Inputs<S>& inputs) const {
+        Vector regressor{};
+        regressor[0] = inputs.request.torsion / inputs.command.ratio;
+        regressor[1] = S(1.0);
         for (int n = 0; n < order.count; ++n) {
             const SinCos<S> at = wave(order[n], inputs.measured.input_angle, S(0.0));
-            regressor.sine[n] = at.sin;
-            regressor.cosine[n] = at.cos;
+            regressor[2 + 2 * n] = at.sin;
+            regressor[3 + 2 * n] = at.cos;
         }
         return regressor;
     }
     /// Moves means and excitations on; the excitation of the offset is constant.
-    constexpr void observe(State& x, const Numbers& regressor, const S& step) const {
+    constexpr void observe(State& x, const Vector& regressor, const S& step) const {
         const S share = step / max(x.time + step, S(smallest));
         for (int j = 0; j < count(); ++j) {
             const S apart = regressor[j] - x.mean[j], change = apart * prior(j);
@@ -188,10 +189,10 @@ private:
         x.time = min(x.time + step, window);
     }
     /// Kalman filter of the numbers that the motion excites, after they have relaxed towards their priors.
-    constexpr void adapt(State& x, const Numbers& regressor, const S& measured, const S& moves, const S& period) const {
+    constexpr void adapt(State& x, const Vector& regressor, const S& measured, const S& moves, const S& period) const {
         const S twice = S(2.0) * period / memory, renewed = twice / (S(1.0) + twice);
         const S faded = renewed / (S(1.0) + sqrt(S(1.0) - renewed)), variance = density() / period;
-        Numbers active{}, product{}, gain{}, left{};
+        Vector active{}, product{}, gain{}, left{};
         S innovation = measured, expected = variance;
         for (int j = 0; j < count(); ++j) {
             active[j] = select(x.excitation[j] < min_excitation, S(0.0), moves);
@@ -219,25 +220,25 @@ private:
         x.residual = select(moves > S(0.0), after, x.residual);
     }
     constexpr void keep(State& x, const Covariance& p, const S& moves) const {
+        Vector inverse{};
         for (int i = 0; i < count(); ++i) {
             x.deviation[i] = sqrt(max(p.item[i][i], S(least_variance)));
+            inverse[i] = S(1.0) / x.deviation[i];
             for (int j = 0; j < i; ++j) {
-                const S found = clip(p.item[i][j] / (x.deviation[i] * x.deviation[j]), S(-1.0), S(1.0));
+                const S found = clip(p.item[i][j] * inverse[i] * inverse[j], S(-1.0), S(1.0));
                 S& correlation = x.correlation[place(i, j)];
                 correlation = select(moves > S(0.0), found, correlation);
             }
         }
     }
-    constexpr Covariance relaxed(const State& x, const Numbers& active, const S& renewed, const S& faded) const {
+    constexpr Covariance relaxed(const State& x, const Vector& active, const S& renewed, const S& faded) const {
         Covariance p{};
+        Vector deviation{};
         for (int i = 0; i < count(); ++i) {
-            const S before = x.deviation[i] * x.deviation[i];
-            p.item[i][i] = before + active[i] * renewed * (prior(i) * prior(i) - before);
-            for (int j = 0; j < i; ++j) {
-                const S kept = (S(1.0) - active[i] * faded) * (S(1.0) - active[j] * faded);
-                p.item[i][j] = kept * x.correlation[place(i, j)] * x.deviation[i] * x.deviation[j];
-                p.item[j][i] = p.item[i][j];
-            }
+            const S variance = x.deviation[i] * x.deviation[i];
+            p.item[i][i] = variance + active[i] * renewed * (prior(i) * prior(i) - variance);
+            deviation[i] = x.deviation[i] * (S(1.0) - active[i] * faded);
+            for (int j = 0; j < i; ++j) p.item[i][j] = p.item[j][i] = x.correlation[place(i, j)] * deviation[i] * deviation[j];
         }
         return p;
     }
