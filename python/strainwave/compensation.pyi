@@ -493,10 +493,11 @@ class IterativeLearning:
     is there. It learns within ``low`` and ``high`` and between ``min_speed`` and ``max_speed`` of the input; no value
     exceeds ``limit``.
 
-    A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle, and half as
-    much is learnt at the ends. So gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of the error over the angle is learnt where the position loop lags by less than 90
-    degrees beyond ``lag``; max_speed states up to where. What changes within two cells is not learnt: Repetitive and
-    AdaptiveFourier learn what repeats with the input.
+    A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at the
+    ends half as much is learnt. gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of
+    the error is learnt where the position loop lags by less than 90 degrees beyond ``lag``; ``max_speed`` states up to where.
+    It needs the output encoder. What changes within two cells is not learnt: Repetitive and AdaptiveFourier learn what
+    repeats with the input.
 
     >>> from strainwave.compensation import IterativeLearning
     >>> IterativeLearning(low=-0.5, high=0.5).limit
@@ -605,15 +606,16 @@ class TwistIdentification:
     kinematic error that the model lacks, P their covariance, P_0 that of the priors, sigma = noise, t_n = noise_time, t_s the
     period, t_m = memory. The input leads by i (c delta + a_n sin n theta + b_n cos n theta); the offset is estimated only.
 
-    A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least ``min_excitation``:
-    its inverse is the time in which the motion determines the number as well as its prior does. Otherwise the number and
-    its standard deviation are kept, and the others take its uncertainty into account. A torque that does not
-    change does not determine the compliance. At an input speed below ``min_speed`` nothing changes. The state contains the
-    standard deviations. No number exceeds ``limit`` standard deviations of its prior.
+    A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least ``min_excitation``.
+    The inverse of the excitation is the time in which the motion determines the number as well as its prior does. Otherwise
+    the number and its standard deviation are kept, and the gain of the others accounts for its uncertainty. A constant torque does
+    not determine the compliance. At an input speed below ``min_speed`` nothing changes. No number exceeds ``limit`` standard
+    deviations of its prior. Its own lead moves theta and i theta_out alike, so it does not see itself.
 
-    It is right while the error of the model has the size ``noise`` and repeats itself for no longer than ``noise_time``. The
-    state ``residual`` is the size of what the numbers leave. Needs a feed-forward with a twist, and the torque that it
-    assumes: a load that it does not know is taken for compliance.
+    The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the size of what
+    the estimates leave. The deviations are right while the model errs by ``noise``, for no longer than ``noise_time`` in
+    one sense. It needs both encoders and a feed-forward with a twist. A load that the feed-forward does not know is taken
+    for compliance.
 
     >>> from strainwave.compensation import TwistIdentification
     >>> TwistIdentification(order=[2]).memory

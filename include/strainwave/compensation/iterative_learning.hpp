@@ -37,10 +37,11 @@ struct IterativeLearning {
         is there. It learns within ``low`` and ``high`` and between ``min_speed`` and ``max_speed`` of the input; no value
         exceeds ``limit``.
 
-        A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle, and half as
-        much is learnt at the ends. So gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of the error over the angle is learnt where the position loop lags by less than 90
-        degrees beyond ``lag``; max_speed states up to where. What changes within two cells is not learnt: Repetitive and
-        AdaptiveFourier learn what repeats with the input.
+        A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at the
+        ends half as much is learnt. gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of
+        the error is learnt where the position loop lags by less than 90 degrees beyond ``lag``; ``max_speed`` states up to where.
+        It needs the output encoder. What changes within two cells is not learnt: Repetitive and AdaptiveFourier learn what
+        repeats with the input.
 
         >>> from strainwave.compensation import IterativeLearning
         >>> IterativeLearning(low=-0.5, high=0.5).limit
