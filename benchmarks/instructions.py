@@ -81,6 +81,8 @@ def controllers() -> dict[str, sw.Compensation]:
     bristles = sw.compensation.BristleObserver(friction=friction, friction_share=0.9, bristle_gain=2.0)
     fourier = sw.compensation.AdaptiveFourier(order=[1, 2, 4, 2.02], max_frequency=300.0)
     lost_motion = sw.compensation.LostMotionMap(angle=[-1.0, 0.0, 1.0], forward=[1e-4] * 3, backward=[-1e-4] * 3)
+    passes = sw.compensation.IterativeLearning(low=-0.2, high=0.2)
+    twist = sw.compensation.TwistIdentification(order=[1, 2, 4, 2.02])
     every = sw.Compensation
     return {
         "cascade alone": every(),
@@ -89,6 +91,8 @@ def controllers() -> dict[str, sw.Compensation]:
         "lost-motion map": every(feedforward=lost_motion),
         "adaptive Fourier, 4 orders": every(learning=fourier),
         "repetitive": every(learning=sw.compensation.Repetitive(max_speed=100.0)),
+        "iterative learning": every(learning=passes),
+        "lost-motion map, twist identification, 4 orders": every(feedforward=lost_motion, learning=twist),
         "disturbance observer": every(observer=observer),
         "friction and inertia, friction scale": every(feedforward=model(bare), observer=sw.compensation.FrictionScale()),
         "friction and inertia, bristle observer": every(feedforward=model(bare), observer=bristles),

@@ -718,6 +718,247 @@ class TwistIdentification:
 
     fields: tuple[dict[str, Any], ...]
 
+class IterativeLearning:
+    """
+    Learning of what repeats over the output angle, for each sense of motion: lost motion and kinematic error, without a model.
+
+    .. math:: \\hat e = \\sum_j w_j(r)\\,\\Big(\\tfrac{1 + s}{2} f_j + \\tfrac{1 - s}{2} b_j\\Big), \\qquad
+              ds = (\\operatorname{sgn}(dr) - s)\\, \\frac{|dr|}{r_0}
+
+    .. math:: \\dot f_j = \\tfrac{1 + s}{2} \\Big(\\gamma\\, w_j(r - \\dot r\\, t_{lag})\\,(r - \\theta_{out})
+              - \\sigma\\, w_j(r)\\,\\big(f_j - \\tfrac{1}{2}(f_{j-1} + f_{j+1})\\big)\\Big)
+
+    with r the commanded and theta_out the measured output angle, w_j the hat functions of 32 angles from ``low`` to ``high``, f_j and
+    b_j the tables of forward and backward motion, gamma = gain, sigma = smoothing, t_lag = lag of the position loop, s the
+    sense of motion, r_0 = reach; b_j follows likewise with 1 - s. The input leads by i e^. Beyond the ends the lead stays as it
+    is there. It learns within ``low`` and ``high`` and between ``min_speed`` and ``max_speed`` of the input; no value
+    exceeds ``limit``.
+
+    A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at the
+    ends half as much is learnt. gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of
+    the error is learnt where the position loop lags by less than 90 degrees beyond ``lag``; ``max_speed`` states up to where.
+    It needs the output encoder. What changes within two cells is not learnt: Repetitive and AdaptiveFourier learn what
+    repeats with the input.
+
+    >>> from strainwave.compensation import IterativeLearning
+    >>> IterativeLearning(low=-0.5, high=0.5).limit
+    0.001
+
+    Parameters
+    ----------
+    low: Least output angle of the tables [rad], in [-1000000, 1000000]; default -1.0
+    high: Largest output angle of the tables [rad], in [-1000000, 1000000]; default 1.0
+    reach: Output angle r_0 after a reversal over which the old sense falls to 1/e [rad], in [1e-09, inf); default 0.001
+    gain: Rate gamma at which a value follows the error [1/s], in [0, inf); default 5.0
+    smoothing: Rate sigma at which a value follows its neighbours [1/s], in [0, inf); default 0.0
+    lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
+    min_speed: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
+    max_speed: Input speed above which it does not learn [rad/s], in (0, inf); default 300.0
+    limit: Largest value at the output [rad], in [0, inf); default 0.001
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    BristowTharayilAlleyne2006, iterative learning control with a filter Q, over the output angle in place of time and for each sense of motion; between the two senses: Dahl1968
+    """
+
+    def __init__(self, *, low: float = ..., high: float = ..., reach: float = ..., gain: float = ..., smoothing: float = ..., lag: float = ..., min_speed: float = ..., max_speed: float = ..., limit: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, low: float = ..., high: float = ..., reach: float = ..., gain: float = ..., smoothing: float = ..., lag: float = ..., min_speed: float = ..., max_speed: float = ..., limit: float = ...) -> IterativeLearning:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def low(self) -> float:
+        """Least output angle of the tables [rad]"""
+
+    @property
+    def high(self) -> float:
+        """Largest output angle of the tables [rad]"""
+
+    @property
+    def reach(self) -> float:
+        """
+        Output angle r_0 after a reversal over which the old sense falls to 1/e [rad]
+        """
+
+    @property
+    def gain(self) -> float:
+        """Rate gamma at which a value follows the error [1/s]"""
+
+    @property
+    def smoothing(self) -> float:
+        """Rate sigma at which a value follows its neighbours [1/s]"""
+
+    @property
+    def lag(self) -> float:
+        """Time t_lag that the position loop takes to follow [s]"""
+
+    @property
+    def min_speed(self) -> float:
+        """Input speed below which it does not learn [rad/s]"""
+
+    @property
+    def max_speed(self) -> float:
+        """Input speed above which it does not learn [rad/s]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest value at the output [rad]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'iterative_learning'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class TwistIdentification:
+    """
+    Identification while the joint works: compliance of the gear and orders of its kinematic error, from both encoders.
+
+    .. math:: z = \\frac{\\theta - \\theta_f}{i} - \\theta_{out} = \\varphi^T x + \\text{noise}, \\qquad
+              \\varphi = \\big(\\delta,\\; 1,\\; \\sin n\\theta,\\; \\cos n\\theta\\big), \\qquad
+              x = \\big(c,\\; z_0,\\; a_n,\\; b_n\\big)
+
+    .. math:: K_j = \\frac{(P\\varphi)_j}{\\varphi^T P \\varphi + R}, \\qquad x \\leftarrow x + K\\,(z - \\varphi^T x), \\qquad
+              P \\leftarrow (I - K\\varphi^T)\\,P\\,(I - K\\varphi^T)^T + R\\,K K^T, \\qquad R = \\sigma^2\\, t_n / t_s
+
+    .. math:: \\dot x = -x / t_m, \\qquad \\dot P = \\frac{2}{t_m}\\,(P_0 - P)
+
+    with theta and theta_out the measured angles, i the ratio, theta_f the lead and delta the twist that the feed-forward
+    asks for, c the compliance over that of the model minus 1, z_0 the offset of the encoders, a_n, b_n the orders of the
+    kinematic error that the model lacks, P their covariance, P_0 that of the priors, sigma = noise, t_n = noise_time, t_s the
+    period, t_m = memory. The input leads by i (c delta + a_n sin n theta + b_n cos n theta); the offset is estimated only.
+
+    A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least ``min_excitation``.
+    The inverse of the excitation is the time in which the motion determines the number as well as its prior does. Otherwise
+    the number and its standard deviation are kept, and the gain of the others accounts for its uncertainty. A constant torque does
+    not determine the compliance. At an input speed below ``min_speed`` nothing changes. No number exceeds ``limit`` standard
+    deviations of its prior. Its own lead moves theta and i theta_out alike, so it does not see itself.
+
+    The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the size of what
+    the estimates leave. The deviations are right while the model errs by ``noise``, for no longer than ``noise_time`` in
+    one sense. It needs both encoders and a feed-forward with a twist. A load that the feed-forward does not know is taken
+    for compliance.
+
+    >>> from strainwave.compensation import TwistIdentification
+    >>> TwistIdentification(order=[2]).memory
+    600.0
+
+    Parameters
+    ----------
+    order: Orders n: periods per revolution of the input, in (0, inf); default ()
+    compliance_prior: Standard deviation of the compliance over that of the model, a priori, in [0, 10]; default 0.3
+    amplitude_prior: Standard deviation of each sine and cosine at the output, a priori [rad], in [0, 1]; default 0.0003
+    offset_prior: Standard deviation of the offset of the encoders at the output, a priori [rad], in [0, 100]; default 0.001
+    noise: Standard deviation sigma of the measured twist about the model [rad], in [1e-09, 1]; default 2e-05
+    noise_time: Time t_n over which the error of the model repeats itself [s], in [1e-06, 1000000]; default 0.1
+    memory: Time t_m of motion over which the numbers change by their priors [s], in [1e-06, inf); default 600.0
+    window: Time of motion over which the excitation is measured [s], in (0, inf); default 10.0
+    min_excitation: Excitation below which a number is kept [1/s], in [0, inf); default 1.0
+    min_speed: Input speed below which nothing is adapted [rad/s], in [0, inf); default 1.0
+    limit: Largest change of a number, over its prior, in [0, 1000000]; default 3.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    recursive least squares as a Kalman filter: Ljung1999, chapter 11; forgetting towards the prior: KulhavyKraus1996; update of the covariance: BucyJoseph1968; numbers without excitation: Schmidt1966
+    """
+
+    def __init__(self, *, order: float | Sequence[float] = ..., compliance_prior: float = ..., amplitude_prior: float = ..., offset_prior: float = ..., noise: float = ..., noise_time: float = ..., memory: float = ..., window: float = ..., min_excitation: float = ..., min_speed: float = ..., limit: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, order: float | Sequence[float] = ..., compliance_prior: float = ..., amplitude_prior: float = ..., offset_prior: float = ..., noise: float = ..., noise_time: float = ..., memory: float = ..., window: float = ..., min_excitation: float = ..., min_speed: float = ..., limit: float = ...) -> TwistIdentification:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def order(self) -> tuple[float, ...]:
+        """Orders n: periods per revolution of the input"""
+
+    @property
+    def compliance_prior(self) -> float:
+        """Standard deviation of the compliance over that of the model, a priori"""
+
+    @property
+    def amplitude_prior(self) -> float:
+        """
+        Standard deviation of each sine and cosine at the output, a priori [rad]
+        """
+
+    @property
+    def offset_prior(self) -> float:
+        """
+        Standard deviation of the offset of the encoders at the output, a priori [rad]
+        """
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation sigma of the measured twist about the model [rad]"""
+
+    @property
+    def noise_time(self) -> float:
+        """Time t_n over which the error of the model repeats itself [s]"""
+
+    @property
+    def memory(self) -> float:
+        """Time t_m of motion over which the numbers change by their priors [s]"""
+
+    @property
+    def window(self) -> float:
+        """Time of motion over which the excitation is measured [s]"""
+
+    @property
+    def min_excitation(self) -> float:
+        """Excitation below which a number is kept [1/s]"""
+
+    @property
+    def min_speed(self) -> float:
+        """Input speed below which nothing is adapted [rad/s]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest change of a number, over its prior"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'twist_identification'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
 class NoObserver:
     """
     No observer: what disturbs the drive is not estimated.

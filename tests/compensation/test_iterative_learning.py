@@ -136,7 +136,7 @@ def test_within_its_guard_it_does_not_diverge() -> None:
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
-        ({"low": 0.1}, "high must exceed low"),
+        ({"low": 0.1}, "high must exceed low by 1e-6 rad or more"),
         ({"reach": 0.0}, r"iterative_learning\.reach = 0 rad must lie in"),
         ({"gain": -1.0}, r"iterative_learning\.gain = -1"),
     ],

@@ -136,7 +136,7 @@ VARIED = {
     "adaptive_fourier": ["gain", "lag"],
     "repetitive": ["gain", "smoothing", "lag"],
     "iterative_learning": ["reach", "gain", "smoothing", "lag"],
-    "twist_identification": ["compliance_prior", "amplitude_prior", "offset_prior", "noise", "noise_time", "memory"],
+    "twist_identification": ["amplitude_prior", "offset_prior", "noise", "noise_time", "memory"],
     "disturbance_observer": ["inertia", "bandwidth"],
     "friction_scale": ["gain", "position_gain"],
     "bristle_observer": ["friction.coulomb", "friction_share", "bristle_gain", "position_gain", "gain"],

@@ -346,6 +346,20 @@ def test_pulses_and_paths_reach_where_friction_and_lost_motion_leave(gallery: Ca
         assert abs(found["apart"][name, "one side"]) < 0.002
 
 
+def test_the_numbers_of_a_joint_that_warms_up_are_followed(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """The compliance within two stated deviations, friction within a tenth of its change; the error falls."""
+    found = gallery("19")
+    apart = found["compliance"] - found["true_compliance"]
+    assert (np.abs(apart) < 2.0 * found["deviation"]).all()
+    assert found["true_compliance"][-1] > 1.05
+    assert (found["deviation"] < 0.03).all()
+    assert found["friction"][-1] == pytest.approx(found["true_friction"][-1], abs=0.03)
+    assert found["true_friction"][-1] < 0.7
+    last = {name: result[0, -1] for name, result in found["results"].items()}
+    assert last["with both scales identified"] < 0.5 * last["with a disturbance observer"]
+    assert last["with both scales identified"] < 0.1 * last["model of the cold joint"]
+
+
 def linear_deviation(found: dict[str, Any], torque: sw.scenario.Scenario, bandwidth: float) -> float:
     """Largest output angle [rad] by a torque at the output: two inertias on a spring, the loops, an observer or 0 for none.
 

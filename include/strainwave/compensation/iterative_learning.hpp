@@ -37,10 +37,11 @@ struct IterativeLearning {
         is there. It learns within ``low`` and ``high`` and between ``min_speed`` and ``max_speed`` of the input; no value
         exceeds ``limit``.
 
-        A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle, and half as
-        much is learnt at the ends. So gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of the error over the angle is learnt where the position loop lags by less than 90
-        degrees beyond ``lag``; max_speed states up to where. What changes within two cells is not learnt: Repetitive and
-        AdaptiveFourier learn what repeats with the input.
+        A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at the
+        ends half as much is learnt. gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of
+        the error is learnt where the position loop lags by less than 90 degrees beyond ``lag``; ``max_speed`` states up to where.
+        It needs the output encoder. What changes within two cells is not learnt: Repetitive and AdaptiveFourier learn what
+        repeats with the input.
 
         >>> from strainwave.compensation import IterativeLearning
         >>> IterativeLearning(low=-0.5, high=0.5).limit
@@ -48,9 +49,9 @@ struct IterativeLearning {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, low, "rad", "Least output angle of the tables"));
-        visit(SW_FIELD(m, high, "rad", "Largest output angle of the tables"));
-        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 after a reversal over which the old sense falls to 1/e", smallest));
+        visit(SW_FIELD(m, low, "rad", "Least output angle of the tables", -1e6, 1e6));
+        visit(SW_FIELD(m, high, "rad", "Largest output angle of the tables", -1e6, 1e6));
+        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 after a reversal over which the old sense falls to 1/e", 1e-9));
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which a value follows the error", 0));
         visit(SW_FIELD(m, smoothing, "1/s", "Rate sigma at which a value follows its neighbours", 0));
         visit(SW_FIELD(m, lag, "s", "Time t_lag that the position loop takes to follow", 0));
@@ -59,7 +60,9 @@ struct IterativeLearning {
         visit(SW_FIELD(m, limit, "rad", "Largest value at the output", 0));
     }
 
-    constexpr const char* problem() const { return all(low < high) ? nullptr : "high must exceed low"; }
+    constexpr const char* problem() const {
+        return all(high - low >= S(1e-6)) ? nullptr : "high must exceed low by 1e-6 rad or more";
+    }
 
     struct State {
         Array<S, cells> forward{}, backward{};

@@ -70,15 +70,16 @@ struct TwistIdentification {
         kinematic error that the model lacks, P their covariance, P_0 that of the priors, sigma = noise, t_n = noise_time, t_s the
         period, t_m = memory. The input leads by i (c delta + a_n sin n theta + b_n cos n theta); the offset is estimated only.
 
-        A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least ``min_excitation``:
-        its inverse is the time in which the motion determines the number as well as its prior does. Otherwise the number and
-        its standard deviation are kept, and the others take its uncertainty into account. A torque that does not
-        change does not determine the compliance. At an input speed below ``min_speed`` nothing changes. The state contains the
-        standard deviations. No number exceeds ``limit`` standard deviations of its prior.
+        A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least ``min_excitation``.
+        The inverse of the excitation is the time in which the motion determines the number as well as its prior does. Otherwise
+        the number and its standard deviation are kept, and the gain of the others accounts for its uncertainty. A constant torque does
+        not determine the compliance. At an input speed below ``min_speed`` nothing changes. No number exceeds ``limit`` standard
+        deviations of its prior. Its own lead moves theta and i theta_out alike, so it does not see itself.
 
-        It is right while the error of the model has the size ``noise`` and repeats itself for no longer than ``noise_time``. The
-        state ``residual`` is the size of what the numbers leave. Needs a feed-forward with a twist, and the torque that it
-        assumes: a load that it does not know is taken for compliance.
+        The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the size of what
+        the estimates leave. The deviations are right while the model errs by ``noise``, for no longer than ``noise_time`` in
+        one sense. It needs both encoders and a feed-forward with a twist. A load that the feed-forward does not know is taken
+        for compliance.
 
         >>> from strainwave.compensation import TwistIdentification
         >>> TwistIdentification(order=[2]).memory
@@ -87,16 +88,16 @@ struct TwistIdentification {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input", smallest));
-        visit(SW_FIELD(m, compliance_prior, "1", "Standard deviation of the compliance over that of the model, a priori", 0));
-        visit(SW_FIELD(m, amplitude_prior, "rad", "Standard deviation of each sine and cosine at the output, a priori", 0));
-        visit(SW_FIELD(m, offset_prior, "rad", "Standard deviation of the offset of the encoders at the output, a priori", 0));
-        visit(SW_FIELD(m, noise, "rad", "Standard deviation sigma of the measured twist about the model", smallest));
-        visit(SW_FIELD(m, noise_time, "s", "Time t_n over which the error of the model repeats itself", smallest));
-        visit(SW_FIELD(m, memory, "s", "Time t_m of motion over which the numbers change by their priors", smallest));
+        visit(SW_FIELD(m, compliance_prior, "1", "Standard deviation of the compliance over that of the model, a priori", 0, 10));
+        visit(SW_FIELD(m, amplitude_prior, "rad", "Standard deviation of each sine and cosine at the output, a priori", 0, 1));
+        visit(SW_FIELD(m, offset_prior, "rad", "Standard deviation of the offset of the encoders at the output, a priori", 0, 100));
+        visit(SW_FIELD(m, noise, "rad", "Standard deviation sigma of the measured twist about the model", 1e-9, 1));
+        visit(SW_FIELD(m, noise_time, "s", "Time t_n over which the error of the model repeats itself", 1e-6, 1e6));
+        visit(SW_FIELD(m, memory, "s", "Time t_m of motion over which the numbers change by their priors", 1e-6));
         visit(SW_FIELD(m, window, "s", "Time of motion over which the excitation is measured", smallest));
         visit(SW_FIELD(m, min_excitation, "1/s", "Excitation below which a number is kept", 0));
         visit(SW_FIELD(m, min_speed, "rad/s", "Input speed below which nothing is adapted", 0));
-        visit(SW_FIELD(m, limit, "1", "Largest change of a number, over its prior", 0));
+        visit(SW_FIELD(m, limit, "1", "Largest change of a number, over its prior", 0, 1e6));
     }
 
     struct State {
@@ -147,7 +148,7 @@ struct TwistIdentification {
         next.begun = S(1.0);
         const S moves = select(abs(inputs.input_speed()) < min_speed, S(0.0), S(1.0));
         const S lead = (inputs.measured.input_angle - inputs.request.input_lead) / inputs.command.ratio;
-        const Numbers regressor = regressors(inputs);
+        const Vector regressor = regressors(inputs);
         observe(next, regressor, moves * period);
         adapt(next, regressor, lead - inputs.measured.output_angle, moves, period);
         return next;
@@ -155,6 +156,7 @@ struct TwistIdentification {
 
 private:
     static constexpr double least_variance = 1e-30;  ///< of a number: it keeps correlations finite
+    using Vector = Array<S, Numbers::capacity>;
     struct Covariance {
         S item[Numbers::capacity][Numbers::capacity];
     };
@@ -165,19 +167,19 @@ private:
     constexpr S prior(int j) const { return j == 0 ? compliance_prior : j == 1 ? offset_prior : amplitude_prior; }
     static constexpr int place(int row, int column) { return row * (row - 1) / 2 + column; }
 
-    constexpr Numbers regressors(const Inputs<S>& inputs) const {
-        Numbers regressor{};
-        regressor.compliance = inputs.request.torsion / inputs.command.ratio;
-        regressor.offset = S(1.0);
+    constexpr Vector regressors(const Inputs<S>& inputs) const {
+        Vector regressor{};
+        regressor[0] = inputs.request.torsion / inputs.command.ratio;
+        regressor[1] = S(1.0);
         for (int n = 0; n < order.count; ++n) {
             const SinCos<S> at = wave(order[n], inputs.measured.input_angle, S(0.0));
-            regressor.sine[n] = at.sin;
-            regressor.cosine[n] = at.cos;
+            regressor[2 + 2 * n] = at.sin;
+            regressor[3 + 2 * n] = at.cos;
         }
         return regressor;
     }
     /// Moves means and excitations on; the excitation of the offset is constant.
-    constexpr void observe(State& x, const Numbers& regressor, const S& step) const {
+    constexpr void observe(State& x, const Vector& regressor, const S& step) const {
         const S share = step / max(x.time + step, S(smallest));
         for (int j = 0; j < count(); ++j) {
             const S apart = regressor[j] - x.mean[j], change = apart * prior(j);
@@ -188,10 +190,10 @@ private:
         x.time = min(x.time + step, window);
     }
     /// Kalman filter of the numbers that the motion excites, after they have relaxed towards their priors.
-    constexpr void adapt(State& x, const Numbers& regressor, const S& measured, const S& moves, const S& period) const {
+    constexpr void adapt(State& x, const Vector& regressor, const S& measured, const S& moves, const S& period) const {
         const S twice = S(2.0) * period / memory, renewed = twice / (S(1.0) + twice);
         const S faded = renewed / (S(1.0) + sqrt(S(1.0) - renewed)), variance = density() / period;
-        Numbers active{}, product{}, gain{}, left{};
+        Vector active{}, product{}, gain{}, left{};
         S innovation = measured, expected = variance;
         for (int j = 0; j < count(); ++j) {
             active[j] = select(x.excitation[j] < min_excitation, S(0.0), moves);
@@ -219,25 +221,25 @@ private:
         x.residual = select(moves > S(0.0), after, x.residual);
     }
     constexpr void keep(State& x, const Covariance& p, const S& moves) const {
+        Vector inverse{};
         for (int i = 0; i < count(); ++i) {
             x.deviation[i] = sqrt(max(p.item[i][i], S(least_variance)));
+            inverse[i] = S(1.0) / x.deviation[i];
             for (int j = 0; j < i; ++j) {
-                const S found = clip(p.item[i][j] / (x.deviation[i] * x.deviation[j]), S(-1.0), S(1.0));
+                const S found = clip(p.item[i][j] * inverse[i] * inverse[j], S(-1.0), S(1.0));
                 S& correlation = x.correlation[place(i, j)];
                 correlation = select(moves > S(0.0), found, correlation);
             }
         }
     }
-    constexpr Covariance relaxed(const State& x, const Numbers& active, const S& renewed, const S& faded) const {
+    constexpr Covariance relaxed(const State& x, const Vector& active, const S& renewed, const S& faded) const {
         Covariance p{};
+        Vector deviation{};
         for (int i = 0; i < count(); ++i) {
-            const S before = x.deviation[i] * x.deviation[i];
-            p.item[i][i] = before + active[i] * renewed * (prior(i) * prior(i) - before);
-            for (int j = 0; j < i; ++j) {
-                const S kept = (S(1.0) - active[i] * faded) * (S(1.0) - active[j] * faded);
-                p.item[i][j] = kept * x.correlation[place(i, j)] * x.deviation[i] * x.deviation[j];
-                p.item[j][i] = p.item[i][j];
-            }
+            const S variance = x.deviation[i] * x.deviation[i];
+            p.item[i][i] = variance + active[i] * renewed * (prior(i) * prior(i) - variance);
+            deviation[i] = x.deviation[i] * (S(1.0) - active[i] * faded);
+            for (int j = 0; j < i; ++j) p.item[i][j] = p.item[j][i] = x.correlation[place(i, j)] * deviation[i] * deviation[j];
         }
         return p;
     }

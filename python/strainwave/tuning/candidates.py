@@ -78,7 +78,7 @@ def baseline(plant: Plant, setting: Setting) -> Candidate:
     """Return the cascade with feed-forward of inertia, weight, Coulomb and viscous friction, and the observer of a setting."""
     observed = " and disturbance observer" if setting.observer_share else ""
     encoder = ", position by the output encoder" if setting.feedback == "output" else ""
-    added = _compensation(plant, bare(plant.drive.gear, plant.start_temperature), setting)
+    added = _compensation(plant, (), setting)
     drive = plant.controlled(tuned_law(plant, setting), added)
     return Candidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
 
@@ -114,7 +114,7 @@ def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Map
 
 
 def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
-    added = _compensation(plant, with_effects(plant.drive.gear, effects, plant.start_temperature), setting)
+    added = _compensation(plant, effects, setting)
     drive = plant.controlled(tuned_law(plant, setting), added)
     return Candidate(_name(effects, setting), effects, setting, drive, len(effects), is_plain=True)
 
@@ -123,9 +123,7 @@ def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Can
     """Return the same with an observer of the scale of friction in place of one of the disturbance."""
     law = tuned_law(plant, setting)
     scale = compensation.FrictionScale(gain=_scale_gain(plant, setting), position_gain=law.position_gain)
-    added = _compensation(plant, with_effects(plant.drive.gear, effects, plant.start_temperature), setting).replace(
-        observer=scale
-    )
+    added = _compensation(plant, effects, setting).replace(observer=scale)
     name = f"{_name(effects, setting)}, scale of friction observed"
     return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
 
@@ -140,7 +138,7 @@ def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> 
         position_gain=law.position_gain,
         temperature=plant.start_temperature,
     )
-    added = _compensation(plant, with_effects(gear, effects, plant.start_temperature), setting).replace(observer=bristles)
+    added = _compensation(plant, effects, setting).replace(observer=bristles)
     name = f"{_name(effects, setting)}, friction by the measured motion"
     return Candidate(name, ("friction", *effects), setting, plant.controlled(law, added), len(effects) + 1)
 
@@ -198,9 +196,7 @@ def _mapped(points: Array, forward: Array, backward: Array, reach: float, angle:
 
 def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], name: str, learner: Any) -> Candidate:
     """Return a model with what is learnt over the input."""
-    added = _compensation(plant, with_effects(plant.drive.gear, effects, plant.start_temperature), setting).replace(
-        learning=learner
-    )
+    added = _compensation(plant, effects, setting).replace(learning=learner)
     drive = plant.controlled(tuned_law(plant, setting), added)
     return Candidate(f"{_name(effects, setting)}, {name} learnt", effects, setting, drive, len(effects) + 1)
 
@@ -258,9 +254,10 @@ def _name(effects: tuple[str, ...], setting: Setting) -> str:
     return (f"model of {_and(effects)}" if effects else "no model") + encoder
 
 
-def _compensation(plant: Plant, gear: Gear, setting: Setting) -> Compensation:
+def _compensation(plant: Plant, effects: tuple[str, ...], setting: Setting) -> Compensation:
+    """Return the feed-forward of a model that has some effects, and the observer of a setting."""
     return Compensation(
-        feedforward=model_of(plant, gear),
+        feedforward=model_of(plant, with_effects(plant.drive.gear, effects, plant.start_temperature)),
         observer=observer_of(plant, setting),
         actuation_per_torque=plant.actuation_per_torque,
     )
