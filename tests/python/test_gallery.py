@@ -384,7 +384,7 @@ def linear_deviation(found: dict[str, Any], torque: sw.scenario.Scenario, bandwi
 
 def test_a_gust_moves_a_surface_as_two_inertias_under_the_loop(gallery: Callable[[str], dict[str, Any]]) -> None:
     """Without the kinematic error, whose ripple of the torque is not linear in the gust; the speed keeps its sign meanwhile."""
-    found = gallery("22")
+    found = gallery("21")
     for name, bandwidth in (("cascade", 0.0), ("cascade with observer", found["observer"].bandwidth)):
         added = sw.Compensation(**found["parts"][name], actuation_per_torque=found["plant"].actuation_per_torque)
         drive = found["plant"].controlled(found["law"], added).replace({"gear.kinematic_error": sw.kinematic_error.Fourier()})
@@ -395,7 +395,7 @@ def test_a_gust_moves_a_surface_as_two_inertias_under_the_loop(gallery: Callable
 
 
 def test_a_feedforward_leaves_what_a_gust_does(gallery: Callable[[str], dict[str, Any]]) -> None:
-    found = gallery("22")
+    found = gallery("21")
     tracking, deviation = found["tracking"], found["deviation"]
     for air in list(found["gusts"])[1:]:
         assert deviation["cascade with model", air] == pytest.approx(deviation["cascade", air], rel=0.01)
@@ -406,7 +406,7 @@ def test_a_feedforward_leaves_what_a_gust_does(gallery: Callable[[str], dict[str
 
 def test_a_slow_integral_of_the_arm_has_no_limit_cycle(gallery: Callable[[str], dict[str, Any]]) -> None:
     """At 5 1/s it is five times slower than the softest vibration, sqrt(3000 / 5) = 24 rad/s, so steps and pushes die out."""
-    found = gallery("23")
+    found = gallery("22")
     for (name, kind), swing in found["swings"].items():
         if name.startswith("loop on the arm"):
             continue
@@ -420,7 +420,7 @@ def test_a_slow_integral_of_the_arm_has_no_limit_cycle(gallery: Callable[[str], 
 
 
 def test_the_model_of_a_soft_gear_leads_also_if_its_loop_is_wide_or_narrow(gallery: Callable[[str], dict[str, Any]]) -> None:
-    found = gallery("23")
+    found = gallery("22")
 
     def lag(name: str) -> float:
         commands = [np.degrees(found["along"](step).value(found["time"])) for step in found["steps"]]
