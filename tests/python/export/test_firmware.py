@@ -41,6 +41,7 @@ def drive(law: Any = LAW, delay: float = 0.0, motor: Any = None, **compensation:
     return sw.Drive(gear=GEAR, load=LOAD, motor=motor or sw.motor.TorqueSource(inertia=2e-5), control=control)
 
 
+JOINT = sw.Drive(gear=GEAR, load=LOAD, motor=sw.motor.TorqueSource(inertia=2e-5))
 DC = sw.motor.DC(resistance=0.5, torque_constant=0.08, back_emf=0.08, inertia=2e-5)
 DRIVES = {
     "model": drive(feedforward=FEEDFORWARD, observer=OBSERVER),
@@ -50,6 +51,15 @@ DRIVES = {
     "table": drive(learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)),
     "map": drive(feedforward=sw.compensation.LostMotionMap(angle=[0.0, 0.1], forward=[1e-4, 2e-4], backward=[-1e-4, 0.0])),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
+    "kalman": drive(law=sw.regulator(JOINT, error=1e-3, encoder="input")),
+    "linearised": drive(
+        law=sw.control.FeedbackLinearisation(gear=GEAR, load=LOAD, motor_inertia=2e-5, bandwidth=60.0, limit=2.0),
+        observer=OBSERVER,
+    ),
+    "tracking": drive(
+        law=sw.control.KinematicErrorTracking(gear=GEAR, load=LOAD, motor_inertia=2e-5, speed_gain=0.01, limit=2.0),
+        observer=OBSERVER,
+    ),
     "currents": drive(law=made(sw.control.Cascade), motor=DC.replace(inductance=5e-4)),
 }
 
