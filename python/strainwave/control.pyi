@@ -748,8 +748,8 @@ class FeedbackLinearisation:
     (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
 
     It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-    lags of the time reference_time. Derivatives of load and stiffness over the motion are central differences over 0.01 / w, and e''
-    is one over 1 mrad of the input.
+    lags of the time reference_time, which must exceed the period of a sampled controller. Derivatives of load and stiffness over
+    the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
 
     A stiffness of the model of k times the real one moves the poles to those of
 
@@ -862,9 +862,9 @@ class KinematicErrorTracking:
     K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
     The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
-    M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model exact. Then s falls with the rate K / M, and the error
-    r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
-    the command comes from a lag of the time reference_time.
+    M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
+    exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
+    the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
 
     The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
     compensation, whose input leads the law ignores. It has no integral.

@@ -144,18 +144,18 @@ class StateSpace:
 
 
 class Lags:
-    """Derivatives of the commanded rate: two lags, exact for what is held over a period."""
+    """Derivatives of the commanded rate: two lags by forward differences."""
 
     def __init__(self, time: float, period: float) -> None:
-        self.time, self.reach = time, time * -np.expm1(-period / time)
+        self.time, self.period = time, period
         self.rate, self.second = 0.0, 0.0
 
     def __call__(self, rate: float) -> tuple[float, float]:
         """Acceleration and jerk at this instant."""
         acceleration = (rate - self.rate) / self.time
         jerk = (acceleration - self.second) / self.time
-        self.rate += self.reach * acceleration
-        self.second += self.reach * jerk
+        self.rate += self.period * acceleration
+        self.second += self.period * jerk
         return acceleration, jerk
 
 

@@ -41,8 +41,8 @@ struct FeedbackLinearisation {
         (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
 
         It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-        lags of the time reference_time. Derivatives of load and stiffness over the motion are central differences over 0.01 / w, and e''
-        is one over 1 mrad of the input.
+        lags of the time reference_time, which must exceed the period of a sampled controller. Derivatives of load and stiffness over
+        the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
 
         A stiffness of the model of k times the real one moves the poles to those of
 
@@ -93,7 +93,8 @@ struct FeedbackLinearisation {
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
         return ReferenceMotion<S>(x, command, reference_time).rate();
     }
-    constexpr State relaxation_rate() const { return {S(1.0) / reference_time, S(1.0) / reference_time}; }
+    /// As of an integral: forward differences of a ramp leave no error, which the step that is exact for a constant does.
+    constexpr State relaxation_rate() const { return {}; }
     /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
     constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 

@@ -38,9 +38,9 @@ struct KinematicErrorTracking {
         K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
         The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
-        M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model exact. Then s falls with the rate K / M, and the error
-        r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
-        the command comes from a lag of the time reference_time.
+        M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
+        exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
+        the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
 
         The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
         compensation, whose input leads the law ignores. It has no integral.
@@ -83,7 +83,8 @@ struct KinematicErrorTracking {
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
         return ReferenceMotion<S>(x, command, reference_time).rate();
     }
-    constexpr State relaxation_rate() const { return {S(1.0) / reference_time, S(1.0) / reference_time}; }
+    /// As of an integral: forward differences of a ramp leave no error, which the step that is exact for a constant does.
+    constexpr State relaxation_rate() const { return {}; }
     /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
     constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 

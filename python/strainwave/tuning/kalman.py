@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from strainwave import control
 
 Array = NDArray[np.float64]
-MAX_STATES = 8  # of control.StateSpace
+MAX_STATES, INPUTS = 8, 8  # of control.StateSpace
 
 
 def held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
@@ -108,14 +108,21 @@ def filter_gain(step: Array, seen: Array, process: Array, measurement: float) ->
     return np.asarray(covariance @ seen / (seen @ covariance @ seen + measurement))
 
 
-def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, limit: float) -> control.StateSpace:
-    """Return the law u = -K z - d of the estimates z of the states and d of a constant actuation that disturbs.
+def with_filter(
+    plant: HeldPlant, gains: Array, measured: int, output: Array, noise: Noise, ratio: float, limit: float
+) -> control.StateSpace:
+    """Return the law u = u_r + K (z_r - z) - d of the estimates z of the states and d of a constant actuation that disturbs.
+
+    z_r and u_r are states and actuation of a motion at the commanded constant speed: a jump of the command does not excite the
+    filter.
 
     Args:
-        plant: in deviations from the command
+        plant: of the drive at rest
         gains: K, with that of the input before, if it is a state
-        measured: index of the state that is measured
+        measured: index of the state that is measured, the input angle
+        output: the output angle as a sum of the states
         noise: what the filter does not know
+        ratio: input angle per output angle
         limit: of the actuation
 
     Raises:
@@ -144,21 +151,39 @@ def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, lim
     process[count, count] = noise.effort_rate**2 * plant.period
     corrects = np.zeros(size)
     corrects[:known] = filter_gain(step[:known, :known], seen[:known], process, noise.angle**2)
-    return _law(step, now, feedback, seen, corrects, plant.period, limit)
-
-
-def _law(
-    step: Array, now: Array, feedback: Array, seen: Array, corrects: Array, period: float, limit: float
-) -> control.StateSpace:
-    """Return the law whose states are the estimates before each measurement; its input, commanded minus measured, is -y."""
-    one = np.eye(len(step))
-    after = one - np.outer(corrects, seen)
+    after = np.eye(size) - np.outer(corrects, seen)
     closed = step - np.outer(now, feedback)
+    per_angle, per_speed = _reference(plant, gains, output)
+    inputs, direct = np.zeros((size, INPUTS)), np.zeros(INPUTS)
+    # the angle measured is ratio times the command less the error, which is the first input; command and rate are the last
+    inputs[:, 0], direct[0] = -closed @ corrects, feedback @ corrects
+    inputs[:, -2], direct[-2] = ratio * closed @ corrects + now * per_angle, per_angle - ratio * feedback @ corrects
+    inputs[:, -1], direct[-1] = now * per_speed, per_speed
     return control.StateSpace(
-        A=((closed @ after - one) / period).ravel().tolist(),
-        B=(-closed @ corrects / period).tolist(),
+        A=((closed @ after - np.eye(size)) / plant.period).ravel().tolist(),
+        B=(inputs / plant.period).ravel().tolist(),
         C=(-feedback @ after).tolist(),
-        D=[float(feedback @ corrects)],
-        tracking=(now / period).tolist(),
+        D=direct.tolist(),
+        tracking=(now / plant.period).tolist(),
         limit=limit,
     )
+
+
+def _reference(plant: HeldPlant, gains: Array, output: Array) -> tuple[float, float]:
+    """Return K z_r + u_r per commanded angle and per commanded speed.
+
+    Source: FranklinPowellEmamiNaeini2002, section 7.5, for a constant command; likewise for one of constant speed.
+    """
+    count = len(output)
+    whole = np.zeros((count + 1, count + 1))
+    whole[:count, :count], whole[:count, count] = plant.step - np.eye(count), plant.now + plant.late
+    whole[count, :count] = output
+    at_rest = np.linalg.solve(whole, np.append(np.zeros(count), 1.0))
+    moved = plant.period * (at_rest[:count] + plant.late * at_rest[count])
+    at_speed = np.linalg.solve(whole, np.append(moved, 0.0))
+    before = at_rest[count], at_speed[count] - plant.period * at_rest[count]  # the input before, which lags by a period
+    per_angle, per_speed = (
+        float(gains[:count] @ motion[:count] + motion[count] + (gains[-1] * late if plant.is_late else 0.0))
+        for motion, late in zip((at_rest, at_speed), before, strict=True)
+    )
+    return per_angle, per_speed
