@@ -76,7 +76,8 @@ def regulator(
 
     With encoder="input" the angle of the motor alone is measured, and the result is a `StateSpace`: a stationary Kalman filter
     estimates the motion of motor and output and a constant torque at the motor, which the law takes away. The design contains
-    the delay. A load torque at the output is estimated as one at the motor, so the twist that it causes stays as an error.
+    the delay: put the law into a controller of the same period and delay, where the joint begins at the angle 0. A load torque
+    at the output is estimated as one at the motor, so the twist that it causes stays as an error.
 
     Source: AstromWittenmark1997, sections 11.2 (discrete regulator) and 11.3 (Kalman filter), FranklinPowellEmamiNaeini2002,
     section 7.6 (weights).
@@ -101,7 +102,7 @@ def regulator(
     >>> law.input_angle != 0.0 and law.output_angle != 0.0
     True
     >>> len(regulator("robot-joint", error=1e-3, encoder="input").C)
-    5
+    6
     """
     plant = Plant.of(
         gear_set_of(drive),
@@ -125,7 +126,7 @@ def regulator(
             * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
         )
         gains = late.gains(cost, 1.0 / limit**2)
-        return with_filter(late, gains, states.index("input_angle"), output, noise, plant.ratio, plant.limit)
+        return with_filter(late, gains, states.index("input_angle"), noise, plant.ratio, plant.limit)
     gains = HeldPlant.of(a, b, plant.period, 0.0).gains(cost, 1.0 / limit**2)
     _check_with_delay(a, b, gains, plant)
     found = dict(zip(states, gains, strict=True))

@@ -127,30 +127,42 @@ def test_the_other_poles_are_those_of_the_filter(delay: float) -> None:
     assert len(of_filter) == 5
 
 
-@pytest.mark.parametrize("command", [sw.scenario.constant(0.1, 0.5), sw.scenario.ramp(0.5, 0.5)], ids=["step", "ramp"])
-def test_without_noise_the_motion_is_that_of_the_regulator_that_measures_all(command: sw.scenario.Scenario) -> None:
-    """The command does not excite the filter, and the joint is the model."""
+def test_of_a_step_the_motion_is_that_of_the_regulator_that_measures_all() -> None:
+    """The jump of the command does not excite the filter, and the joint is the model."""
     runs = []
     for encoder in ("input", "output"):
         law: Any = sw.regulator(JOINT, period=PERIOD, encoder=encoder, **WEIGHTS)  # type: ignore[call-overload]
         control = sw.control.Sampled(law=law.replace(limit=1e6), period=PERIOD)
-        runs.append(sw.simulate(JOINT.replace(control=control), command, 2e-5, sample=PERIOD)["output_angle"])
+        run = sw.simulate(JOINT.replace(control=control), sw.scenario.constant(0.1, 0.5), 2e-5, sample=PERIOD)
+        runs.append(run["output_angle"])
     assert runs[0] == pytest.approx(runs[1], abs=1e-7 * np.abs(runs[1]).max())
 
 
+def test_a_feedforward_of_the_model_does_not_excite_the_filter() -> None:
+    """Of a planned motion: the joint follows as the model moves, where without feed-forward it lags."""
+    model = sw.compensation.ModelFeedforward(gear=JOINT.gear, load=JOINT.load, motor_inertia=ROTOR)
+    command, errors = sw.scenario.sine(0.2, 1.0, 2.0, phase=-0.5 * np.pi, offset=0.2), []
+    law = sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS)
+    for added in (sw.Compensation(), sw.Compensation(feedforward=model)):
+        control = sw.control.Sampled(law=law, period=PERIOD, compensation=added)
+        run = sw.simulate(JOINT.replace(control=control), command, sample=PERIOD)
+        errors.append(np.abs(command.value(run.time) - run["output_angle"])[1000:].max())
+    assert errors[1] < 0.02 * errors[0]
+
+
 @delays
-def test_weight_and_viscous_friction_of_the_model_leave_no_error(delay: float) -> None:
-    """At rest at an angle, and at constant speed: what is linear in the drive is in the reference, twist included."""
+def test_weight_and_viscous_friction_leave_no_error_of_the_input(delay: float) -> None:
+    """They are torques at the motor to the filter, at rest and at constant speed."""
     viscous = JOINT.gear.replace(friction_input=sw.friction.Viscous(viscous=2e-3))
     load = sw.loads.Pendulum(inertia=ARM, gravity_torque=5.0)
     for plant, command in (
-        (JOINT.replace(load=load), sw.scenario.constant(1e-3, 2.0)),
-        (JOINT.replace(gear=viscous), sw.scenario.ramp(0.1, 2.0)),
+        (JOINT.replace(load=load), sw.scenario.constant(0.5, 3.0)),
+        (JOINT.replace(gear=viscous), sw.scenario.ramp(0.1, 3.0)),
     ):
         law = sw.regulator(plant, period=PERIOD, delay=delay, encoder="input", **WEIGHTS)
         control = sw.control.Sampled(law=law, period=PERIOD, delay=delay)
         run = sw.simulate(plant.replace(control=control), command, sample=PERIOD)
-        assert run["output_angle"][-1] == pytest.approx(float(command.value(2.0)), rel=1e-6)
+        assert run["input_angle"][-1] / RATIO == pytest.approx(float(command.value(3.0)), rel=1e-6)
 
 
 @delays
