@@ -142,6 +142,16 @@ def test_the_least_bandwidth_for_a_stiffness_too_large_is_that_of_routh(share: f
     assert stable == [False, True]
 
 
+def test_a_load_that_the_model_lacks_leaves_an_error() -> None:
+    """At rest v = -T' d/J^2 and 6 w^2 of the acceleration d/J that the twist feigns: e = (6/w^2 - T'/(J w^4)) d/J."""
+    load, torque = LOADS["inertia"], 0.5
+    plant = joint(law_for(GEAR.replace(kinematic_error=sw.kinematic_error.Fourier()), load), load)
+    plant = plant.replace({"gear.kinematic_error": sw.kinematic_error.Fourier()})
+    run = sw.simulate_adaptively(plant, sw.scenario.constant(0.0, 1.0), 1e-9, load_torque=torque, sample=0.01)
+    wanted = (6.0 / W**2 - HARDENS.a1 / (load.inertia * W**4)) * torque / load.inertia
+    assert 0.0 - run["output_angle"][-1] == pytest.approx(wanted, rel=1e-3)
+
+
 def test_friction_is_left_to_a_compensation() -> None:
     """A model of friction alone and an observer: Coulomb friction on a sine leaves a tenth of the error without them."""
     friction, load = sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=1e-3), LOADS["inertia"]

@@ -53,8 +53,9 @@ struct FeedbackLinearisation {
         (k - 1) Omega^2 / (5 - 1/k): where the stiffness is uncertain, take a smaller one.
 
         Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
-        DisturbanceObserver takes away what is constant. It ignores the input leads of a compensation, because gear and
-        load are in it; a ModelFeedforward beside it must hold the friction alone. Needs a stiffness that is nowhere zero, and sensors
+        load torque d that the model lacks leaves the error (6/w^2 - T'/(J w^4)) d/J, since its twist counts as acceleration.
+        It ignores the input leads of a compensation, because gear and load are in it; a ModelFeedforward beside it must have the
+        friction alone. Needs a stiffness that is nowhere zero, and sensors
         and a period that are fast against w. A large w amplifies noise by w^4.
 
         >>> import strainwave as sw
