@@ -864,7 +864,8 @@ class KinematicErrorTracking:
     The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
     M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
-    exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
+    exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). A slope
+    e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
     the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
 
     The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
