@@ -46,12 +46,11 @@ constexpr S contraction(const Gear& gear) {
     return abs(gear.kinematics.ratio()) * kinematic_error::steepest<S>(gear.kinematic_error);
 }
 
-/// Contradiction of a model that a law of control divides by: the output must have an inertia, and follow the input in one sense.
+/// Contradiction of a model that a law of control divides by: the output must follow the input in one sense.
 template <class S, class Gear, class Load>
 constexpr Contradiction<S> problem_of_motion(const Gear& gear, const Load& load) {
     if (const auto found = problem_of_load<S>(load); found.text) return found;
-    const S inertia = inertia_of<S>(load), share = contraction<S>(gear);
-    if (!all(inertia > S(0.0))) return {"load.inertia = {} kg.m2 must exceed 0: the law divides by it", inertia};
+    const S share = contraction<S>(gear);
     if (all(share < S(1.0))) return {};
     return {
         "|ratio| times the steepest slope of the kinematic error is {}, and must be less than 1: the output must follow the input",
@@ -63,6 +62,21 @@ template <class S>
 constexpr Angle<S> reduced(const S& angle) {
     const S turns = rint(angle * S(0.5 / pi));
     return {angle - S(2.0 * pi) * turns, turns};
+}
+
+/// Value and slope of the kinematic error, and its second derivative [1/rad].
+template <class S>
+struct BentError {
+    S value, slope, bend;
+};
+/// The error of a gear at an input angle [rad]; the second derivative is a difference over 1 mrad to each side.
+template <class S, class Gear>
+constexpr BentError<S> bent_error(const Gear& gear, const S& angle) {
+    constexpr double step = 1e-3;
+    const auto error = gear.kinematic_error.at(reduced(angle));
+    const auto after = gear.kinematic_error.at(reduced<S>(angle + S(step)));
+    const auto before = gear.kinematic_error.at(reduced<S>(angle - S(step)));
+    return {error.value, error.slope, (after.slope - before.slope) * S(0.5 / step)};
 }
 
 }  // namespace strainwave::drive_model

@@ -200,16 +200,16 @@ class Gear:
 
 class Compensation:
     """
-    Lead of the input and torque that a sampled controller adds: those of a model, a learner and an observer.
+    Lead of the input and torque that a sampled controller adds: those of a model, a dither, a learner and an observer.
 
-    .. math:: \\theta_r = i r + \\theta_f + \\theta_l, \\qquad u_f = p\\,(\\tau_f + \\tau_l + \\tau_o) + q\\,\\dot\\theta_r
+    .. math:: \\theta_r = i r + \\theta_f + \\theta_l, \\qquad u_f = p\\,(\\tau_f + \\tau_d + \\tau_l + \\tau_o) + q\\,\\dot\\theta_r
 
-    with r the commanded output angle, theta_f, theta_l the leads of the input, tau_f, tau_l, tau_o the torques that feed-forward,
-    learner and observer ask for, one after the other; p = actuation_per_torque, q = actuation_per_speed. The controller
-    follows theta_r with the input and r with the output, and adds u_f to what it asks for, before any limit.
+    with r the commanded output angle, theta_f, theta_l the leads of the input by feed-forward and learner, tau_f, tau_d, tau_l,
+    tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The controller follows
+    theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
 
-    p is 1 N.m/(N.m) for a motor that takes a torque, 1 over the torque constant for one that takes a current and for a
-    Cascade, and the resistance over the torque constant for one that takes a voltage, with q the back-EMF constant.
+    p is 1 for a motor that takes a torque, 1 over the torque constant for a motor that takes a current and for a Cascade, and
+    the resistance over the torque constant for a motor that takes a voltage, with q the back-EMF constant.
 
     >>> import strainwave as sw
     >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))
@@ -221,6 +221,7 @@ class Compensation:
     feedforward: Feed-forward of a model of the drive; default NoFeedforward()
     learning: Learning of errors that repeat; default NoLearning()
     observer: Observer of what the model lacks; default NoObserver()
+    dither: Torque that swings around zero; default NoDither()
     actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
     actuation_per_speed: What the motor takes, per input speed q: its back-EMF [s/rad]; default 0.0
 
@@ -234,9 +235,9 @@ class Compensation:
     definition
     """
 
-    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
+    def __init__(self, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver = ..., dither: strainwave.compensation.NoDither | strainwave.compensation.Dither = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
+    def replace(self, changes: dict[str, Any] = ..., /, *, feedforward: strainwave.compensation.NoFeedforward | strainwave.compensation.ModelFeedforward | strainwave.compensation.LostMotionMap = ..., learning: strainwave.compensation.NoLearning | strainwave.compensation.AdaptiveFourier | strainwave.compensation.Repetitive | strainwave.compensation.IterativeLearning | strainwave.compensation.TwistIdentification = ..., observer: strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver = ..., dither: strainwave.compensation.NoDither | strainwave.compensation.Dither = ..., actuation_per_torque: float = ..., actuation_per_speed: float = ...) -> Compensation:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -250,8 +251,12 @@ class Compensation:
         """Learning of errors that repeat"""
 
     @property
-    def observer(self) -> strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale:
+    def observer(self) -> strainwave.compensation.NoObserver | strainwave.compensation.DisturbanceObserver | strainwave.compensation.FrictionScale | strainwave.compensation.BristleObserver:
         """Observer of what the model lacks"""
+
+    @property
+    def dither(self) -> strainwave.compensation.NoDither | strainwave.compensation.Dither:
+        """Torque that swings around zero"""
 
     @property
     def actuation_per_torque(self) -> float:
@@ -429,9 +434,9 @@ class Drive:
     document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)
     """
 
-    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> None: ...
+    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.StateSpace | strainwave.control.FeedbackLinearisation | strainwave.control.KinematicErrorTracking | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> Drive:
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.StateSpace | strainwave.control.FeedbackLinearisation | strainwave.control.KinematicErrorTracking | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> Drive:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -445,7 +450,7 @@ class Drive:
         """The motor on the input shaft"""
 
     @property
-    def control(self) -> strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled:
+    def control(self) -> strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.StateSpace | strainwave.control.FeedbackLinearisation | strainwave.control.KinematicErrorTracking | strainwave.control.Sampled:
         """What turns the command into the motor's voltage, current or torque"""
 
     @property

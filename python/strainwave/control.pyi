@@ -748,12 +748,21 @@ class FeedbackLinearisation:
     (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
 
     It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-    lags of the time reference_time. Derivatives of the load, and of stiffness and error over the motion, are central differences
-    over 0.01 / w.
+    lags of the time reference_time, which must exceed the period of a sampled controller. Derivatives of load and stiffness over
+    the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
+
+    A stiffness of the model of k times the real one moves the poles to those of
+
+    .. math:: s^4 + 4 w s^3 + (6 w^2 - (k - 1)\\, \\Omega^2)\\, s^2 + (4 w^3 s + w^4)/k, \\qquad
+              \\Omega^2 = \\frac{T'}{J} \\Big(1 + \\frac{J}{i^2 J_{in}}\\Big)
+
+    Omega is the vibration of the joint with both ends free. With k above 1 the joint is stable only if w^2 exceeds
+    (k - 1) Omega^2 / (5 - 1/k): where the stiffness is uncertain, take a smaller one.
 
     Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
-    DisturbanceObserver takes away what is constant. It ignores the input leads of a compensation, because gear and
-    load are in it; a ModelFeedforward beside it must hold the friction alone. Needs a stiffness that is nowhere zero, and sensors
+    load torque d that the model lacks leaves the error (6/w^2 - T'/(J w^4)) d/J, since its twist counts as acceleration.
+    It ignores the input leads of a compensation, because gear and load are in it; a ModelFeedforward beside it must have the
+    friction alone. Needs a stiffness that is nowhere zero, and sensors
     and a period that are fast against w. A large w amplifies noise by w^4.
 
     >>> import strainwave as sw
@@ -854,9 +863,10 @@ class KinematicErrorTracking:
     K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
     The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
-    V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model exact. Then s falls with the rate K / M, and the error
-    r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
-    the command comes from a lag of the time reference_time.
+    M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
+    exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). A slope
+    e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
+    the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
 
     The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
     compensation, whose input leads the law ignores. It has no integral.

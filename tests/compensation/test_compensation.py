@@ -135,12 +135,13 @@ LAWS = {
     "pid": (sw.control.PID(proportional=2.0, derivative=0.2), WOUND, 5.0, 0.12),
     "lead_lag": (sw.control.LeadLag(gain=2.0, lead_numerator=0.05, lead_denominator=0.005), WOUND, 5.0, 0.12),
     "state_feedback": (sw.control.StateFeedback(input_angle=2.0, input_speed=0.05), WOUND, 5.0, 0.12),
+    "state_space": (sw.control.StateSpace(A=[-500.0], B=[500.0, 0.0], C=[1.0], D=[1.0, 0.05]), WOUND, 5.0, 0.12),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", list(LAWS))
 def test_it_serves_every_law_that_follows_an_angle(name: str) -> None:
-    """Each follows the input that the model leads, and adds what it asks for, in the unit of its motor."""
+    """Without a model of its own, each follows the input that the model leads and adds the torque, in the unit of its motor."""
     law, motor, per_torque, per_speed = LAWS[name]
     gear = sw.Gear(
         kinematics=sw.kinematics.PlainRatio(reduction=20.0),

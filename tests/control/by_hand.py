@@ -141,3 +141,75 @@ class StateSpace:
         limited = float(np.clip(asked, *within(seen, self.law.limit)))
         self.x = self.x + self.period * (self.a @ self.x + self.b @ y + self.tracking * (limited - asked))
         return limited
+
+
+class Lags:
+    """Derivatives of the commanded rate: two lags by forward differences."""
+
+    def __init__(self, time: float, period: float) -> None:
+        self.time, self.period = time, period
+        self.rate, self.second = 0.0, 0.0
+
+    def __call__(self, rate: float) -> tuple[float, float]:
+        """Acceleration and jerk at this instant."""
+        acceleration = (rate - self.rate) / self.time
+        jerk = (acceleration - self.second) / self.time
+        self.rate += self.period * acceleration
+        self.second += self.period * jerk
+        return acceleration, jerk
+
+
+def error_of(law: sw.kinematic_error.Fourier, angle: float) -> tuple[float, float]:
+    """Value and slope."""
+    phase = np.array(law.order) * angle + np.array(law.phase)
+    return float(np.sin(phase) @ law.amplitude), float(np.cos(phase) @ (np.array(law.amplitude) * law.order))
+
+
+def bend_of(law: sw.kinematic_error.Fourier, angle: float) -> float:
+    """Second derivative, as the laws take it: a difference of slopes."""
+    return (error_of(law, angle + 1e-3)[1] - error_of(law, angle - 1e-3)[1]) / 2e-3
+
+
+class FeedbackLinearisation:
+    """Of a linear spring and a plain inertia: the chain of derivatives has no term of the load, and T'' is 0."""
+
+    def __init__(self, law: sw.control.FeedbackLinearisation, period: float, ratio: float = RATIO) -> None:
+        self.law, self.ratio, self.lags = law, ratio, Lags(law.reference_time, period)
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law, w = self.law, self.law.bandwidth
+        k, inertia = law.gear.stiffness.k, law.load.inertia
+        error, slope = error_of(law.gear.kinematic_error, seen.input_angle)
+        per_input = 1.0 / self.ratio - slope
+        torque = k * (seen.input_angle / self.ratio - seen.output_angle - error)
+        acceleration, jerk = torque / inertia, k * (per_input * seen.input_speed - seen.output_speed) / inertia
+        wanted_acceleration, wanted_jerk = self.lags(seen.command_rate)
+        snap = w**4 * (seen.command - seen.output_angle) + 4.0 * w**3 * (seen.command_rate - seen.output_speed)
+        snap += 6.0 * w**2 * (wanted_acceleration - acceleration) + 4.0 * w * (wanted_jerk - jerk)
+        bend = bend_of(law.gear.kinematic_error, seen.input_angle)
+        needed = (inertia * snap / k + bend * seen.input_speed**2 + acceleration) / per_input
+        asked = (law.motor_inertia + law.gear.input_inertia) * needed + per_input * torque
+        asked = law.actuation_per_torque * asked + law.actuation_per_speed * seen.input_speed
+        return float(np.clip(asked, *within(seen, law.limit)))
+
+
+class KinematicErrorTracking:
+    """Of a plain inertia."""
+
+    def __init__(self, law: sw.control.KinematicErrorTracking, period: float, ratio: float = RATIO) -> None:
+        self.law, self.ratio, self.lags = law, ratio, Lags(law.reference_time, period)
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law, rotor = self.law, self.law.motor_inertia + self.law.gear.input_inertia
+        error, slope = error_of(law.gear.kinematic_error, seen.input_angle)
+        bend = bend_of(law.gear.kinematic_error, seen.input_angle)
+        g = 1.0 / self.ratio - slope
+        output = seen.output_angle if law.feedback == "output" else seen.input_angle / self.ratio - error
+        reference = (seen.command_rate + law.bandwidth * (seen.command - output)) / g
+        acceleration, _ = self.lags(seen.command_rate)
+        rate = (acceleration + law.bandwidth * (seen.command_rate - g * seen.input_speed)) / g
+        rate += reference * bend * seen.input_speed / g
+        mass, half_slope = rotor + law.load.inertia * g**2, -law.load.inertia * g * bend
+        asked = mass * rate + half_slope * seen.input_speed * reference - law.speed_gain * (seen.input_speed - reference)
+        asked = law.actuation_per_torque * asked + law.actuation_per_speed * seen.input_speed
+        return float(np.clip(asked, *within(seen, law.limit)))

@@ -127,7 +127,7 @@ def test_a_number_at_the_end_of_all_is_answered_with_a_number_or_refused(verb: A
     takes = verb.__doc__.splitlines()
     first = next(name for line in takes if "(self, " in line for name in [line.partition("(self, ")[2].partition(":")[0]])
     given: dict[str, Any] = {first: PATHS.get(first, 1.0)} | ({"speed": [1.0, 1.0]} if first == "time" else {})
-    given |= MOTION if verb.__name__ == "planned" else {}
+    given |= MOTION if verb.__name__ == "requests" else {}
     answer: Any = None
     refused = ""
     try:

@@ -160,8 +160,8 @@ def test_sequences_that_belong_together_are_equally_long_and_not_too_long(model:
         too_long = 1000 * [fitting(field)]
         with pytest.raises(ValueError, match=rf"^{model.name}\.{field['name']} holds at most \d+ elements$"):
             model(**(usual(model) | {field["name"]: too_long}))
-    # a series may have sines alone, and a map has a torque for each speed and angle
-    if len(sequences) > 1 and model not in (sw.friction.PositionDependent, sw.friction.AngleSpeedMap):
+    # a series may have sines alone, a map has a torque for each speed and angle, and matrices have rows
+    if len(sequences) > 1 and model not in (sw.friction.PositionDependent, sw.friction.AngleSpeedMap, sw.control.StateSpace):
         with pytest.raises(ValueError, match=rf"^{model.name}: .* must have equally many elements$"):
             model(**(usual(model) | {sequences[0]["name"]: [fitting(sequences[0])]}))
 

@@ -41,12 +41,21 @@ struct FeedbackLinearisation {
         (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
 
         It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-        lags of the time reference_time. Derivatives of the load, and of stiffness and error over the motion, are central differences
-        over 0.01 / w.
+        lags of the time reference_time, which must exceed the period of a sampled controller. Derivatives of load and stiffness over
+        the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
+
+        A stiffness of the model of k times the real one moves the poles to those of
+
+        .. math:: s^4 + 4 w s^3 + (6 w^2 - (k - 1)\, \Omega^2)\, s^2 + (4 w^3 s + w^4)/k, \qquad
+                  \Omega^2 = \frac{T'}{J} \Big(1 + \frac{J}{i^2 J_{in}}\Big)
+
+        Omega is the vibration of the joint with both ends free. With k above 1 the joint is stable only if w^2 exceeds
+        (k - 1) Omega^2 / (5 - 1/k): where the stiffness is uncertain, take a smaller one.
 
         Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
-        DisturbanceObserver takes away what is constant. It ignores the input leads of a compensation, because gear and
-        load are in it; a ModelFeedforward beside it must hold the friction alone. Needs a stiffness that is nowhere zero, and sensors
+        load torque d that the model lacks leaves the error (6/w^2 - T'/(J w^4)) d/J, since its twist counts as acceleration.
+        It ignores the input leads of a compensation, because gear and load are in it; a ModelFeedforward beside it must have the
+        friction alone. Needs a stiffness that is nowhere zero, and sensors
         and a period that are fast against w. A large w amplifies noise by w^4.
 
         >>> import strainwave as sw
@@ -85,7 +94,8 @@ struct FeedbackLinearisation {
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
         return ReferenceMotion<S>(x, command, reference_time).rate();
     }
-    constexpr State relaxation_rate() const { return {S(1.0) / reference_time, S(1.0) / reference_time}; }
+    /// As of an integral: forward differences of a ramp leave no error, which the step that is exact for a constant does.
+    constexpr State relaxation_rate() const { return {}; }
     /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
     constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 
@@ -108,12 +118,11 @@ private:
 
     constexpr Motion motion(const Measurement<S>& measured) const {
         const S inverse = gear.kinematics.inverse_ratio(), inertia = inertia_of<S>(load), step = S(share_of_difference) / bandwidth;
-        const auto error = error_at(measured.input_angle);
-        const S turned = step * measured.input_speed, per_step = S(0.5) / step;
+        const auto error = drive_model::bent_error<S>(gear, measured.input_angle);
+        const S per_step = S(0.5) / step;
         Motion at{};
         at.per_input = inverse - error.slope;
-        at.per_input_rate =
-            (error_at(measured.input_angle - turned).slope - error_at(measured.input_angle + turned).slope) * per_step;
+        at.per_input_rate = -error.bend * measured.input_speed;
         const S twist = inverse * measured.input_angle - measured.output_angle - error.value;
         at.twist_rate = at.per_input * measured.input_speed - measured.output_speed;
         const S twisted = step * at.twist_rate;
@@ -146,7 +155,6 @@ private:
         const S input_acceleration = (twist_acceleration - at.per_input_rate * input_speed + at.acceleration) / at.per_input;
         return (motor_inertia + gear.input_inertia) * input_acceleration + at.per_input * at.torque;
     }
-    constexpr auto error_at(const S& angle) const { return gear.kinematic_error.at(drive_model::reduced(angle)); }
     /// Torque of the load after a time [s] of a motion from the measured one on [N.m].
     constexpr S carried_after(const Measurement<S>& measured, const S& acceleration, const S& jerk, const S& time) const {
         const S angle = measured.output_angle + time * (measured.output_speed + S(0.5) * time * acceleration);

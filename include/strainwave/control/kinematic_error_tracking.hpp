@@ -38,9 +38,10 @@ struct KinematicErrorTracking {
         K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
         The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
-        V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model exact. Then s falls with the rate K / M, and the error
-        r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). The acceleration of
-        the command comes from a lag of the time reference_time.
+        M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
+        exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). A slope
+        e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
+        the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
 
         The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
         compensation, whose input leads the law ignores. It has no integral.
@@ -83,33 +84,26 @@ struct KinematicErrorTracking {
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
         return ReferenceMotion<S>(x, command, reference_time).rate();
     }
-    constexpr State relaxation_rate() const { return {S(1.0) / reference_time, S(1.0) / reference_time}; }
+    /// As of an integral: forward differences of a ramp leave no error, which the step that is exact for a constant does.
+    constexpr State relaxation_rate() const { return {}; }
     /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
     constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 
 private:
-    static constexpr double angle_of_difference = 1e-3;  ///< rad of the input, over which e'' is a difference
-
     constexpr S motor_torque(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        const auto error = error_at(measured.input_angle);
-        const S inverse = gear.kinematics.inverse_ratio(), per_input = inverse - error.slope, bend = bend_at(measured.input_angle);
+        const auto error = drive_model::bent_error<S>(gear, measured.input_angle);
+        const S inverse = gear.kinematics.inverse_ratio(), per_input = inverse - error.slope;
         const S speed = measured.input_speed, output_speed = per_input * speed, inertia = inertia_of<S>(load);
         const S output = feedback == Feedback::output ? measured.output_angle : inverse * measured.input_angle - error.value;
         const S wanted = (command.rate + bandwidth * (command.value - output)) / per_input;
         const ReferenceMotion<S> reference(x, command, reference_time);
         // d/dt of wanted * per_input = reference speed; per_input changes by -e'' per input angle
         const S towards = reference.acceleration + bandwidth * (command.rate - output_speed);
-        const S wanted_rate = (towards + wanted * bend * speed) / per_input;
+        const S wanted_rate = (towards + wanted * error.bend * speed) / per_input;
         const S mass = motor_inertia + gear.input_inertia + inertia * per_input * per_input;
-        const S half_slope = -inertia * per_input * bend;
+        const S half_slope = -inertia * per_input * error.bend;
         const S carried = load_torque<S>(load, output, output_speed, S(0.0));
         return mass * wanted_rate + half_slope * speed * wanted + per_input * carried - speed_gain * (speed - wanted);
-    }
-    constexpr auto error_at(const S& angle) const { return gear.kinematic_error.at(drive_model::reduced(angle)); }
-    /// Second derivative of the kinematic error [1/rad].
-    constexpr S bend_at(const S& angle) const {
-        const S step(angle_of_difference);
-        return (error_at(angle + step).slope - error_at(angle - step).slope) * S(0.5 / angle_of_difference);
     }
 };
 

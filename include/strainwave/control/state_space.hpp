@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/condition.hpp>
 #include <strainwave/control/law.hpp>
 
 namespace strainwave::control {

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from strainwave import control
 
 Array = NDArray[np.float64]
-MAX_STATES = 8  # of control.StateSpace
+MAX_STATES, INPUTS = 8, 8  # of control.StateSpace
 
 
 def held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
@@ -108,14 +108,18 @@ def filter_gain(step: Array, seen: Array, process: Array, measurement: float) ->
     return np.asarray(covariance @ seen / (seen @ covariance @ seen + measurement))
 
 
-def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, limit: float) -> control.StateSpace:
-    """Return the law u = -K z - d of the estimates z of the states and d of a constant actuation that disturbs.
+def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, ratio: float, limit: float) -> control.StateSpace:
+    """Return the law u = -K z - d of estimates: z of the deviations from the command, d of a constant actuation that disturbs.
+
+    A feed-forward that moves the joint as commanded does not excite the filter, because it acts on deviations. A jump of the
+    command changes the deviation of the input angle: the law subtracts it from the estimate, and its last state is the command.
 
     Args:
         plant: in deviations from the command
         gains: K, with that of the input before, if it is a state
-        measured: index of the state that is measured
+        measured: index of the state that is measured, the input angle
         noise: what the filter does not know
+        ratio: input angle per output angle
         limit: of the actuation
 
     Raises:
@@ -123,9 +127,9 @@ def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, lim
     """
     count = len(plant.step)
     size = count + 1 + plant.is_late
-    if size > MAX_STATES:
+    if size + 1 > MAX_STATES:
         raise ValueError(
-            f"the filter has {size} states and control.StateSpace {MAX_STATES}: linearise a drive with fewer, without structure"
+            f"the law has {size + 1} states and control.StateSpace {MAX_STATES}: give a drive with fewer, without structure"
         )
     disturbs = plant.now + plant.late
     step, now = np.zeros((size, size)), np.zeros(size)
@@ -136,29 +140,48 @@ def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, lim
     if plant.is_late:  # the gains are those of input and disturbance together
         step[:count, -1], now[-1], feedback[-1] = plant.late, 1.0, gains[-1]
         feedback[count] += gains[-1]
+    known = count + 1  # what the filter estimates; the input before it knows
     seen = np.zeros(size)
     seen[measured] = 1.0
-    known = count + 1  # what the filter estimates; the input before it knows
     process = np.zeros((known, known))
     process[:count, :count] = noise.effort**2 * np.outer(disturbs, disturbs)
     process[count, count] = noise.effort_rate**2 * plant.period
     corrects = np.zeros(size)
     corrects[:known] = filter_gain(step[:known, :known], seen[:known], process, noise.angle**2)
-    return _law(step, now, feedback, seen, corrects, plant.period, limit)
+    return _law(step - np.outer(now, feedback), now, feedback, corrects, ratio * seen, plant.period, limit)
 
 
 def _law(
-    step: Array, now: Array, feedback: Array, seen: Array, corrects: Array, period: float, limit: float
+    closed: Array, now: Array, feedback: Array, corrects: Array, jumps: Array, period: float, limit: float
 ) -> control.StateSpace:
-    """Return the law whose states are the estimates before each measurement; its input, commanded minus measured, is -y."""
-    one = np.eye(len(step))
-    after = one - np.outer(corrects, seen)
-    closed = step - np.outer(now, feedback)
+    """Return the law whose states are the estimates before each measurement and the command half a period later.
+
+    Args:
+        closed: step of the estimates under the feedback
+        now: effect of the actuation on them
+        feedback: of the estimates
+        corrects: gain M of the filter
+        jumps: by what the estimates fall, per jump of the command; the angle measured is one of them, times the ratio
+        period: [s]
+        limit: of the actuation
+    """
+    size, half = len(closed), 0.5 * period
+    seen = (jumps != 0.0).astype(float)
+    after = np.eye(size) - np.outer(corrects, seen)
+    by_jump = after @ jumps
+    step = np.zeros((size + 1, size + 1))
+    step[:size, :size], step[:size, size] = closed @ after, closed @ by_jump
+    inputs, direct = np.zeros((size + 1, INPUTS)), np.zeros(INPUTS)
+    inputs[:size, 0], direct[0] = -closed @ corrects, feedback @ corrects
+    # the jump is what command and rate differ by from the command of the instant before, carried on by both rates
+    inputs[:size, -2], inputs[:size, -1] = -closed @ by_jump, half * closed @ by_jump
+    inputs[size, -2:] = 1.0, half
+    direct[-2], direct[-1] = feedback @ by_jump, -half * feedback @ by_jump
     return control.StateSpace(
-        A=((closed @ after - one) / period).ravel().tolist(),
-        B=(-closed @ corrects / period).tolist(),
-        C=(-feedback @ after).tolist(),
-        D=[float(feedback @ corrects)],
-        tracking=(now / period).tolist(),
+        A=((step - np.eye(size + 1)) / period).ravel().tolist(),
+        B=(inputs / period).ravel().tolist(),
+        C=np.append(-feedback @ after, -feedback @ by_jump).tolist(),
+        D=direct.tolist(),
+        tracking=np.append(now / period, 0.0).tolist(),
         limit=limit,
     )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Sensors, arguments, control, friction, meter, thermal
+from strainwave import Drive, Sensors, arguments, control, friction, kinematic_error, meter, thermal
 from strainwave.analysis.linear import linearise
 from strainwave.files.gear_set import GearSet
 from strainwave.tuning.cascade import Plant, gear_set_of, line_of_friction
@@ -75,7 +76,8 @@ def regulator(
 
     With encoder="input" the angle of the motor alone is measured, and the result is a `StateSpace`: a stationary Kalman filter
     estimates the motion of motor and output and a constant torque at the motor, which the law takes away. The design contains
-    the delay. A load torque at the output is estimated as one at the motor, so the twist that it causes stays as an error.
+    the delay: put the law into a controller of the same period and delay, where the joint begins at the angle 0. A load torque
+    at the output is estimated as one at the motor, so the twist that it causes stays as an error.
 
     Source: AstromWittenmark1997, sections 11.2 (discrete regulator) and 11.3 (Kalman filter), FranklinPowellEmamiNaeini2002,
     section 7.6 (weights).
@@ -100,7 +102,7 @@ def regulator(
     >>> law.input_angle != 0.0 and law.output_angle != 0.0
     True
     >>> len(regulator("robot-joint", error=1e-3, encoder="input").C)
-    5
+    6
     """
     plant = Plant.of(
         gear_set_of(drive),
@@ -109,11 +111,12 @@ def regulator(
     )
     weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
-    a, b, states, output = linear(plant)
+    by_input = arguments.one_of("encoder", encoder, ("output", "input")) == "input"
+    a, b, states, output = linear(_on_average(plant) if by_input else plant)
     speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
     cost = weight * np.outer(output, output)
     cost[states.index("output_speed"), states.index("output_speed")] += speed
-    if arguments.one_of("encoder", encoder, ("output", "input")) == "input":
+    if by_input:
         late = HeldPlant.of(a, b, plant.period, plant.delay)
         largest = plant.limit / plant.actuation_per_torque
         noise = Noise(
@@ -122,7 +125,8 @@ def regulator(
             effort_rate=plant.actuation_per_torque
             * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
         )
-        return with_filter(late, late.gains(cost, 1.0 / limit**2), states.index("input_angle"), noise, plant.limit)
+        gains = late.gains(cost, 1.0 / limit**2)
+        return with_filter(late, gains, states.index("input_angle"), noise, plant.ratio, plant.limit)
     gains = HeldPlant.of(a, b, plant.period, 0.0).gains(cost, 1.0 / limit**2)
     _check_with_delay(a, b, gains, plant)
     found = dict(zip(states, gains, strict=True))
@@ -138,6 +142,12 @@ def regulator(
 
 def _or_share(name: str, value: float | None, unit: str, usual: float) -> float:
     return usual if value is None else arguments.number(name, value, unit, low=0.0)
+
+
+def _on_average(plant: Plant) -> Plant:
+    """Return the plant without its kinematic error, whose slope where it rests is not that of a turn."""
+    gear = plant.drive.gear.replace(kinematic_error=kinematic_error.Fourier())
+    return replace(plant, drive=plant.drive.replace(gear=gear))
 
 
 def linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:

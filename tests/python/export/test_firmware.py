@@ -41,6 +41,7 @@ def drive(law: Any = LAW, delay: float = 0.0, motor: Any = None, **compensation:
     return sw.Drive(gear=GEAR, load=LOAD, motor=motor or sw.motor.TorqueSource(inertia=2e-5), control=control)
 
 
+JOINT = sw.Drive(gear=GEAR, load=LOAD, motor=sw.motor.TorqueSource(inertia=2e-5))
 DC = sw.motor.DC(resistance=0.5, torque_constant=0.08, back_emf=0.08, inertia=2e-5)
 DRIVES = {
     "model": drive(feedforward=FEEDFORWARD, observer=OBSERVER),
@@ -57,6 +58,15 @@ DRIVES = {
     "passes": drive(learning=sw.compensation.IterativeLearning(low=-0.1, high=0.1, gain=20.0)),
     "twist": drive(feedforward=FEEDFORWARD, learning=sw.compensation.TwistIdentification(order=[1, 2])),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
+    "kalman": drive(law=sw.regulator(JOINT, error=1e-3, encoder="input")),
+    "linearised": drive(
+        law=sw.control.FeedbackLinearisation(gear=GEAR, load=LOAD, motor_inertia=2e-5, bandwidth=60.0, limit=2.0),
+        observer=OBSERVER,
+    ),
+    "tracking": drive(
+        law=sw.control.KinematicErrorTracking(gear=GEAR, load=LOAD, motor_inertia=2e-5, speed_gain=0.01, limit=2.0),
+        observer=OBSERVER,
+    ),
     "currents": drive(law=made(sw.control.Cascade), motor=DC.replace(inductance=5e-4)),
 }
 

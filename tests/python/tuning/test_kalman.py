@@ -69,7 +69,7 @@ def matrices(law: sw.control.StateSpace) -> tuple[Array, Array, Array, float]:
     """A_d, B_d, C and D of its recursion."""
     size = len(law.C)
     step = np.eye(size) + PERIOD * np.reshape(law.A, (size, size))
-    return step, PERIOD * np.array(law.B), np.array(law.C), law.D[0]
+    return step, PERIOD * np.reshape(law.B, (size, 8))[:, 0], np.array(law.C), law.D[0]
 
 
 def closed_loop(law: sw.control.StateSpace, delay: float) -> Array:
@@ -127,6 +127,44 @@ def test_the_other_poles_are_those_of_the_filter(delay: float) -> None:
     assert len(of_filter) == 5
 
 
+def test_of_a_step_the_motion_is_that_of_the_regulator_that_measures_all() -> None:
+    """The jump of the command does not excite the filter, and the joint is the model."""
+    runs = []
+    for encoder in ("input", "output"):
+        law: Any = sw.regulator(JOINT, period=PERIOD, encoder=encoder, **WEIGHTS)  # type: ignore[call-overload]
+        control = sw.control.Sampled(law=law.replace(limit=1e6), period=PERIOD)
+        run = sw.simulate(JOINT.replace(control=control), sw.scenario.constant(0.1, 0.5), 2e-5, sample=PERIOD)
+        runs.append(run["output_angle"])
+    assert runs[0] == pytest.approx(runs[1], abs=1e-7 * np.abs(runs[1]).max())
+
+
+def test_a_feedforward_of_the_model_does_not_excite_the_filter() -> None:
+    """Of a planned motion: the joint follows as the model moves, where without feed-forward it lags."""
+    model = sw.compensation.ModelFeedforward(gear=JOINT.gear, load=JOINT.load, motor_inertia=ROTOR)
+    command, errors = sw.scenario.sine(0.2, 1.0, 2.0, phase=-0.5 * np.pi, offset=0.2), []
+    law = sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS)
+    for added in (sw.Compensation(), sw.Compensation(feedforward=model)):
+        control = sw.control.Sampled(law=law, period=PERIOD, compensation=added)
+        run = sw.simulate(JOINT.replace(control=control), command, sample=PERIOD)
+        errors.append(np.abs(command.value(run.time) - run["output_angle"])[1000:].max())
+    assert errors[1] < 0.02 * errors[0]
+
+
+@delays
+def test_weight_and_viscous_friction_leave_no_error_of_the_input(delay: float) -> None:
+    """They are torques at the motor to the filter, at rest and at constant speed."""
+    viscous = JOINT.gear.replace(friction_input=sw.friction.Viscous(viscous=2e-3))
+    load = sw.loads.Pendulum(inertia=ARM, gravity_torque=5.0)
+    for plant, command in (
+        (JOINT.replace(load=load), sw.scenario.constant(0.5, 3.0)),
+        (JOINT.replace(gear=viscous), sw.scenario.ramp(0.1, 3.0)),
+    ):
+        law = sw.regulator(plant, period=PERIOD, delay=delay, encoder="input", **WEIGHTS)
+        control = sw.control.Sampled(law=law, period=PERIOD, delay=delay)
+        run = sw.simulate(plant.replace(control=control), command, sample=PERIOD)
+        assert run["input_angle"][-1] / RATIO == pytest.approx(float(command.value(3.0)), rel=1e-6)
+
+
 @delays
 def test_a_constant_torque_at_the_motor_leaves_no_error(delay: float) -> None:
     """Of Coulomb friction on a ramp; the regulator that measures all keeps the error friction / gain."""
@@ -144,18 +182,16 @@ def test_a_constant_torque_at_the_motor_leaves_no_error(delay: float) -> None:
     assert abs(errors["input"]) < 1e-6 * errors["output"]
 
 
-def test_it_recovers_from_its_limit() -> None:
-    """A step that keeps the motor at its limit overshoots less with tracking, and hardly more than a small step."""
-    law = sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS)
-    overshoots = []
-    for size, limit in ((1e-3, 1e6), (1.0, 0.5)):
-        for tracking in (law.tracking, ()):
-            control = sw.control.Sampled(law=law.replace(limit=limit, tracking=tracking), period=PERIOD)
-            run = sw.simulate(JOINT.replace(control=control), sw.scenario.constant(size, 3.0), sample=PERIOD)
-            overshoots.append(run["output_angle"].max() / size - 1.0)
-    small, _, tracked, wound = overshoots
-    assert tracked < wound
-    assert tracked < 2.0 * small + 0.2
+def test_at_its_limit_the_filter_goes_on() -> None:
+    """By `tracking` it takes what the motor was given, and moves as the regulator that measures all does at the same limit."""
+    full, law = (sw.regulator(JOINT, period=PERIOD, **WEIGHTS), sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS))
+    runs = []
+    for each in (full, law, law.replace(tracking=())):
+        control = sw.control.Sampled(law=each.replace(limit=0.5), period=PERIOD)
+        run = sw.simulate(JOINT.replace(control=control), sw.scenario.constant(1.0, 1.0), 2e-5, sample=PERIOD)
+        runs.append(run["output_angle"])
+    assert runs[1] == pytest.approx(runs[0], abs=1e-6)
+    assert np.abs(runs[2] - runs[0]).max() > 0.01
 
 
 def test_on_the_robot_joint_it_is_about_as_good_as_all_that_is_measured() -> None:
