@@ -67,6 +67,9 @@ struct Compensation {
         return compensation::active(feedforward) || compensation::active(learning) || compensation::active(observer);
     }
 
+    /// Ratio of the gear of the feed-forward's model; 0 without one.
+    constexpr S model_ratio() const { return control::model_ratio<S>(feedforward); }
+
     using State = CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State>;
     constexpr State initial_state() const {
         return {strainwave::initial_state(feedforward), strainwave::initial_state(learning), strainwave::initial_state(observer)};

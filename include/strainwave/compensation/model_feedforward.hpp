@@ -107,6 +107,8 @@ struct ModelFeedforward {
             contraction};
     }
 
+    constexpr S model_ratio() const { return gear.kinematics.ratio(); }
+
     constexpr auto compile() const {
         return ModelFeedforward<S, decltype(gear.compile()), decltype(compiled(load))>{
             gear.compile(), compiled(load), motor_inertia, presliding, friction_share, rounds, temperature};

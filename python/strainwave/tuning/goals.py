@@ -18,7 +18,7 @@ AROUND_REVERSAL = 0.1  # of a period, either side of a reversal
 SETTLING_SHARE = 0.5  # of a run, left out at its begin
 REST = 0.5  # s, after a motion to and fro
 SETTLING_BAND_SHARE = 5e-4  # of the travel, within which the error of a position that has settled stays
-TORQUE_BAND_SHARE = 0.01  # of the torque, likewise
+TORQUE_BAND_SHARE = 0.05  # of the torque, likewise
 MAX_STICKING_SPEED_SHARE = 0.1  # of the commanded speed: below it the output rests
 UPPER_QUANTILE = 0.95  # of figures over drawn gears
 

@@ -117,3 +117,21 @@ def test_the_cascade_supplies_no_friction_twice() -> None:
     momentum = observer.bandwidth * observer.inertia * (run["input_speed"][-1] - 100.0 * 0.2)
     estimate = run.end["control.compensation.observer.filtered"] - momentum
     assert abs(estimate) < 0.01 * 0.05
+
+
+def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
+    """Without a model the input stands where a rigid gear would have it: half of the angle is lost to a gear as stiff."""
+    found = sw.compensate(KNOWN, goal="torque", torque=20.0, members=3)
+    assert isinstance(found.gear_set.load, sw.loads.TorsionSpring)
+    assert found.gear_set.load.inertia == KNOWN.load.inertia
+    assert found.goal.units["torque error"] == "N.m"
+    rms_of_half = 0.5 * 20.0 * np.sqrt(3.0 / 8.0)  # of (1 - cos) / 2
+    assert 0.7 * rms_of_half < found.baseline.nominal["torque error"] < rms_of_half  # the integral takes back a little
+    assert "torsion" in found.chosen.candidate.effects
+    assert found.gain > 0.8
+    assert any("against which the torque goes from 0 to 20 N·m" in remark for remark in found.remarks)
+
+
+def test_the_chosen_setting_keeps_its_margins(known: sw.Compensated) -> None:
+    assert known.margins == sw.loop_margins(known.drive)
+    assert known.margins.modulus >= 0.5
