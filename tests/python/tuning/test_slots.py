@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from strainwave.files.entries import Entry, Quantity
 from strainwave.tuning.drawn import drawn_gears
-from strainwave.tuning.slots import MIN_MEMBERS, OVER_COMPENSATED, SLOTS, Slot
+from strainwave.tuning.slots import OVER_COMPENSATED, SLOTS, Slot
 
 from tests import strategies
 from tests.python.command import refused, strainwave
