@@ -79,7 +79,7 @@ class ModelFeedforward:
     with r the commanded output angle, i the signed ratio, T the torque that the gear must transmit, delta its twist, e its
     kinematic error, theta the input angle that belongs to all that, J_in = motor_inertia + gear.input_inertia. The controller
     is given theta - i r as a lead of the input, and tau. ``gear`` and ``load`` are what is known of the drive: an effect
-    that is left out of them is not compensated.
+    that is left out of them is not compensated. The ratio of ``gear`` is that of the drive.
 
     theta is found by ``rounds`` rounds of theta <- i (r + e(theta) + delta), which converge if q = |i| max|e'| < 1: each
     leaves at most the share q of the error before. delta is found on the branch of the hysteresis that the command follows.
