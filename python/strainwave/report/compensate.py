@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from strainwave import loads
 from strainwave.files import gear_file
 from strainwave.report import figures, typeset
 from strainwave.report.page import render
@@ -237,16 +236,14 @@ def _title(found: Compensated) -> str:
 def _errors(canvas: Figure, found: Compensated) -> None:
     """Draw the error of the output over time, of the gear as it is stated; as a torque if that is the goal."""
     axes = canvas.add_subplot()
-    command, load = found.goal.command, found.gear_set.load
-    scale, name, unit = 1.0, "error of the output", "rad"
-    if found.goal.name == "torque" and isinstance(load, loads.TorsionSpring):
-        scale, name, unit = load.stiffness, "error of the torque", "N.m"
+    command = found.goal.command
+    name, unit = ("error of the torque", "N.m") if found.goal.name == "torque" else ("error of the output", "rad")
     runs = {"cascade": found.baseline} | ({"compensated": found.chosen} if found.is_compensated else {})
     for (label, judged), (colour, line, width) in zip(runs.items(), (figures.RUNS[1], figures.RUNS[0]), strict=False):
         control: Any = judged.candidate.drive.control
         sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
         run = simulate(judged.candidate.drive, command, sample=sample)
-        error = scale * np.asarray(command.value(run.time) - run["output_angle"])
+        error = found.goal.per_angle * np.asarray(command.value(run.time) - run["output_angle"])
         figures.curve(axes, run.time, error, color=figures.LIGHT[colour], linestyle=line, linewidth=width, label=label)
     figures.label_axes(axes, name, unit, "time", "s")
     figures.legend(canvas, axes)

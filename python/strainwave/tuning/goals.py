@@ -34,8 +34,9 @@ class Goal:
         figures: of an ensemble, each of shape (members,), by name
         units: of the figures
         speed: largest speed of the output [rad/s]
-        pace: of the motion, the angular frequency at which it repeats [rad/s]; 0 if it does not
         second: the figure that stands beside that by which controllers are judged
+        pace: of the motion, the angular frequency at which it repeats [rad/s]; 0 if it does not
+        per_angle: factor of an error, the stiffness of a stop for a torque [N.m/rad]
     """
 
     name: str
@@ -46,6 +47,7 @@ class Goal:
     speed: float
     second: str
     pace: float = 0.0
+    per_angle: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -144,7 +146,7 @@ def _goal_of_motion(name: str, judged_by: str, unit: str, motion: _ToAndFro, spe
     }
     return Goal(
         name, judged_by, motion.command, lambda runs, _: motion.figures(runs, judged_by), units, speed, "settling time",
-        2.0 * np.pi / motion.period,
+        2.0 * np.pi / motion.period, motion.scale,
     )  # fmt: skip
 
 

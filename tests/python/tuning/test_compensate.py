@@ -10,6 +10,10 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.tuning.candidates import baseline
 from strainwave.tuning.cascade import Plant, Setting
+from strainwave.tuning.compensate import _remarks
+from strainwave.tuning.goals import position
+from strainwave.tuning.judging import Judged
+from strainwave.tuning.loops import sharpest
 
 STATED = sw.GearSet.read("robot-joint")
 KNOWN = STATED.replace(sources=dict.fromkeys(STATED.sources, Entry("measured", spread=0.01)))
@@ -135,3 +139,14 @@ def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
 def test_the_chosen_setting_keeps_its_margins(known: sw.Compensated) -> None:
     assert known.margins == sw.loop_margins(known.drive)
     assert known.margins.modulus >= 0.5
+
+
+def test_a_loop_without_margin_is_remarked() -> None:
+    """A spring so soft that it vibrates within every loop of the output encoder, and without damping."""
+    gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=1e2))
+    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.6))
+    plant = Plant.of(sw.GearSet.of(drive, name="joint", source="stated"), 1e-5, 0.0)
+    gear_set, setting = sw.GearSet.of(drive, name="joint", source="stated"), sharpest(plant, "output", 0.0)
+    best = Judged(baseline(plant, setting), {"tracking error": np.zeros(3)}, {"tracking error": 0.0})
+    remarks = list(_remarks(gear_set, plant, position(0.2, 0.2, "N.m"), best))
+    assert any("no cascade tried has a modulus margin of 0.5" in remark for remark in remarks)
