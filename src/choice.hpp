@@ -64,6 +64,9 @@ struct Choice {
     constexpr bool active() const {
         return visit([](const auto& law) { return compensation::active(law); });
     }
+    constexpr S model_ratio() const {
+        return visit([](const auto& law) { return control::model_ratio<S>(law); });
+    }
     constexpr const char* actuation() const {
         return visit([](const auto& law) { return motor::taken_by(law); });
     }

@@ -18,6 +18,8 @@
 
 namespace strainwave {
 
+inline constexpr double max_ratio_error = 1e-3;  ///< relative, of the ratio of a model of the gear
+
 template <class S, class Control, class Motor, class Gear, class Load, class Sensors, class ThermalModel = thermal::Isothermal<S>,
           class Meter = meter::NoMeter<S>>
 struct Drive {
@@ -60,18 +62,26 @@ struct Drive {
         visit(SW_PART(m, meter, "What is measured of powers and energies"));
     }
 
-    constexpr const char* problem() const {
+    constexpr Contradiction<S> problem() const {
         if (!all(input_inertia() > S(0.0)))
-            return gear.structure.rigid()
-                       ? "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input"
-                       : "motor.inertia must exceed 0 with this structure of the gear: the input shaft turns by itself";
+            return {gear.structure.rigid()
+                        ? "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input"
+                        : "motor.inertia must exceed 0 with this structure of the gear: the input shaft turns by itself"};
         const char* given = control::given_by(control);
         if (*given != 0 && !same(given, motor::taken_by(motor)))
-            return "control gives a voltage, and the motor takes none; a PositionSpeed suits one that takes a current or a torque";
+            return {
+                "control gives a voltage, and the motor takes none; a PositionSpeed suits one that takes a current or a torque"};
         if (control::needs_current(control) && !motor::has_current<S>(motor))
-            return "control acts at once on the current, which follows the motor's voltage at once: give the motor an "
-                   "inductance, or let the control be Sampled";
-        return nullptr;
+            return {
+                "control acts at once on the current, which follows the motor's voltage at once: give the motor an "
+                "inductance, or let the control be Sampled"};
+        const S modelled = control::model_ratio<S>(control), ratio = gear.kinematics.ratio();
+        if (!all(modelled == S(0.0)) && !all(abs(modelled - ratio) <= S(max_ratio_error) * abs(ratio)))
+            return {
+                "the model of the feed-forward has the ratio {}, and the gear of the drive {}: give the gear of the model the "
+                "kinematics of the drive's",
+                modelled, ratio};
+        return {};
     }
 
     /// Every part as the integrator wants it.

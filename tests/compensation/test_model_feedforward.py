@@ -337,3 +337,29 @@ def test_each_effect_that_is_left_out_of_the_model_is_left_in_the_error(effect: 
     command = sw.scenario.sine(0.3, 0.5, 4.0)
     poorer = MODEL.replace(gear=PLANT.replace(**{effect: LEFT_OUT[effect]}))
     assert tracking(5e-4, poorer, command) > 1.5 * tracking(5e-4, MODEL, command)
+
+
+@pytest.mark.parametrize(("reduction", "suits"), [(100.0, True), (100.05, True), (101.0, False), (50.0, False)])
+def test_a_model_of_another_ratio_is_refused_where_a_drive_is_built(reduction: float, suits: bool) -> None:
+    """Its lead would grow with the angle; rounding of a file is no other ratio."""
+    geared = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0))
+    other = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=reduction))
+    model = sw.compensation.ModelFeedforward(gear=other, load=sw.loads.Inertia(inertia=0.1))
+    control = sw.control.Sampled(law=sw.control.PositionSpeed(), compensation=sw.Compensation(feedforward=model))
+    parts = {"gear": geared, "motor": sw.motor.TorqueSource(inertia=1e-4), "load": sw.loads.Inertia(inertia=0.1)}
+    if suits:
+        assert sw.Drive(**parts, control=control).control == control
+        return
+    with pytest.raises(ValueError, match=f"the feed-forward has the ratio {reduction:g}, and the gear of the drive 100: give"):
+        sw.Drive(**parts, control=control)
+
+
+def test_a_model_that_turns_the_other_way_is_refused() -> None:
+    turned, fixed = (
+        sw.Gear(kinematics=sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed=spline))
+        for spline in ("circular_spline", "flexspline")
+    )
+    model = sw.compensation.ModelFeedforward(gear=fixed, load=sw.loads.Inertia(inertia=0.1))
+    control = sw.control.Sampled(law=sw.control.PositionSpeed(), compensation=sw.Compensation(feedforward=model))
+    with pytest.raises(ValueError, match=r"has the ratio 101, and the gear of the drive -100"):
+        sw.Drive(gear=turned, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.1), control=control)

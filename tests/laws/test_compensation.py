@@ -79,6 +79,14 @@ def drive_of(chosen: dict[str, str]) -> sw.Drive:
     return sw.Drive(gear=GEAR, motor=sw.motor.TorqueSource(inertia=ROTOR), load=ARM, control=control)
 
 
+def drive_with(part: sw.Compensation, law: sw.control.PID) -> sw.Drive:
+    """A drive with any compensation, and with the ratio of its model."""
+    model: Any = part.feedforward
+    gear = GEAR.replace(kinematics=model.gear.kinematics) if isinstance(model, compensation.ModelFeedforward) else GEAR
+    control = sw.control.Sampled(law=law, compensation=part)
+    return sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=ROTOR), load=ARM, control=control)
+
+
 def alone(place: str, name: str) -> sw.Drive:
     """A drive with this compensator, and with a model where it needs one."""
     model = {"feedforward": "model_feedforward"} if name in ("friction_scale", "twist_identification") else {}
@@ -203,8 +211,7 @@ def test_all_numbers_of_its_state_have_names_of_their_own(place: str, name: str)
 @settings(max_examples=sample(15, 60), suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 @given(built(sw.Compensation))
 def test_of_any_compensation_all_names_differ_and_begin_alike(part: sw.Compensation) -> None:
-    control = sw.control.Sampled(law=sw.control.PID(), compensation=part)
-    one = sw.Drive(gear=GEAR, motor=sw.motor.TorqueSource(inertia=ROTOR), load=ARM, control=control)
+    one = drive_with(part, sw.control.PID())
     names = [each for each, _, _ in _core.state(one)[0]]
     assert len(set(names)) == len(names)
     assert all(np.isfinite(number) for number in one.rest().values())
@@ -220,7 +227,7 @@ def test_written_to_a_file_and_read_it_is_the_same(tmp_path: Path, place: str, n
 @settings(max_examples=sample(10, 40), suppress_health_check=[*HealthCheck])
 @given(part=built(sw.Compensation))
 def test_so_is_any_other(tmp_path: Path, part: sw.Compensation) -> None:
-    one = drive_of({}).replace({"control": sw.control.Sampled(law=sw.control.PID(), compensation=part)})
+    one = drive_with(part, sw.control.PID())
     save(one, tmp_path / "drive.toml", name="x", source="x")
     assert load(tmp_path / "drive.toml") == one
 
@@ -341,7 +348,7 @@ def test_single_precision_asks_for_the_same_within_a_ten_thousandth(tmp_path: Pa
 @settings(max_examples=sample(10, 60), suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 @given(built(sw.Compensation), st.floats(0.01, 1.0))
 def test_whatever_its_numbers_it_gives_no_more_than_the_limit_of_its_controller(part: sw.Compensation, speed: float) -> None:
-    one = drive_of({}).replace({"control": sw.control.Sampled(law=sw.control.PID(limit=0.5), compensation=part)})
+    one = drive_with(part, sw.control.PID(limit=0.5))
     try:
         run = sw.simulate(one, sw.scenario.sine(speed / 20.0, 3.0, 0.1), 1e-4)
     except ValueError as error:  # a law of the model is not valid there

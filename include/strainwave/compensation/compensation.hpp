@@ -73,6 +73,9 @@ struct Compensation {
                compensation::active(dither);
     }
 
+    /// Ratio of the gear of the feed-forward's model; 0 without one.
+    constexpr S model_ratio() const { return control::model_ratio<S>(feedforward); }
+
     using State = CompensationStates<S, typename Feedforward::State, typename Learning::State, typename Observer::State,
                                      typename Dither_::State>;
     constexpr State initial_state() const {

@@ -118,6 +118,15 @@ constexpr bool follows_angle(const Law& law) {
         return false;
 }
 
+/// Ratio of the gear of which a law or a compensator has a model; 0 if it has none.
+template <class S, class Law>
+constexpr S model_ratio(const Law& law) {
+    if constexpr (requires { law.model_ratio(); })
+        return law.model_ratio();
+    else
+        return S(0.0);
+}
+
 /// Whether a law acts at once by the current it measures: then the current must not follow the actuation at once.
 template <class Law>
 constexpr bool needs_current(const Law& law) {

@@ -55,6 +55,8 @@ struct Sampled {
                      "StateFeedback do";
     }
 
+    constexpr S model_ratio() const { return compensation.model_ratio(); }
+
     using State = Stateless<S>;
     constexpr State initial_state() const { return {}; }
 

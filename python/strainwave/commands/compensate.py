@@ -13,7 +13,12 @@ if TYPE_CHECKING:
     from strainwave.files.gear_set import GearSet
 
 
+OF_SLOT = ("side", "unit", "points", "threshold", "load", "rated_torque", "temperature")  # options of a slot alone
+OF_CONTROLLER = ("goal", "delay", "encoder", "torque")  # options that no slot has
+
+
 def compensate(
+    context: typer.Context,
     drive: Annotated[str, typer.Argument(help="A drive with motor and load: a set by name, or a file as identify writes it.")],
     goal: Annotated[
         str, typer.Option(help="position (to and fro), speed (constant), smooth (creeping) or torque.")
@@ -24,7 +29,7 @@ def compensate(
     travel: Annotated[float, typer.Option(help="Travel of the output, for position [rad].")] = 0.2,
     speed: Annotated[float | None, typer.Option(help="Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
     torque: Annotated[float | None, typer.Option(help="Torque of the output, for torque [N.m].")] = None,
-    members: Annotated[int, typer.Option(help="Number of drawn gears.")] = 40,
+    members: Annotated[int, typer.Option(help="Number of drawn gears; usually 40, for a slot 200.")] = 40,
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
     slot: Annotated[
         str | None,
@@ -49,18 +54,16 @@ def compensate(
     from strainwave.report.provenance import Provenance
     from strainwave.tuning.compensate import compensate as compensated
 
-    of_slot = {
-        "side": side, "unit": unit, "points": points, "threshold": threshold, "load": load, "rated_torque": rated_torque,
-        "temperature": temperature,
-    }  # fmt: skip
-    given: dict[str, Any] = {name: value for name, value in of_slot.items() if value is not None}
+    stated = [name for name in context.params if str(context.get_parameter_source(name)).endswith("COMMANDLINE")]
     gear_set = GearSet.read(drive)
     if slot is not None:
-        given |= {"period": period, "travel": travel, "speed": speed, "members": members, "seed": seed}
-        _slot(gear_set, slot, out, given)
+        if alien := [name for name in stated if name in OF_CONTROLLER]:
+            raise ValueError(f"--{alien[0]} belongs to a controller that is found, and not to a slot; leave it out")
+        options = {name: context.params[name] for name in stated if name not in ("drive", "slot", "out")}
+        _slot(gear_set, slot, out, options)
         return
-    if given:
-        raise ValueError(f"--{next(iter(given)).replace('_', '-')} belongs to a slot; name one by --slot")
+    if alien := [name for name in stated if name in OF_SLOT]:
+        raise ValueError(f"--{alien[0].replace('_', '-')} belongs to a slot; name one by --slot")
     with progress(None) as turn:
         found = compensated(
             gear_set, goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed, torque=torque,

@@ -222,6 +222,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "margins": list(_margins(found)),
             "remarks": found.remarks,
             "members": found.members,
+            "picture_shows": f"Error of the {'torque' if found.goal.name == 'torque' else 'output'}",
             "picture": figures.inline(lambda canvas: _errors(canvas, found), (figures.WIDTH, 3.0), "errors", _title(found)),
         },
         provenance,
@@ -233,15 +234,16 @@ def _title(found: Compensated) -> str:
 
 
 def _errors(canvas: Figure, found: Compensated) -> None:
-    """Draw the error of the output over time, of the gear as it is stated."""
+    """Draw the error of the output over time, of the gear as it is stated; as a torque if that is the goal."""
     axes = canvas.add_subplot()
     command = found.goal.command
+    name, unit = ("error of the torque", "N.m") if found.goal.name == "torque" else ("error of the output", "rad")
     runs = {"cascade": found.baseline} | ({"compensated": found.chosen} if found.is_compensated else {})
     for (label, judged), (colour, line, width) in zip(runs.items(), (figures.RUNS[1], figures.RUNS[0]), strict=False):
         control: Any = judged.candidate.drive.control
         sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
         run = simulate(judged.candidate.drive, command, sample=sample)
-        error = np.asarray(command.value(run.time) - run["output_angle"])
+        error = found.goal.per_angle * np.asarray(command.value(run.time) - run["output_angle"])
         figures.curve(axes, run.time, error, color=figures.LIGHT[colour], linestyle=line, linewidth=width, label=label)
-    figures.label_axes(axes, "error of the output", "rad", "time", "s")
+    figures.label_axes(axes, name, unit, "time", "s")
     figures.legend(canvas, axes)

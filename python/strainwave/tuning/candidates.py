@@ -38,6 +38,7 @@ MAX_ORDERS = 4  # that an AdaptiveFourier holds
 LEARNING_SHARE = 0.2  # rate of learning over the gain of the position loop
 MAX_WAVE_SHARE = 0.9  # frequency of a wave that is learnt over the gain of the position loop, which lags by 45 degrees at 1
 MAX_AMPLITUDE = 2e-3  # rad at the output, that is learnt
+MIN_LEARNING_SPEED = 1.0  # rad/s of the input, below which nothing is learnt
 MAX_TABLE_ORDER = 8  # that a Repetitive learns whole
 TABLE_CELLS = 32  # of a Repetitive
 MAX_SHARE_OF_PASS = 0.3  # of an error, that a cell learns while the input passes it
@@ -207,6 +208,8 @@ def _learners(
     """Yield what learns, with its name; nothing if the loop follows no order with a phase that is known."""
     law, speed = tuned_law(plant, setting), goal.speed * abs(plant.ratio)
     max_frequency = MAX_WAVE_SHARE * law.position_gain
+    if speed < MIN_LEARNING_SPEED:
+        return
     learnt, lag = learnable(plant, setting, orders, np.minimum(np.multiply(orders, speed), max_frequency), draws)
     if not learnt:
         return
@@ -214,7 +217,9 @@ def _learners(
     gain = LEARNING_SHARE * law.position_gain
     yield (
         which,
-        compensation.AdaptiveFourier(order=learnt, gain=gain, lag=lag, max_frequency=max_frequency, limit=MAX_AMPLITUDE),
+        compensation.AdaptiveFourier(
+            order=learnt, gain=gain, lag=lag, min_speed=MIN_LEARNING_SPEED, max_frequency=max_frequency, limit=MAX_AMPLITUDE
+        ),
     )
     if all(order.is_integer() and order <= MAX_TABLE_ORDER for order in learnt):
         yield (
@@ -222,6 +227,7 @@ def _learners(
             compensation.Repetitive(
                 gain=min(0.5 * TABLE_CELLS * gain, MAX_SHARE_OF_PASS * TABLE_CELLS * speed / (2.0 * np.pi)),
                 lag=lag,
+                min_speed=MIN_LEARNING_SPEED,
                 max_speed=max_frequency / max(learnt),
                 limit=MAX_AMPLITUDE,
             ),

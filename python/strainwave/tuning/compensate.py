@@ -21,7 +21,7 @@ from strainwave.tuning.conditions import Condition, OverCompensation, conditions
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 from strainwave.tuning.judging import Judged, judged
-from strainwave.tuning.loops import LoopMargins, margins_of, sharpest
+from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, margins_of, sharpest
 
 Array = NDArray[np.float64]
 
@@ -294,6 +294,8 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
             f"the position loop reaches {bandwidth:.3g} rad/s with period {plant.period:g} s and delay {plant.delay:g} s, and "
             f"the motion has {goal.pace:.3g} rad/s: a shorter period or delay would gain, too"
         )
+    if (margin := margins_of(plant, best.candidate.setting).modulus) < MIN_MODULUS:
+        yield f"no cascade tried has a modulus margin of {MIN_MODULUS:g}; it is {margin:.2g}: the gear has little damping"
     if best.failures:
         yield f"{best.failures} of the drawn gears did not run to their end under the cascade"
 

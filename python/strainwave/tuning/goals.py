@@ -18,7 +18,7 @@ AROUND_REVERSAL = 0.1  # of a period, either side of a reversal
 SETTLING_SHARE = 0.5  # of a run, left out at its begin
 REST = 0.5  # s, after a motion to and fro
 SETTLING_BAND_SHARE = 5e-4  # of the travel, within which the error of a position that has settled stays
-TORQUE_BAND_SHARE = 0.01  # of the torque, likewise
+TORQUE_BAND_SHARE = 0.05  # of the torque, likewise
 MAX_STICKING_SPEED_SHARE = 0.1  # of the commanded speed: below it the output rests
 # Of the time, of a run that counts: an output that does not move has a ripple of 1, which is less than that of one that slips.
 MAX_REST_SHARE = 0.9
@@ -36,8 +36,9 @@ class Goal:
         figures: of an ensemble, each of shape (members,), by name
         units: of the figures
         speed: largest speed of the output [rad/s]
-        pace: of the motion, the angular frequency at which it repeats [rad/s]; 0 if it does not
         second: the figure that stands beside that by which controllers are judged
+        pace: of the motion, the angular frequency at which it repeats [rad/s]; 0 if it does not
+        per_angle: factor of an error, the stiffness of a stop for a torque [N.m/rad]
     """
 
     name: str
@@ -48,6 +49,7 @@ class Goal:
     speed: float
     second: str
     pace: float = 0.0
+    per_angle: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -146,7 +148,7 @@ def _goal_of_motion(name: str, judged_by: str, unit: str, motion: _ToAndFro, spe
     }
     return Goal(
         name, judged_by, motion.command, lambda runs, _: motion.figures(runs, judged_by), units, speed, "settling time",
-        2.0 * np.pi / motion.period,
+        2.0 * np.pi / motion.period, motion.scale,
     )  # fmt: skip
 
 

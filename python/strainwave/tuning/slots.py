@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.messages import shortened
+from strainwave.messages import listed, shortened
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
@@ -259,6 +260,11 @@ def slot(
         raise ValueError(f'{wanted} belongs to the input; side = "output" must be "input"')
     if unit == "A" and name == "torque-offset":
         raise ValueError('unit = "A": a torque-offset is in permille of the rated torque; leave the unit out')
+    _refuse_unused(
+        name,
+        speed=speed, threshold=threshold, points=points, load=load, rated_torque=rated_torque, motion=motion, travel=travel,
+        period=period, members=members, seed=seed,
+    )  # fmt: skip
     return SLOTS[name](
         Request(
             name,
@@ -278,6 +284,22 @@ def slot(
             arguments.whole("seed", seed, 0),
         )
     )
+
+
+def _refuse_unused(name: str, **options: object) -> None:
+    """
+    Raises:
+        ValueError: an option that the slot does not use has another value than its default
+    """
+    defaults = signature(slot).parameters
+    for option, value in options.items():
+        if value == defaults[option].default:
+            continue
+        if option not in OPTIONS[name]:
+            users = [each for each, used in OPTIONS.items() if option in used]
+            raise ValueError(f"{option} is not used by the slot {name}, only by {listed(users)}; leave it out")
+        if options["motion"] is not None and option in ("speed", "travel"):
+            raise ValueError(f"{option} is that of a motion to and fro; leave it out, as motion states another")
 
 
 @dataclass(frozen=True)
@@ -559,4 +581,12 @@ SLOTS: dict[str, Callable[[Request], Slot]] = {
     "anticogging-map": anticogging_map,
     "torque-offset": torque_offset,
 }
+_OF_FRICTION = frozenset({"speed", "threshold", "load"})
+OPTIONS: dict[str, frozenset[str]] = {
+    "viscous-coulomb-scale": _OF_FRICTION | {"members", "seed"},
+    "coulomb-viscous": _OF_FRICTION,
+    "speed-table": _OF_FRICTION | {"points"},
+    "anticogging-map": frozenset({"speed", "points", "load"}),
+    "torque-offset": frozenset({"speed", "rated_torque", "motion", "travel", "period"}),
+}  # that a slot uses, besides side, unit and temperature
 OF_THE_INPUT = ("anticogging-map", "torque-offset")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import tomllib
+from dataclasses import replace
 
+import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.report.compensate import compensate_files, compensate_summary, verdict
@@ -50,3 +52,33 @@ def test_the_verdict_is_the_first_line_and_each_effect_is_named(found: sw.Compen
     assert f"(−{100.0 * found.gain:.0f} %)" in first if found.is_compensated else "no compensation gains" in first
     effects = {line.split(":")[0].strip() for line in rest if "its model" in line}
     assert effects == {"torsion", "kinematic error"}  # friction is the line that the cascade has, too
+
+
+def test_margins_conditions_and_less_of_an_effect_are_on_the_page_and_among_the_numbers(
+    found: sw.Compensated, files: dict[str, str]
+) -> None:
+    root, numbers = Page(files["report.html"]).root, json.loads(files["results.json"])
+    rows = [each.text for each in root.find("section", id="conditions")[0].find("tr")]
+    assert len(rows) == 2 + len(found.conditions) + sum(len(each.factors) for each in found.over_compensation)
+    assert len(root.find("section", id="margins")[0].find("tr")) == 3
+    assert numbers["margins"]["speed"]["modulus"] == found.margins.speed.modulus
+    assert [each["name"] for each in numbers["conditions"]] == [each.name for each in found.conditions]
+    assert numbers["conditions"][1]["chosen"] == found.conditions[1].chosen.median("tracking error")
+    for written, each in zip(numbers["over_compensation"], found.over_compensation, strict=True):
+        assert (written["effect"], written["gains_up_to"]) == (each.effect, each.gains_up_to)
+        assert written["chosen"] == list(each.chosen)
+
+
+def test_what_is_not_reached_is_a_dash_and_no_number(found: sw.Compensated) -> None:
+    """As a settling time of an error that stays outside its band."""
+    never = replace(found.tried[0], figures=found.tried[0].figures | {"settling time": np.full(3, np.inf)})
+    changed = replace(found, tried=(never, *found.tried[1:]))
+    row = compensate_summary(changed).splitlines()[2]
+    assert row.endswith("; –")
+    assert json.loads(compensate_files(changed)["results.json"])["controllers"][0]["median"]["settling time"] is None
+
+
+def test_the_caption_names_the_cascade(found: sw.Compensated, files: dict[str, str]) -> None:
+    text = Page(files["report.html"]).root.find("section", id="gain")[0].text
+    assert found.baseline.candidate.name.capitalize() in text
+    assert "{{" not in text

@@ -10,6 +10,10 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.tuning.candidates import baseline, candidates
 from strainwave.tuning.cascade import Plant, Setting
+from strainwave.tuning.compensate import _remarks
+from strainwave.tuning.goals import position
+from strainwave.tuning.judging import Judged
+from strainwave.tuning.loops import sharpest
 
 STATED = sw.GearSet.read("robot-joint")
 KNOWN = STATED.replace(sources=dict.fromkeys(STATED.sources, Entry("measured", spread=0.01)))
@@ -151,3 +155,32 @@ def test_a_motor_without_inertia_is_remarked() -> None:
     bare = joint.with_parts(motor=joint.motor.replace(inertia=0.0), source="changed")
     assert any("the inertia of the motor is 0" in each for each in sw.compensate(bare, members=3).remarks)
     assert not any("the inertia of the motor" in each for each in sw.compensate(joint, members=3).remarks)
+
+
+def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
+    """Without a model the input stands where a rigid gear would have it: half of the angle is lost to a gear as stiff."""
+    found = sw.compensate(KNOWN, goal="torque", torque=20.0, members=3)
+    assert isinstance(found.gear_set.load, sw.loads.TorsionSpring)
+    assert found.gear_set.load.inertia == KNOWN.load.inertia
+    assert found.goal.units["torque error"] == "N.m"
+    rms_of_half = 0.5 * 20.0 * np.sqrt(3.0 / 8.0)  # of (1 - cos) / 2
+    assert 0.7 * rms_of_half < found.baseline.nominal["torque error"] < rms_of_half  # the integral takes back a little
+    assert "torsion" in found.chosen.candidate.effects
+    assert found.gain > 0.8
+    assert any("against which the torque goes from 0 to 20 N·m" in remark for remark in found.remarks)
+
+
+def test_the_chosen_setting_keeps_its_margins(known: sw.Compensated) -> None:
+    assert known.margins == sw.loop_margins(known.drive)
+    assert known.margins.modulus >= 0.5
+
+
+def test_a_loop_without_margin_is_remarked() -> None:
+    """A spring so soft that it vibrates within every loop of the output encoder, and without damping."""
+    gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=1e2))
+    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.6))
+    plant = Plant.of(sw.GearSet.of(drive, name="joint", source="stated"), 1e-5, 0.0)
+    gear_set, setting = sw.GearSet.of(drive, name="joint", source="stated"), sharpest(plant, "output", 0.0)
+    best = Judged(baseline(plant, setting), {"tracking error": np.zeros(3)}, {"tracking error": 0.0})
+    remarks = list(_remarks(gear_set, plant, position(0.2, 0.2, "N.m"), best))
+    assert any("no cascade tried has a modulus margin of 0.5" in remark for remark in remarks)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from strainwave.files.entries import Entry, Quantity
 from strainwave.tuning.drawn import drawn_gears
-from strainwave.tuning.slots import MIN_MEMBERS, OVER_COMPENSATED, SLOTS, Slot
+from strainwave.tuning.slots import OVER_COMPENSATED, SLOTS, Slot
 
 from tests import strategies
 from tests.python.command import refused, strainwave
@@ -199,7 +199,7 @@ def test_a_torque_offset_follows_a_motion_that_is_given_and_the_rating_of_the_se
 
 def test_what_is_assumed_is_remarked() -> None:
     for name in OF_FRICTION:
-        assert any("friction is assumed" in remark for remark in sw.slot("csg-20-100", name, members=MIN_MEMBERS).remarks)
+        assert any("friction is assumed" in remark for remark in sw.slot("csg-20-100", name).remarks)
     found = sw.slot("robot-joint", "anticogging-map", load=20.0, unit="A")
     assert any("both encoders" in remark for remark in found.remarks)
     assert any("amplitudes of the phases" in remark for remark in found.remarks)
@@ -250,12 +250,13 @@ def test_a_motion_that_is_none_is_refused() -> None:
 
 @pytest.mark.parametrize("name", SLOTS)
 def test_the_command_writes_a_slot(name: str, tmp_path: Path) -> None:
-    options = ["--load", 20, "--rated-torque", 0.9, "--out", "slot"]
-    done = strainwave("compensate", "robot-joint", "--slot", name, *options, folder=tmp_path)
+    needs: dict[str, float] = {"rated_torque": 0.9} if name == "torque-offset" else {"load": 20.0}
+    options = [word for option, value in needs.items() for word in (f"--{option.replace('_', '-')}", value)]
+    done = strainwave("compensate", "robot-joint", "--slot", name, *options, "--out", "slot", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "loss against the full model" in done.stdout
     written = json.loads((tmp_path / "slot" / "slot.json").read_text())
-    found = sw.slot("robot-joint", name, load=20.0, rated_torque=0.9, members=40)
+    found = sw.slot("robot-joint", name, **needs)  # type: ignore[arg-type]
     assert written["values"] == {name: {"value": value, "unit": found.units[name]} for name, value in found.values.items()}
     assert written["loss"]["rms"] == found.loss.rms
     if found.table is not None:
@@ -266,3 +267,26 @@ def test_the_command_names_its_options(tmp_path: Path) -> None:
     refused(tmp_path, ["compensate", "robot-joint", "--slot", "anticogging-map"], "--load is needed")
     refused(tmp_path, ["compensate", "robot-joint", "--slot", "torque-offset"], "--rated-torque is needed")
     refused(tmp_path, ["compensate", "robot-joint", "--rated-torque", "1"], "--rated-torque belongs to a slot")
+    refused(
+        tmp_path, ["compensate", "robot-joint", "--slot", "speed-table", "--goal", "speed"], "--goal belongs to a controller"
+    )
+    refused(tmp_path, ["compensate", "robot-joint", "--slot", "speed-table", "--travel", "1"], "travel is not used by the slot")
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        (
+            "coulomb-viscous",
+            {"points": 8},
+            "points is not used by the slot coulomb-viscous, only by speed-table, anti",
+        ),
+        ("anticogging-map", {"load": 1.0, "threshold": 0.1}, "threshold is not used by the slot anticogging-map"),
+        ("torque-offset", {"load": 1.0}, "load is not used by the slot torque-offset"),
+        ("torque-offset", {"motion": sw.scenario.ramp(1.0, 1.0), "travel": 1.0}, "travel is that of a motion to and fro"),
+        ("speed-table", {"members": 40}, "members is not used by the slot speed-table, only by viscous-coulomb-scale"),
+    ],
+)
+def test_an_option_that_a_slot_does_not_use_is_refused(name: str, options: dict[str, object], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        sw.slot("robot-joint", name, **options)  # type: ignore[arg-type]
