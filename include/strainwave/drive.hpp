@@ -78,7 +78,7 @@ struct Drive {
         const S modelled = control::model_ratio<S>(control), ratio = gear.kinematics.ratio();
         if (!all(modelled == S(0.0)) && !all(abs(modelled - ratio) <= S(max_ratio_error) * abs(ratio)))
             return {
-                "the model of the feed-forward has the ratio {}, and the gear of the drive {}: give the gear of the model the "
+                "the model of the controller has the ratio {}, and the gear of the drive {}: give the gear of the model the "
                 "kinematics of the drive's",
                 modelled, ratio};
         return {};

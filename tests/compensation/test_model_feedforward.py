@@ -350,7 +350,7 @@ def test_a_model_of_another_ratio_is_refused_where_a_drive_is_built(reduction: f
     if suits:
         assert sw.Drive(**parts, control=control).control == control
         return
-    with pytest.raises(ValueError, match=f"the feed-forward has the ratio {reduction:g}, and the gear of the drive 100: give"):
+    with pytest.raises(ValueError, match=f"the controller has the ratio {reduction:g}, and the gear of the drive 100: give"):
         sw.Drive(**parts, control=control)
 
 
@@ -363,3 +363,15 @@ def test_a_model_that_turns_the_other_way_is_refused() -> None:
     control = sw.control.Sampled(law=sw.control.PositionSpeed(), compensation=sw.Compensation(feedforward=model))
     with pytest.raises(ValueError, match=r"has the ratio 101, and the gear of the drive -100"):
         sw.Drive(gear=turned, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.1), control=control)
+
+
+@pytest.mark.parametrize("law", [sw.control.FeedbackLinearisation, sw.control.KinematicErrorTracking])
+@pytest.mark.parametrize("sampled", [False, True])
+def test_so_is_a_law_with_a_model_of_another_ratio(law: type, sampled: bool) -> None:
+    gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0))
+    control = law(gear=gear, load=sw.loads.Inertia(inertia=0.1), motor_inertia=1e-4)
+    whole = sw.control.Sampled(law=control) if sampled else control
+    parts = {"motor": sw.motor.TorqueSource(inertia=1e-4), "load": sw.loads.Inertia(inertia=0.1), "control": whole}
+    assert sw.Drive(gear=gear, **parts).gear == gear
+    with pytest.raises(ValueError, match="the controller has the ratio 100, and the gear of the drive 80: give"):
+        sw.Drive(gear=gear.replace({"kinematics.reduction": 80.0}), **parts)

@@ -76,6 +76,7 @@ struct FeedbackLinearisation {
     }
 
     constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
+    constexpr S model_ratio() const { return gear.kinematics.ratio(); }
 
     constexpr auto compile() const {
         return FeedbackLinearisation<S, decltype(gear.compile()), decltype(compiled(load))>{

@@ -67,6 +67,7 @@ struct KinematicErrorTracking {
     }
 
     constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
+    constexpr S model_ratio() const { return gear.kinematics.ratio(); }
 
     constexpr auto compile() const {
         return KinematicErrorTracking<S, decltype(gear.compile()), decltype(compiled(load))>{

@@ -51,11 +51,15 @@ struct Sampled {
         if (!all(delay <= period)) return "delay must not exceed period";
         return !compensation.active() || follows_angle(law)
                    ? nullptr
-                   : "compensation is that of a motion: law must follow an angle, as PositionSpeed, Cascade, PID, LeadLag and "
-                     "StateFeedback do";
+                   : "compensation is that of a motion: law must follow an angle, as PositionSpeed, Cascade, PID, LeadLag, "
+                     "StateSpace and StateFeedback do";
     }
 
-    constexpr S model_ratio() const { return compensation.model_ratio(); }
+    /// That of the law; that of the compensation if the law has no model.
+    constexpr S model_ratio() const {
+        const S of_law = control::model_ratio<S>(law);
+        return select(of_law == S(0.0), compensation.model_ratio(), of_law);
+    }
 
     using State = Stateless<S>;
     constexpr State initial_state() const { return {}; }
