@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from strainwave.simulation.scenario_file import ScenarioFile
     from strainwave.tuning.approach import LostMotion, PositioningPath, lost_motion, positioning_path
     from strainwave.tuning.compensate import Compensated, compensate
+    from strainwave.tuning.predictive import PredictiveController, predictive
     from strainwave.tuning.pulses import (
         PulsedMove,
         PulsePlan,
@@ -107,6 +108,7 @@ _LAZY = {
     "Orders": "orders.order_spectrum",
     "PositioningPath": "tuning.approach",
     "Prediction": "identification.results.prediction",
+    "PredictiveController": "tuning.predictive",
     "Profile": "identification.fitting.profile",
     "PulsedMove": "tuning.pulses",
     "PulsePlan": "tuning.pulses",
@@ -148,6 +150,7 @@ _LAZY = {
     "position_by_pulses": "tuning.pulses",
     "positioning_path": "tuning.approach",
     "predict": "identification.predict",
+    "predictive": "tuning.predictive",
     "profile": "identification.fitting.profile",
     "pulse_repeatability": "tuning.pulses",
     "pulse_travel": "tuning.pulses",
@@ -196,6 +199,7 @@ __all__ = [
     "PassivityWarning",
     "PositioningPath",
     "Prediction",
+    "PredictiveController",
     "Profile",
     "PulsePlan",
     "PulseRepeatability",
@@ -247,6 +251,7 @@ __all__ = [
     "position_by_pulses",
     "positioning_path",
     "predict",
+    "predictive",
     "profile",
     "pulse_repeatability",
     "pulse_travel",

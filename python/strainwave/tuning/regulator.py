@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Sensors, arguments, control, friction, meter, thermal
-from strainwave.analysis.linear import linearise
+from strainwave import Drive, arguments, control
 from strainwave.files.gear_set import GearSet
-from strainwave.tuning.cascade import Plant, gear_set_of, line_of_friction
+from strainwave.tuning.cascade import Plant, gear_set_of
+from strainwave.tuning.linear_plant import LinearPlant
 
 Array = NDArray[np.float64]
 
@@ -55,12 +55,13 @@ def regulator(
     )
     weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
-    a, b, states, output = _linear(plant)
+    linear = LinearPlant.of(plant)
+    states, output = linear.states, linear.output
     speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
     cost = weight * np.outer(output, output)
     cost[states.index("output_speed"), states.index("output_speed")] += speed
-    gains = _gains(a, b, cost, 1.0 / limit**2, plant.period)
-    _check_with_delay(a, b, gains, plant)
+    gains = _gains(linear, cost, 1.0 / limit**2, plant.period)
+    _check_with_delay(linear, gains, plant)
     found = dict(zip(states, gains, strict=True))
     of_twist = found["transmission_error"]
     return control.StateFeedback(
@@ -72,33 +73,11 @@ def regulator(
     )
 
 
-def _linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
-    """Return A, B of the actuation, the names of the states, and the output angle as their sum."""
-    _, viscous = line_of_friction(plant.drive.gear)
-    none = friction.Viscous()
-    gear = plant.drive.gear.replace(friction_input=friction.Viscous(viscous=viscous), friction_mesh=none, friction_output=none)
-    alone = plant.drive.replace(gear=gear, sensors=Sensors(), meter=meter.NoMeter(), thermal=thermal.Isothermal())
-    linear = linearise(alone)
-    output = np.array([{"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}.get(name, 0.0) for name in linear.states])
-    return linear.A, linear.B[:, linear.inputs.index("command")], linear.states, output
-
-
-def _held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
-    """Return the transition over a time [s] and the effect of an input that is held over it."""
-    from scipy.linalg import expm
-
-    count = len(a)
-    whole = np.zeros((count + 1, count + 1))
-    whole[:count, :count], whole[:count, count] = a, b
-    exact = expm(whole * time)
-    return exact[:count, :count], exact[:count, count]
-
-
-def _gains(a: Array, b: Array, cost: Array, effort: float, period: float) -> Array:
+def _gains(linear: LinearPlant, cost: Array, effort: float, period: float) -> Array:
     """Return the gains K of u = -K x that minimise the sum of squares, by the discrete Riccati equation."""
     from scipy.linalg import solve_discrete_are
 
-    step, held = _held(a, b, period)
+    step, held = linear.held(period)
     try:
         value = solve_discrete_are(step, held[:, np.newaxis], cost, np.array([[effort]]))
     except np.linalg.LinAlgError as error:
@@ -106,14 +85,13 @@ def _gains(a: Array, b: Array, cost: Array, effort: float, period: float) -> Arr
     return np.asarray(held @ value @ step / (effort + held @ value @ held))
 
 
-def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:
+def _check_with_delay(linear: LinearPlant, gains: Array, plant: Plant) -> None:
     """
     Raises:
         ValueError: the loop is not stable where the output comes late
     """
-    (late, late_input), (rest, rest_input) = _held(a, b, plant.delay), _held(a, b, plant.period - plant.delay)
-    before = (rest @ late_input)[:, np.newaxis]
-    loop = np.block([[rest @ late - np.outer(rest_input, gains), before], [-gains[np.newaxis, :], np.zeros((1, 1))]])
+    step, held = linear.held_late(plant.period, plant.delay)
+    loop = step - np.outer(held, np.append(gains, 0.0))
     radius = float(np.abs(np.linalg.eigvals(loop)).max())
     if not radius < 1.0:
         raise ValueError(
