@@ -8,6 +8,8 @@ the long one is mainly the kinematic error, which makes ripple of its torque. Th
 quasi-steady; sensors are ideal, and the model is right.
 """
 
+from typing import Any
+
 import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
@@ -20,7 +22,7 @@ plant = Plant.of(sw.GearSet.of(actuator, name="surface", source="assumed"), peri
 setting = Setting(sharpness=0.25, feedback="output", observer_share=0.5)
 law, observer = tuned_law(plant, setting), observer_of(plant, setting)
 model = model_of(plant, plant.drive.gear).replace(presliding=0.1)  # rad of the input: friction turns within 1 mrad
-parts = {
+parts: dict[str, dict[str, Any]] = {
     "cascade": {},
     "cascade with model": {"feedforward": model},
     "cascade with observer": {"observer": observer},

@@ -7,21 +7,22 @@ is left to integrate, also if its lost motion is 20 % off. An arm without encode
 arm with the whole model: no path makes it swing, but a push does. Numbers besides the gear are assumed.
 """
 
+from typing import Any
+
 import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
 
 gear = sw.rig.printed_gear(0).replace(damping=20.0)
 motor, arm = sw.motor.TorqueSource(inertia=1e-4), sw.loads.Inertia(inertia=5.0)
-law = sw.control.PositionSpeed(
-    position_gain=40.0, speed_proportional=0.05, speed_integral=1.0, speed_feedforward=1.0, limit=5.0
-)  # of example 14
+law = sw.control.PositionSpeed(position_gain=40.0, speed_proportional=0.05, speed_integral=1.0, limit=5.0, speed_feedforward=1)
 integral = sw.compensation.AdaptiveFourier(order=[1e-9], gain=5.0, min_speed=0.0, limit=0.02)  # rad: twice the lost motion
 
 
 def model(share: float) -> sw.compensation.ModelFeedforward:
     """Feed-forward of a model that has this share of the lost motion of the gear."""
-    known = gear.replace({"hysteresis.lost_motion": share * gear.hysteresis.lost_motion})
+    lost: Any = gear.hysteresis
+    known = gear.replace({"hysteresis.lost_motion": share * lost.lost_motion})
     return sw.compensation.ModelFeedforward(gear=known, load=arm, motor_inertia=motor.inertia)
 
 
@@ -29,9 +30,8 @@ def moved(name: str, command: sw.scenario.Scenario, push: sw.scenario.Scenario |
     """A run under the controller of that name, sampled at 1 kHz."""
     feedback, parts = controllers[name]
     control = sw.control.Sampled(law=law.replace(feedback=feedback), period=1e-3, compensation=sw.Compensation(**parts))
-    return sw.simulate(
-        sw.Drive(gear=gear, motor=motor, control=control, load=arm), command, 5e-4, sample=1e-3, load_torque=push
-    )
+    drive = sw.Drive(gear=gear, motor=motor, control=control, load=arm)
+    return sw.simulate(drive, command, dt=5e-4, sample=1e-3, load_torque=push)
 
 
 def along(*targets: float, overshoot: float = 0.0) -> sw.scenario.Scenario:
@@ -40,7 +40,7 @@ def along(*targets: float, overshoot: float = 0.0) -> sw.scenario.Scenario:
     return sw.scenario.table(time, path.value(np.minimum(time, path.duration)))
 
 
-controllers = {
+controllers: dict[str, tuple[str, dict[str, Any]]] = {
     "loop on the arm": ("output", {}),
     "loop on the arm, model": ("output", {"feedforward": model(1.0)}),
     "loop on the motor": ("input", {}),
@@ -53,16 +53,16 @@ time, steps = np.linspace(0.0, 6.0, 6001), (0.1, 0.2, 0.3, 0.4, 0.5, 1.0, 2.0, 5
 push = sw.scenario.step(20.0, 6.0, start=2.0) - sw.scenario.step(20.0, 6.0, start=2.1)  # N.m
 swings, errors, runs = {}, {}, {}
 for name, (_, parts) in controllers.items():
-    kinds = {"path": [(along(each), 0.0) for each in steps], "push": [(along(each), push) for each in steps]}
+    paths = [along(each) for each in steps]
+    kinds: dict[str, list[Any]] = {"path": [(each, 0.0) for each in paths], "push": [(each, push) for each in paths]}
     if "feedforward" not in parts:  # the model of an arm that jumps asks for more torque than there is
         kinds["step"] = [(sw.scenario.step(np.radians(each), 6.0), 0.0) for each in steps]
     for kind, inputs in kinds.items():
         of = runs[name, kind] = [np.degrees(moved(name, *each)["output_angle"]) for each in inputs]
         swings[name, kind] = np.array([0.5 * np.ptp(each[4000:]) for each in of])
         errors[name, kind] = np.array([each[-1] - to for each, to in zip(of, steps, strict=True)])
-    lag = max(
-        np.abs(each - np.degrees(along(to).value(time))).max() for each, to in zip(runs[name, "path"], steps, strict=True)
-    )
+    pairs = zip(runs[name, "path"], paths, strict=True)
+    lag = max(np.abs(each - np.degrees(path.value(time))).max() for each, path in pairs)
     print(f"{name:22}: swings by", ", ".join(f"{swings[name, kind].max():.3f} ({kind})" for kind in kinds), end=" deg; ")
     print(f"off by {lag:.3f} deg along paths, {np.abs(errors[name, 'path']).max():.4f} deg after them")
 overshoot, apart = sw.lost_motion(gear, swing=arm.inertia * 5.0).overshoot(), {}  # by the torque of acceleration

@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from strainwave.tuning.approach import LostMotion, PositioningPath, lost_motion, positioning_path
     from strainwave.tuning.compensate import Compensated, compensate
     from strainwave.tuning.loops import LoopMargins, cascade, loop_margins
+    from strainwave.tuning.predictive import PredictiveController, predictive
     from strainwave.tuning.pulses import (
         PulsedMove,
         PulsePlan,
@@ -108,6 +109,7 @@ _LAZY = {
     "Orders": "orders.order_spectrum",
     "PositioningPath": "tuning.approach",
     "Prediction": "identification.results.prediction",
+    "PredictiveController": "tuning.predictive",
     "Profile": "identification.fitting.profile",
     "PulsedMove": "tuning.pulses",
     "PulsePlan": "tuning.pulses",
@@ -152,6 +154,7 @@ _LAZY = {
     "position_by_pulses": "tuning.pulses",
     "positioning_path": "tuning.approach",
     "predict": "identification.predict",
+    "predictive": "tuning.predictive",
     "profile": "identification.fitting.profile",
     "pulse_repeatability": "tuning.pulses",
     "pulse_travel": "tuning.pulses",
@@ -201,6 +204,7 @@ __all__ = [
     "PassivityWarning",
     "PositioningPath",
     "Prediction",
+    "PredictiveController",
     "Profile",
     "PulsePlan",
     "PulseRepeatability",
@@ -254,6 +258,7 @@ __all__ = [
     "position_by_pulses",
     "positioning_path",
     "predict",
+    "predictive",
     "profile",
     "pulse_repeatability",
     "pulse_travel",

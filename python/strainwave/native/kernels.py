@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 Job = Literal["simulate", "simulate_adaptively", "simulate_many", "differentiate", "inverse_dynamics"]
 JOBS: tuple[Job, ...] = get_args(Job)
-PUBLIC_JOBS = JOBS[:-1]  # no function of the package needs inverse dynamics of many instants yet
+PUBLIC_JOBS = JOBS[:-1]  # inverse dynamics are of the rigid drives that `identify` makes
 LOOK_UP_STEPS = 20_000  # of the general drive: from then on a kernel that was compiled before is worth its look-up of some ms
 COMPILE_STEPS = 4_000_000  # of the general drive, some 6 to 10 s: several times what a compilation takes
 ADAPTIVE_STEPS = 3  # of the general drive that take as long as one whose error is estimated
+INSTANT_STEPS = 5  # of the general drive, as which an instant of inverse dynamics counts: its kernel compiles in a second
 DERIVATIVE_STEPS = 3  # of the general drive that take as long as one with four derivatives
 
 # What each job is in the table of a kernel, `strainwave::kernel::Table`.

@@ -8,75 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import control
+from strainwave.tuning.linear_plant import HeldPlant
 
 Array = NDArray[np.float64]
 MAX_STATES, INPUTS = 8, 8  # of control.StateSpace
-
-
-def held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
-    """Return the transition over a time [s] and the effect of an input that is held over it."""
-    from scipy.linalg import expm
-
-    count = len(a)
-    whole = np.zeros((count + 1, count + 1))
-    whole[:count, :count], whole[:count, count] = a, b
-    exact = expm(whole * time)
-    return exact[:count, :count], exact[:count, count]
-
-
-@dataclass(frozen=True)
-class HeldPlant:
-    """A linear plant from one sampling instant to the next, x + = F x + G_1 v + G_0 u, with v the input of the instant before.
-
-    Attributes:
-        step: F
-        late: G_1, zero without delay
-        now: G_0
-        period: [s]
-    """
-
-    step: Array
-    late: Array
-    now: Array
-    period: float
-
-    @classmethod
-    def of(cls, a: Array, b: Array, period: float, delay: float) -> HeldPlant:
-        """Return the plant of dx/dt = a x + b u, whose input comes a delay [s] after the instant."""
-        (first, before), (rest, after) = held(a, b, delay), held(a, b, period - delay)
-        return cls(rest @ first, rest @ before, after, period)
-
-    @property
-    def is_late(self) -> bool:
-        """True if the input of the instant before is a state."""
-        return bool(self.late.any())
-
-    @property
-    def whole(self) -> tuple[Array, Array]:
-        """F and G of the states with the input before as the last of them, if it is one."""
-        if not self.is_late:
-            return self.step, self.now
-        count = len(self.step)
-        step = np.zeros((count + 1, count + 1))
-        step[:count, :count], step[:count, count] = self.step, self.late
-        return step, np.append(self.now, 1.0)
-
-    def gains(self, cost: Array, effort: float) -> Array:
-        """Return the gains K of u = -K x that minimise x' cost x + effort u^2, by the discrete Riccati equation.
-
-        Raises:
-            ValueError: there are none
-        """
-        from scipy.linalg import solve_discrete_are
-
-        step, now = self.whole
-        weights = np.zeros_like(step)
-        weights[: len(cost), : len(cost)] = cost
-        try:
-            value = solve_discrete_are(step, now[:, np.newaxis], weights, np.array([[effort]]))
-        except np.linalg.LinAlgError as error:
-            raise ValueError(f"no regulator is found for this drive and these weights: {error}") from None
-        return np.asarray(now @ value @ step / (effort + now @ value @ now))
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Compensation, Drive, arguments, compensation, control
 from strainwave.files.gear_set import GearSet
 from strainwave.tuning.cascade import Plant, Setting, gear_set_of, observer_of, tuned_law
-from strainwave.tuning.kalman import held
-from strainwave.tuning.regulator import linear
+from strainwave.tuning.linear_plant import LinearPlant
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -129,7 +128,7 @@ def cascade(
 
 def sharpest(plant: Plant, encoder: str, observer_share: float) -> Setting:
     """Return the setting of the largest sharpness that keeps `MIN_MODULUS`; the smallest of all if none does."""
-    linearised, setting = linear(plant), Setting(MAX_SHARPNESS, encoder, observer_share)
+    linearised, setting = LinearPlant.of(plant), Setting(MAX_SHARPNESS, encoder, observer_share)
     for halvings in range(2 * SHARPNESS_HALVINGS + 1):
         setting = Setting(MAX_SHARPNESS * 0.5 ** (0.5 * halvings), encoder, observer_share)
         if Loops.around(linearised, plant, sampled_cascade(plant, setting)).margins().modulus >= MIN_MODULUS:
@@ -170,27 +169,25 @@ class Loops:
     @classmethod
     def of(cls, plant: Plant, sampled: Any) -> Loops:
         """Return the loops of a sampled `PositionSpeed`, whose observer is none or a `DisturbanceObserver`."""
-        return cls.around(linear(plant), plant, sampled)
+        return cls.around(LinearPlant.of(plant), plant, sampled)
 
     @classmethod
-    def around(cls, linearised: tuple[Array, Array, tuple[str, ...], Array], plant: Plant, sampled: Any) -> Loops:
+    def around(cls, linear: LinearPlant, plant: Plant, sampled: Any) -> Loops:
         """Return the same around a plant that is linearised already."""
-        a, b, states, output = linearised
-        law, observer, count = sampled.law, sampled.compensation.observer, len(states)
-        late, late_input = held(a, b, plant.delay)
-        rest, rest_input = held(a, b, plant.period - plant.delay)
+        law, observer, states = sampled.law, sampled.compensation.observer, linear.states
+        held, count = linear.held(plant.period, plant.delay), len(states)
         unit = np.eye(count + 3)
         speed, angle = unit[states.index("input_speed")], unit[states.index("input_angle")]
-        at_output = np.append(output, np.zeros(3))
+        at_output = np.append(linear.output, np.zeros(3))
         output_held, integral, filtered = unit[count:]
         per_torque = sampled.compensation.actuation_per_torque
         observes = isinstance(observer, compensation.DisturbanceObserver)
         momentum = observer.bandwidth * observer.inertia if observes else 0.0
         passed = -np.expm1(-observer.bandwidth * plant.period) if observes else 0.0
-        actuated = np.append(rest_input, np.zeros(3)) + output_held + passed / per_torque * filtered
+        actuated = np.append(held.now, np.zeros(3)) + output_held + passed / per_torque * filtered
         actuation = law.speed_integral * integral + observes * per_torque * (filtered - momentum * speed)
         free = np.zeros((count + 3, count + 3))
-        free[:count, :count], free[:count, count] = rest @ late, rest @ late_input
+        free[:count, :count], free[:count, count] = held.step, held.late
         free += np.outer(integral, integral) + (1.0 - passed) * np.outer(filtered, filtered)
         free += passed * momentum * np.outer(filtered, speed)
         return cls(

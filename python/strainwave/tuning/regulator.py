@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Sensors, arguments, control, friction, kinematic_error, meter, thermal
-from strainwave.analysis.linear import linearise
+from strainwave import Drive, arguments, control
 from strainwave.files.gear_set import GearSet
-from strainwave.tuning.cascade import Plant, gear_set_of, line_of_friction
-from strainwave.tuning.kalman import HeldPlant, Noise, held, with_filter
+from strainwave.tuning.cascade import Plant, gear_set_of
+from strainwave.tuning.kalman import Noise, with_filter
+from strainwave.tuning.linear_plant import LinearPlant
 
 Array = NDArray[np.float64]
 RESOLUTION = 2.0 * np.pi / 2**14  # rad: an encoder of 14 bit on the motor
@@ -112,12 +111,13 @@ def regulator(
     weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
     by_input = arguments.one_of("encoder", encoder, ("output", "input")) == "input"
-    a, b, states, output = linear(_on_average(plant) if by_input else plant)
+    linear = LinearPlant.of(plant)
+    states, output = linear.states, linear.output
     speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
     cost = weight * np.outer(output, output)
     cost[states.index("output_speed"), states.index("output_speed")] += speed
     if by_input:
-        late = HeldPlant.of(a, b, plant.period, plant.delay)
+        late = linear.held(plant.period, plant.delay)
         largest = plant.limit / plant.actuation_per_torque
         noise = Noise(
             angle=arguments.number("resolution", resolution, "rad", low=0.0) / np.sqrt(12.0),
@@ -125,10 +125,10 @@ def regulator(
             effort_rate=plant.actuation_per_torque
             * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
         )
-        gains = late.gains(cost, 1.0 / limit**2)
+        gains = late.gains(cost, limit)
         return with_filter(late, gains, states.index("input_angle"), noise, plant.ratio, plant.limit)
-    gains = HeldPlant.of(a, b, plant.period, 0.0).gains(cost, 1.0 / limit**2)
-    _check_with_delay(a, b, gains, plant)
+    gains = linear.held(plant.period).gains(cost, limit)
+    _check_with_delay(linear, gains, plant)
     found = dict(zip(states, gains, strict=True))
     of_twist = found["transmission_error"]
     return control.StateFeedback(
@@ -144,31 +144,13 @@ def _or_share(name: str, value: float | None, unit: str, usual: float) -> float:
     return usual if value is None else arguments.number(name, value, unit, low=0.0)
 
 
-def _on_average(plant: Plant) -> Plant:
-    """Return the plant without its kinematic error, whose slope where it rests is not that of a turn."""
-    gear = plant.drive.gear.replace(kinematic_error=kinematic_error.Fourier())
-    return replace(plant, drive=plant.drive.replace(gear=gear))
-
-
-def linear(plant: Plant) -> tuple[Array, Array, tuple[str, ...], Array]:
-    """Return A, B of the actuation, the names of the states, and the output angle as their sum."""
-    _, viscous = line_of_friction(plant.drive.gear)
-    none = friction.Viscous()
-    gear = plant.drive.gear.replace(friction_input=friction.Viscous(viscous=viscous), friction_mesh=none, friction_output=none)
-    alone = plant.drive.replace(gear=gear, sensors=Sensors(), meter=meter.NoMeter(), thermal=thermal.Isothermal())
-    found = linearise(alone)
-    output = np.array([{"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}.get(name, 0.0) for name in found.states])
-    return found.A, found.B[:, found.inputs.index("command")], found.states, output
-
-
-def _check_with_delay(a: Array, b: Array, gains: Array, plant: Plant) -> None:
+def _check_with_delay(linear: LinearPlant, gains: Array, plant: Plant) -> None:
     """
     Raises:
         ValueError: the loop is not stable where the output comes late
     """
-    (late, late_input), (rest, rest_input) = held(a, b, plant.delay), held(a, b, plant.period - plant.delay)
-    before = (rest @ late_input)[:, np.newaxis]
-    loop = np.block([[rest @ late - np.outer(rest_input, gains), before], [-gains[np.newaxis, :], np.zeros((1, 1))]])
+    step, driven = linear.held(plant.period, plant.delay).extended
+    loop = step - np.outer(driven, np.append(gains, 0.0))
     radius = float(np.abs(np.linalg.eigvals(loop)).max())
     if not radius < 1.0:
         raise ValueError(

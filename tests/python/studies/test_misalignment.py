@@ -8,6 +8,7 @@ from math import log, pi, radians, tan
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.native import kernels
 from strainwave.studies import misalignment as study
 from strainwave.studies.actuator_ramp import ASSUMED, ERROR, INPUT, OUTPUT, ActuatorRamp, geometry, in_series, noises
 from strainwave.studies.misalignment import Levels, passed, recovered, share_by_ideal_loop, swept
@@ -20,7 +21,9 @@ PER_METRE = tan(radians(20.0)) / 25e-3  # rad at the output per metre of displac
 
 @pytest.fixture(scope="module")
 def ramp() -> ActuatorRamp:
-    return ActuatorRamp.of(sw.load("tilt-actuator-lumped"), *SHORT).closed_on(OUTPUT)
+    ramp = ActuatorRamp.of(sw.load("tilt-actuator-lumped"), *SHORT).closed_on(OUTPUT)
+    kernels.load(ramp.drive, "simulate_many", compile_it=True)  # these tests take a million steps of it
+    return ramp
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.native import kernels
 from strainwave.report.misalignment import misalignment_report, summary
 from strainwave.report.misalignment_claims import CONFIRMED, CORRECTED, IN_PART, claims
 from strainwave.report.provenance import Provenance
@@ -48,6 +49,7 @@ def command(files: Path) -> tuple[MisalignmentStudy, Result]:
         made.append(misalignment(*arguments, **options))
         return made[0]
 
+    kernels.load(sw.load(LUMPED), "simulate_many", compile_it=True)  # the study takes some million steps of it
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "TRIALS", 2)
         patch.setattr(study, "TIMES", (1.0,))

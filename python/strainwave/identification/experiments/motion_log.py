@@ -27,6 +27,7 @@ from strainwave.identification.experiments.friction_table import ROOM_TEMPERATUR
 from strainwave.identification.experiments.motion import MAX_GAP_STEPS, Motion, in_gap, motion_of
 from strainwave.identification.fitting.loss import NORMAL_MAD
 from strainwave.messages import listed
+from strainwave.native import kernels
 
 Array = NDArray[np.float64]
 Side = Literal["input", "output"]
@@ -291,6 +292,7 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     inputs = np.zeros((len(motion.time), INPUTS))
     inputs[:, LOAD], inputs[:, TEMPERATURE] = others, ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
+    kernels.prepare(rigid, "inverse_dynamics", kernels.INSTANT_STEPS * len(inputs))
     torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])
     found = np.zeros((len(paths), len(torque)))
     found[places] = slopes
