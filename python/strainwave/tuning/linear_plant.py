@@ -103,7 +103,9 @@ class HeldPlant:
 
 
 def optimal(step: Array, driven: Array, cost: Array, effort: float) -> tuple[Array, Array]:
-    """Return the least sum of x' cost x + (u / effort)^2 as a form of the state, and its gains, by the discrete Riccati equation.
+    """Return the least sum of x' cost x + (u / effort)^2, as a form of the state, and the gains of u = -K x that reach it.
+
+    By the discrete Riccati equation: AstromWittenmark1997, section 11.2.
 
     Args:
         step, driven: F and G of x + = F x + G u
@@ -119,10 +121,11 @@ def optimal(step: Array, driven: Array, cost: Array, effort: float) -> tuple[Arr
     weights[: len(cost), : len(cost)] = cost
     scaled = driven * effort
     try:
-        value = np.asarray(solve_discrete_are(step, scaled[:, np.newaxis], weights, np.eye(1)))
+        value: Array = np.asarray(solve_discrete_are(step, scaled[:, np.newaxis], weights, np.eye(1)), dtype=np.float64)
     except np.linalg.LinAlgError as error:
         raise ValueError(f"no regulator is found for this drive and these weights: {error}") from None
-    return value, np.asarray(effort * (scaled @ value @ step) / (1.0 + scaled @ value @ scaled))
+    gains: Array = effort * (scaled @ value @ step) / (1.0 + scaled @ value @ scaled)
+    return value, gains
 
 
 def _held(a: Array, b: Array, time: float) -> tuple[Array, Array]:

@@ -200,7 +200,7 @@ class Loops:
             position_gain=law.position_gain,
             period=plant.period,
             ratio=plant.ratio,
-            vibrations=np.abs(np.linalg.eigvals(a)),
+            vibrations=np.abs(np.linalg.eigvals(linear.a)),
         )
 
     @property
