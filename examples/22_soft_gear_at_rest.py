@@ -1,10 +1,10 @@
 """Document T's soft gear with a compensated controller: the limit cycle of example 14 gone, and the arm where it should be.
 
 A fast position loop on the arm swings for ever; one on the motor rests, but leaves the arm off by the hysteresis. Here the
-fast loop stays on the motor, and a slow integral of the error of the arm shifts its command: an `AdaptiveFourier` whose order
-is so low that its wave is constant. No step and no push makes it swing. Along a path the model of the gear leads, so that less
-is left to integrate, also if its lost motion is 20 % off. An arm without encoder arrives from one side. Look at the loop on the
-arm with the whole model: no path makes it swing, but a push does. Numbers besides the gear are assumed.
+fast loop stays on the motor, and a slow integral of the error of the arm shifts its command: an `AdaptiveFourier` of order 0.
+No step and no push makes it swing. Along a path the model of the gear leads, so that less is left to integrate, also if its
+lost motion is 20 % off. An arm without encoder arrives from one side. Look at the loop on the arm with the whole model: no path
+makes it swing, but a push does. Numbers besides the gear are assumed.
 """
 
 from typing import Any
@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 gear = sw.rig.printed_gear(0).replace(damping=20.0)
 motor, arm = sw.motor.TorqueSource(inertia=1e-4), sw.loads.Inertia(inertia=5.0)
 law = sw.control.PositionSpeed(position_gain=40.0, speed_proportional=0.05, speed_integral=1.0, limit=5.0, speed_feedforward=1)
-integral = sw.compensation.AdaptiveFourier(order=[1e-9], gain=5.0, min_speed=0.0, limit=0.02)  # rad: twice the lost motion
+integral = sw.compensation.AdaptiveFourier(order=[0.0], gain=5.0, min_speed=0.0, limit=0.02)  # rad: twice the lost motion
 
 
 def model(share: float) -> sw.compensation.ModelFeedforward:

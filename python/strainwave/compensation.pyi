@@ -322,6 +322,7 @@ class AdaptiveFourier:
     a constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
     It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega| is
     below ``min_speed``. No sine and no cosine exceeds ``limit``. An error of the output encoder itself is learnt as well.
+    An order of 0 learns a constant: with min_speed = 0 it is a slow integral of the error of the output.
 
     >>> from strainwave.compensation import AdaptiveFourier
     >>> AdaptiveFourier(order=[1, 2]).gain
@@ -329,7 +330,7 @@ class AdaptiveFourier:
 
     Parameters
     ----------
-    order: Orders n: periods per revolution of the input, in (0, inf); default ()
+    order: Orders n: periods per revolution of the input; 0 for a constant, in [0, inf); default ()
     gain: Rate gamma at which the amplitudes follow the error [1/s], in [0, inf); default 5.0
     lag: Lag t_lag of the position loop [s], in [0, inf); default 0.0
     min_speed: Least input speed of learning [rad/s], in [0, inf); default 1.0
@@ -355,7 +356,7 @@ class AdaptiveFourier:
 
     @property
     def order(self) -> tuple[float, ...]:
-        """Orders n: periods per revolution of the input"""
+        """Orders n: periods per revolution of the input; 0 for a constant"""
 
     @property
     def gain(self) -> float:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.compensation import AdaptiveFourier
 
-from tests.compensation.ideal import Course, followed, following, state
+from tests.compensation.ideal import DAMPING, STIFFNESS, Course, followed, following, state
 
 ORDER, GAIN = 2.0, 1.0
 ERROR = sw.kinematic_error.Fourier(order=[ORDER], amplitude=[1e-4], phase=[0.7])
@@ -87,8 +87,18 @@ def test_after_a_million_turns_it_learns_as_after_none() -> None:
     assert found[1] == pytest.approx(found[0], abs=1e-8)
 
 
+def test_order_zero_is_an_integral_of_the_error() -> None:
+    """A load twists the gear by a constant. It decays as exp(s t) with s (s + 100)^2 + gamma 100^2 = 0, at rest, too."""
+    drive = following(sw.kinematic_error.Fourier(), learning(order=[0.0], gain=2.0, min_speed=0.0))
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 3.0), load_torque=10.0, sample=1e-3)
+    late = run.time > 0.5
+    rate = np.polyfit(run.time[late], np.log(np.abs(run["command"] - run["output_angle"])[late]), 1)[0]
+    slowest = max(np.roots([1.0, DAMPING, STIFFNESS, 2.0 * STIFFNESS]).real)
+    assert rate == pytest.approx(slowest, rel=2e-3)
+
+
 def test_what_is_wrong_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"adaptive_fourier\.order\[0\] = 0 must lie in"):
-        AdaptiveFourier(order=[0.0])
+    with pytest.raises(ValueError, match=r"adaptive_fourier\.order\[0\] = -1 must lie in"):
+        AdaptiveFourier(order=[-1.0])
     with pytest.raises(ValueError, match="4"):
         AdaptiveFourier(order=[1.0, 2.0, 3.0, 4.0, 5.0])

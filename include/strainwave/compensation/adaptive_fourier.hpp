@@ -32,6 +32,7 @@ struct AdaptiveFourier {
         a constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
         It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega| is
         below ``min_speed``. No sine and no cosine exceeds ``limit``. An error of the output encoder itself is learnt as well.
+        An order of 0 learns a constant: with min_speed = 0 it is a slow integral of the error of the output.
 
         >>> from strainwave.compensation import AdaptiveFourier
         >>> AdaptiveFourier(order=[1, 2]).gain
@@ -39,7 +40,7 @@ struct AdaptiveFourier {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input", smallest));
+        visit(SW_FIELD(m, order, "1", "Orders n: periods per revolution of the input; 0 for a constant", 0));
         visit(SW_FIELD(m, gain, "1/s", "Rate gamma at which the amplitudes follow the error", 0));
         visit(SW_FIELD(m, lag, "s", "Lag t_lag of the position loop", 0));
         visit(SW_FIELD(m, min_speed, "rad/s", "Least input speed of learning", 0));
