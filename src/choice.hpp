@@ -67,6 +67,9 @@ struct Choice {
     constexpr S model_ratio() const {
         return visit([](const auto& law) { return control::model_ratio<S>(law); });
     }
+    constexpr S max_period() const {
+        return visit([](const auto& law) { return control::max_period<S>(law); });
+    }
     constexpr const char* actuation() const {
         return visit([](const auto& law) { return motor::taken_by(law); });
     }

@@ -18,8 +18,6 @@
 
 namespace strainwave {
 
-inline constexpr double max_ratio_error = 1e-3;  ///< relative, of the ratio of a model of the gear
-
 template <class S, class Control, class Motor, class Gear, class Load, class Sensors, class ThermalModel = thermal::Isothermal<S>,
           class Meter = meter::NoMeter<S>>
 struct Drive {
@@ -75,12 +73,12 @@ struct Drive {
             return {
                 "control acts at once on the current, which follows the motor's voltage at once: give the motor an "
                 "inductance, or let the control be Sampled"};
-        const S modelled = control::model_ratio<S>(control), ratio = gear.kinematics.ratio();
-        if (!all(modelled == S(0.0)) && !all(abs(modelled - ratio) <= S(max_ratio_error) * abs(ratio)))
+        const S of_model = control::model_ratio<S>(control), ratio = gear.kinematics.ratio();
+        if (!all(of_model == S(0.0)) && !all(abs(of_model - ratio) <= S(control::max_ratio_error) * abs(ratio)))
             return {
                 "the model of the controller has the ratio {}, and the gear of the drive {}: give the gear of the model the "
                 "kinematics of the drive's",
-                modelled, ratio};
+                of_model, ratio};
         return {};
     }
 

@@ -22,7 +22,7 @@ using PlainGear = Gear<S, kinematics::StrainWave<S>, kinematic_error::Fourier<S>
 template <class S>
 using PlainLoad = load::Inertia<S>;
 
-/// True if the load prescribes the motion of the output; of a choice, that of the chosen load.
+/// True for a load that prescribes the motion of the output. For a choice, that of the chosen load.
 template <class Load>
 constexpr bool moves_output(const Load& load) {
     if constexpr (requires { load.model; })
@@ -49,7 +49,7 @@ constexpr S contraction(const Gear& gear) {
 /// Contradiction of a model that a law of control divides by: the output must follow the input in one sense.
 template <class S, class Gear, class Load>
 constexpr Contradiction<S> problem_of_motion(const Gear& gear, const Load& load) {
-    if (const auto found = problem_of_load<S>(load); found.text) return found;
+    if (const auto contradiction = problem_of_load<S>(load); contradiction.text) return contradiction;
     const S share = contraction<S>(gear);
     if (all(share < S(1.0))) return {};
     return {
@@ -57,25 +57,19 @@ constexpr Contradiction<S> problem_of_motion(const Gear& gear, const Load& load)
         share};
 }
 
-/// An angle [rad] in turns and the rest.
-template <class S>
-constexpr Angle<S> reduced(const S& angle) {
-    const S turns = rint(angle * S(0.5 / pi));
-    return {angle - S(2.0 * pi) * turns, turns};
-}
-
 /// Value and slope of the kinematic error, and its second derivative [1/rad].
 template <class S>
-struct BentError {
-    S value, slope, bend;
+struct ErrorWithCurvature {
+    S value, slope, curvature;
 };
-/// The error of a gear at an input angle [rad]; the second derivative is a difference over 1 mrad to each side.
+/// The error of a gear at an input angle [rad]. The second derivative is a difference over 1 mrad to each side.
 template <class S, class Gear>
-constexpr BentError<S> bent_error(const Gear& gear, const S& angle) {
+constexpr ErrorWithCurvature<S> error_with_curvature(const Gear& gear, const S& angle) {
     constexpr double step = 1e-3;
-    const auto error = gear.kinematic_error.at(reduced(angle));
-    const auto after = gear.kinematic_error.at(reduced<S>(angle + S(step)));
-    const auto before = gear.kinematic_error.at(reduced<S>(angle - S(step)));
+    const Angle<S> at = reduced(angle);
+    const auto error = gear.kinematic_error.at(at);
+    const auto after = gear.kinematic_error.at(Angle<S>{at.within + S(step), at.turns});
+    const auto before = gear.kinematic_error.at(Angle<S>{at.within - S(step), at.turns});
     return {error.value, error.slope, (after.slope - before.slope) * S(0.5 / step)};
 }
 

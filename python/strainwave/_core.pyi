@@ -205,11 +205,11 @@ class Compensation:
     .. math:: \\theta_r = i r + \\theta_f + \\theta_l, \\qquad u_f = p\\,(\\tau_f + \\tau_d + \\tau_l + \\tau_o) + q\\,\\dot\\theta_r
 
     with r the commanded output angle, theta_f, theta_l the leads of the input by feed-forward and learner, tau_f, tau_d, tau_l,
-    tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The controller follows
-    theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
+    tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The
+    controller follows theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
 
-    p is 1 for a motor that takes a torque, 1 over the torque constant for a motor that takes a current and for a Cascade, and
-    the resistance over the torque constant for a motor that takes a voltage, with q the back-EMF constant.
+    p is 1 if the motor takes a torque, and 1 over the torque constant if it takes a current, and for a Cascade. For a motor that
+    takes a voltage p is resistance over torque constant, and q the back-EMF constant.
 
     >>> import strainwave as sw
     >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))
@@ -222,8 +222,8 @@ class Compensation:
     learning: Learning of errors that repeat; default NoLearning()
     observer: Observer of what the model lacks; default NoObserver()
     dither: Torque that swings around zero; default NoDither()
-    actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
-    actuation_per_speed: What the motor takes, per input speed q: its back-EMF [s/rad]; default 0.0
+    actuation_per_torque: Actuation of the motor per torque, p [1/(N.m)], in (0, inf); default 1.0
+    actuation_per_speed: Actuation of the motor per input speed, q: its back-EMF [s/rad]; default 0.0
 
     Raises
     ------
@@ -260,11 +260,11 @@ class Compensation:
 
     @property
     def actuation_per_torque(self) -> float:
-        """What the motor takes, per torque p [1/(N.m)]"""
+        """Actuation of the motor per torque, p [1/(N.m)]"""
 
     @property
     def actuation_per_speed(self) -> float:
-        """What the motor takes, per input speed q: its back-EMF [s/rad]"""
+        """Actuation of the motor per input speed, q: its back-EMF [s/rad]"""
 
     def __repr__(self) -> str: ...
 

@@ -259,7 +259,7 @@ class LostMotionMap:
 
 class NoLearning:
     """
-    No learning: what repeats with the angle is not corrected.
+    No learning: errors that repeat with the angle are not corrected.
 
     .. math:: \\hat e = 0
 
@@ -321,7 +321,8 @@ class AdaptiveFourier:
     the position loop. The input leads by i e^. Let P(j n omega) be the response of the output to the lead. The amplitude of
     a constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
     It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega| is
-    below ``min_speed``. No sine and no cosine exceeds ``limit``. An error of the output encoder itself is learnt as well.
+    below ``min_speed``. No sine and no cosine exceeds ``limit``. Keep |i| n times the largest
+    amplitude below 1: beyond that the input has several angles for one command. An error of the output encoder itself is learnt as well.
     An order of 0 learns a constant: with min_speed = 0 it is a slow integral of the error of the output.
 
     >>> from strainwave.compensation import AdaptiveFourier
@@ -483,7 +484,7 @@ class Repetitive:
 
 class IterativeLearning:
     """
-    Learning of what repeats over the output angle, for each sense of motion: lost motion and kinematic error, without a model.
+    Learning of errors that repeat over the output angle, for each sense of motion: lost motion and kinematic error, without a model.
 
     .. math:: \\hat e = \\sum_j w_j(r)\\,\\Big(\\tfrac{1 + s}{2} f_j + \\tfrac{1 - s}{2} b_j\\Big), \\qquad
               ds = (\\operatorname{sgn}(dr) - s)\\, \\frac{|dr|}{r_0}
@@ -493,15 +494,17 @@ class IterativeLearning:
 
     with r the commanded and theta_out the measured output angle, w_j the hat functions of 32 angles from ``low`` to ``high``, f_j and
     b_j the tables of forward and backward motion, gamma = gain, sigma = smoothing, t_lag = lag of the position loop, s the
-    sense of motion, r_0 = reach; b_j follows likewise with 1 - s. The input leads by i e^. Beyond the ends the lead stays as it
-    is there. It learns within ``low`` and ``high`` and between ``min_speed`` and ``max_speed`` of the input; no value
-    exceeds ``limit``.
+    sense of motion, r_0 = reach; b_j follows likewise with 1 - s. The input leads by i e^. Beyond the ends the lead is constant.
+    Learning needs an angle within ``low`` and ``high`` and an input speed between ``min_speed`` and ``max_speed``. No value
+    exceeds ``limit``. Keep reach above the way of the command in a period: after a reversal the lead changes at
+    2 |dr/dt| / reach times half of f - b.
 
     A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at the
-    ends half as much is learnt. gamma is v / h at most, whatever ``gain``: no pass learns more than the whole error. A wave of
-    the error is learnt where the position loop lags by less than 90 degrees beyond ``lag``; ``max_speed`` states up to where.
-    It needs the output encoder. What changes within two cells is not learnt: Repetitive and AdaptiveFourier learn what
-    repeats with the input.
+    ends half as much is learnt. gamma is at most v / h and at most one per period, whatever ``gain``: no pass learns more than the whole error. The cells
+    within v t_lag of the end of a pass are not learnt. A wave of
+    the error is learnt if the position loop lags by less than 90 degrees beyond ``lag``, as it must up to ``max_speed``.
+    The output encoder is needed. Errors that change within two cells are not learnt: Repetitive and AdaptiveFourier learn
+    errors that repeat with the input.
 
     >>> from strainwave.compensation import IterativeLearning
     >>> IterativeLearning(low=-0.5, high=0.5).limit
@@ -514,9 +517,9 @@ class IterativeLearning:
     reach: Output angle r_0 after a reversal over which the old sense falls to 1/e [rad], in [1e-09, inf); default 0.001
     gain: Rate gamma at which a value follows the error [1/s], in [0, inf); default 5.0
     smoothing: Rate sigma at which a value follows its neighbours [1/s], in [0, inf); default 0.0
-    lag: Time t_lag that the position loop takes to follow [s], in [0, inf); default 0.0
-    min_speed: Input speed below which it does not learn [rad/s], in [0, inf); default 1.0
-    max_speed: Input speed above which it does not learn [rad/s], in (0, inf); default 300.0
+    lag: Lag t_lag of the position loop [s], in [0, inf); default 0.0
+    min_speed: Least input speed of learning [rad/s], in [0, inf); default 1.0
+    max_speed: Largest input speed of learning [rad/s], in (0, inf); default 300.0
     limit: Largest value at the output [rad], in [0, inf); default 0.001
 
     Raises
@@ -560,15 +563,15 @@ class IterativeLearning:
 
     @property
     def lag(self) -> float:
-        """Time t_lag that the position loop takes to follow [s]"""
+        """Lag t_lag of the position loop [s]"""
 
     @property
     def min_speed(self) -> float:
-        """Input speed below which it does not learn [rad/s]"""
+        """Least input speed of learning [rad/s]"""
 
     @property
     def max_speed(self) -> float:
-        """Input speed above which it does not learn [rad/s]"""
+        """Largest input speed of learning [rad/s]"""
 
     @property
     def limit(self) -> float:
@@ -614,7 +617,8 @@ class TwistIdentification:
     The inverse of the excitation is the time in which the motion determines the number as well as its prior does. Otherwise
     the number and its standard deviation are kept, and the gain of the others accounts for its uncertainty. A constant torque does
     not determine the compliance. At an input speed below ``min_speed`` nothing changes. No number exceeds ``limit`` standard
-    deviations of its prior. Its own lead moves theta and i theta_out alike, so it does not see itself.
+    deviations of its prior. Keep |i| n times the largest amplitude below 1: beyond that the input has several angles for one
+    command. Its own lead changes theta and i theta_out alike, so it does not change z.
 
     The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the size of what
     the estimates leave. The deviations are right while the model errs by ``noise``, for no longer than ``noise_time`` in
@@ -724,7 +728,7 @@ class TwistIdentification:
 
 class NoObserver:
     """
-    No observer: what disturbs the drive is not estimated.
+    No observer: disturbances are not estimated.
 
     .. math:: \\hat d = 0
 
@@ -786,9 +790,10 @@ class DisturbanceObserver:
     supplies the difference. The filter is exact for a torque that is constant over a period.
 
     tau is the actuation of the motor over actuation_per_torque. With a torque_constant it is that times the measured current,
-    as a Cascade needs, whose actuation is a voltage. tau_f does not contain the feed-forward of the law of control, so the
-    observer would supply it twice: set viscous_feedforward and coulomb_feedforward of the law to 0, and compensate friction
-    by the model. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
+    as a Cascade needs, whose actuation is a voltage. tau_f does not contain the torque that the law of control computes from
+    its command or model. The observer would supply that torque twice. Set viscous_feedforward and coulomb_feedforward of the
+    law to 0, and compensate friction by the model. Do not use the observer with FeedbackLinearisation or
+    KinematicErrorTracking. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
     vibration of the load, J_r is the inertia of the input. A bandwidth near that vibration excites it.
 
     >>> from strainwave.compensation import DisturbanceObserver
@@ -876,7 +881,7 @@ class FrictionScale:
 
     Parameters
     ----------
-    gain: Rate gamma of the scale per friction and error sigma [1/(N.m.rad)], in [0, inf); default 1.0
+    gain: Rate gamma of the scale per friction and error sigma [1/(N.m.rad)], in [0, 1000000000000]; default 1.0
     position_gain: Weight lambda of the error of the input angle [1/s], in [0, inf); default 20.0
     min_scale: Least scale s_min, of the friction of the model, in [0, 1]; default 0.5
     max_scale: Largest scale s_max, in [1, 10]; default 1.5
@@ -955,15 +960,16 @@ class BristleObserver:
     tau_fric is the friction that the feed-forward already requests. It is taken off, so no friction is supplied twice.
 
     k = 0 bends the bristles by the measured speed alone: friction is supplied after the input has moved. k = 1 bends them by
-    omega_r + lambda (theta_r - theta), so a shaft at rest receives more torque until it breaks away, at most the breakaway
-    torque. Bristles never leave their bounds. A set-valued law acts in the sense s of v, as
-    ds = (sgn(v) - s) |v| dt / presliding. F is evaluated at the measured speed. Its load is the rest of the torque that the
-    feed-forward requests.
+    omega_r + lambda (theta_r - theta). A shaft at rest then receives more torque until it breaks away, at most rho s^ times
+    the breakaway torque. Bristles never leave their bounds. A set-valued law acts in the sense s of v, as
+    ds = (sgn(v) - s) |v| dt / presliding. F is evaluated at the measured speed. Its load is the torque that
+    feed-forward and dither request without friction, thus with the inertial torque.
 
     The scale converges to the true one over rho. rho s_max is the largest share of the friction of the law that is
     supplied: keep it below the true scale if over-compensation must not occur. Over-compensated friction drives the shaft by
-    itself, because the compensation follows the measured motion. Where the loop gives k_c sigma with an inertia
-    J <= k_c / lambda, and F is exact, J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s/rho - s^)^2 / gamma never grows.
+    itself, because the compensation follows the measured motion. Let the loop give k_c sigma, with an inertia
+    J <= k_c / lambda, F exact and s/rho within [s_min, s_max]. Then J (sigma^2 + lambda^2 (theta_r - theta)^2) +
+    (s/rho - s^)^2 / gamma never grows.
     Below omega_min of the command the scale stands still.
 
     >>> import strainwave as sw
@@ -977,7 +983,7 @@ class BristleObserver:
     friction_share: Share rho of the friction that is supplied, in [0, 1]; default 1.0
     bristle_gain: Share k of the error that bends the bristles, in [0, 10]; default 0.0
     position_gain: Weight lambda of the error of the input angle [1/s], in [0, inf); default 20.0
-    gain: Rate gamma of the scale per friction and error sigma; 0: constant scale [1/(N.m.rad)], in [0, inf); default 0.0
+    gain: Rate gamma of the scale per friction and error sigma; 0: constant scale [1/(N.m.rad)], in [0, 1000000000000]; default 0.0
     min_scale: Least scale s_min, of the friction of the law, in [0, 1]; default 0.5
     max_scale: Largest scale s_max, in [1, 10]; default 1.5
     min_speed: Slowest commanded input speed omega_min that determines the scale [rad/s], in [0, inf); default 1.0
@@ -1119,7 +1125,7 @@ class NoDither:
 
 class Dither:
     """
-    Torque that swings around zero, so that the input never rests: the mean of its friction becomes smooth over the speed.
+    Torque that swings around zero. The input does not rest, so its mean friction becomes smooth over the speed.
 
     .. math:: \\tau_d = A \\sin(2 \\pi \\varphi)\\, \\operatorname{sgn}(\\dot r), \\qquad \\dot\\varphi = f \\;\\text{ where } \\dot r \\ne 0
 
@@ -1128,7 +1134,10 @@ class Dither:
     mean friction is (2 / pi) F_c asin(v / a) if v < a: about that of a viscous friction, in place of a jump. Choose A so
     that a exceeds the speeds at which the drive sticks.
 
-    Keep f above the bandwidth of the speed loop, away from the vibrations of the drive, and below half of the sample rate.
+    If A is at most 4 F_c / pi the input rests during a part of each period, and the formula does not hold.
+
+    Keep f above the bandwidth of the speed loop and away from the vibrations of the drive. It must be below half of the sample
+    rate.
     Dither heats the motor, wears the gear, and can be heard. It swings the input; the output follows with the share that gear
     and load let through.
 

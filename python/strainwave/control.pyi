@@ -648,10 +648,10 @@ class StateSpace:
     state. The states begin at 0. An angle error counts from the input lead of the compensation, as in StateFeedback.
 
     In ``control.Sampled`` the states go forward by Euler, x + T (A x + B y). A controller of discrete time, x + = A_d x + B_d y, has
-    thus A = (A_d - 1)/T, B = B_d/T and the same C and D, and is then exact.
+    A = (A_d - 1)/T and B = B_d/T, and the same C and D. It is then exact.
 
     Where the output is limited, ``tracking`` leads the states. An observer that contains C takes the actuation limited with l =
-    the input matrix of its model. A PI controller takes l = 1/t, t its tracking time. Without tracking an integral winds up.
+    the input matrix of its model. A PI controller takes l = 1/(C t), with t its tracking time. Without tracking an integral winds up.
 
     u is a voltage, and the units of a motor that takes one. For a motor that takes a current or a torque read A or N.m in place of V.
 
@@ -744,11 +744,11 @@ class FeedbackLinearisation:
     with r the commanded output angle, theta, omega the measured input angle and speed, q the measured output angle, i the signed
     ratio, e the kinematic error, T the stiffness of ``gear``, J the inertia of ``load``, J_in = motor_inertia + gear.input_inertia,
     w = bandwidth, p = actuation_per_torque, b = actuation_per_speed (see ``Compensation``), u_f the feed-forward of a compensation,
-    u_max = limit. Where the model is exact and the limit is not reached, the output has four poles at -w: its error obeys
-    (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
+    u_max = limit. If the model is exact and the limit is not reached, the output has four poles at -w. Its error obeys
+    (d/dt + w)^4 (r - q) = r^(4) plus the error of the derivatives of r by the lags.
 
     It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-    lags of the time reference_time, which must exceed the period of a sampled controller. Derivatives of load and stiffness over
+    lags of the time reference_time, which must be at least the period of a sampled controller. Derivatives of load and stiffness over
     the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
 
     A stiffness of the model of k times the real one moves the poles to those of
@@ -757,13 +757,14 @@ class FeedbackLinearisation:
               \\Omega^2 = \\frac{T'}{J} \\Big(1 + \\frac{J}{i^2 J_{in}}\\Big)
 
     Omega is the vibration of the joint with both ends free. With k above 1 the joint is stable only if w^2 exceeds
-    (k - 1) Omega^2 / (5 - 1/k): where the stiffness is uncertain, take a smaller one.
+    (k - 1) Omega^2 / (5 - 1/k). If the stiffness is uncertain, use a smaller one.
 
-    Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
-    load torque d that the model lacks leaves the error (6/w^2 - T'/(J w^4)) d/J, since its twist counts as acceleration.
-    It ignores the input leads of a compensation, because gear and load are in it; a ModelFeedforward beside it must have the
-    friction alone. Needs a stiffness that is nowhere zero, and sensors
-    and a period that are fast against w. A large w amplifies noise by w^4.
+    The law leaves out friction, damping and hysteresis of the gear, the relief of its kinematic error by load, and a brake of the
+    load. Compensate the friction by a compensation. The law has no integral. A load torque d that the model lacks leaves the
+    error (6/w^2 - T'/(J w^4)) d/J: its twist counts as acceleration. The law ignores the input leads of a compensation, because
+    it contains gear and load. A ModelFeedforward for it must have the friction alone. If actuation_per_speed of the
+    ``Compensation`` is not 0, set that of the law to 0: both add the back-EMF. The stiffness must be nowhere zero. Sensors and
+    period must be fast against w. A large w amplifies noise by w^4.
 
     >>> import strainwave as sw
     >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9))
@@ -772,13 +773,13 @@ class FeedbackLinearisation:
 
     Parameters
     ----------
-    gear: What is known of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
-    load: What the output carries; default Inertia(inertia=0.01)
+    gear: Model of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
+    load: Model of the load; default Inertia(inertia=0.01)
     motor_inertia: Inertia of the motor's rotor [kg.m2], in [0, inf); default 0.0001
-    bandwidth: Magnitude w of the four poles of the output [rad/s], in (0, inf); default 50.0
+    bandwidth: Magnitude w of the four poles of the output [rad/s], in [0.001, 100000]; default 50.0
     reference_time: Time of the lags that the derivatives of the command come from [s], in (0, inf); default 0.005
-    actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
-    actuation_per_speed: What the motor takes, per input speed b: its back-EMF [s/rad]; default 0.0
+    actuation_per_torque: Actuation of the motor per torque, p [1/(N.m)], in (0, inf); default 1.0
+    actuation_per_speed: Actuation of the motor per input speed, b: its back-EMF [s/rad]; default 0.0
     limit: Largest actuation, of either sign, in (0, inf); default 10.0
 
     Raises
@@ -800,11 +801,11 @@ class FeedbackLinearisation:
 
     @property
     def gear(self) -> strainwave._core.Gear:
-        """What is known of the gear"""
+        """Model of the gear"""
 
     @property
     def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed:
-        """What the output carries"""
+        """Model of the load"""
 
     @property
     def motor_inertia(self) -> float:
@@ -820,11 +821,11 @@ class FeedbackLinearisation:
 
     @property
     def actuation_per_torque(self) -> float:
-        """What the motor takes, per torque p [1/(N.m)]"""
+        """Actuation of the motor per torque, p [1/(N.m)]"""
 
     @property
     def actuation_per_speed(self) -> float:
-        """What the motor takes, per input speed b: its back-EMF [s/rad]"""
+        """Actuation of the motor per input speed, b: its back-EMF [s/rad]"""
 
     @property
     def limit(self) -> float:
@@ -864,12 +865,13 @@ class KinematicErrorTracking:
     The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
     M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
-    exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). A slope
-    e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
-    the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
+    exact. Then s falls at the rate K / M, and the error r - q at lambda. A torque d that the model lacks leaves |s| up to |d| / K, and
+    an error up to g |d| / (K lambda). A slope e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
+    the command comes from a lag of the time reference_time, which must be at least the period of a sampled controller.
 
-    The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
-    compensation, whose input leads the law ignores. It has no integral.
+    The law leaves out torsion: K / M must be well below the vibration of load and gear. It leaves out friction: compensate it by a
+    compensation, whose input leads the law ignores. It has no integral. If actuation_per_speed of the ``Compensation`` is not 0,
+    set that of the law to 0: both add the back-EMF.
 
     >>> import strainwave as sw
     >>> error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[3e-4], phase=[0.0])
@@ -879,14 +881,14 @@ class KinematicErrorTracking:
 
     Parameters
     ----------
-    gear: What is known of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
-    load: What the output carries; default Inertia(inertia=0.01)
+    gear: Model of the gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
+    load: Model of the load; default Inertia(inertia=0.01)
     motor_inertia: Inertia of the motor's rotor [kg.m2], in [0, inf); default 0.0001
     bandwidth: Rate lambda at which the error of the output falls [1/s], in (0, inf); default 20.0
     speed_gain: Torque K per error s of the input speed [N.m.s/rad], in [0, inf); default 0.02
     reference_time: Time of the lag that the acceleration of the command comes from [s], in (0, inf); default 0.005
-    actuation_per_torque: What the motor takes, per torque p [1/(N.m)], in (0, inf); default 1.0
-    actuation_per_speed: What the motor takes, per input speed b: its back-EMF [s/rad]; default 0.0
+    actuation_per_torque: Actuation of the motor per torque, p [1/(N.m)], in (0, inf); default 1.0
+    actuation_per_speed: Actuation of the motor per input speed, b: its back-EMF [s/rad]; default 0.0
     limit: Largest actuation, of either sign, in (0, inf); default 10.0
     feedback: The shaft whose encoder gives the output angle, one of ('input', 'output'); default 'output'
 
@@ -909,11 +911,11 @@ class KinematicErrorTracking:
 
     @property
     def gear(self) -> strainwave._core.Gear:
-        """What is known of the gear"""
+        """Model of the gear"""
 
     @property
     def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed:
-        """What the output carries"""
+        """Model of the load"""
 
     @property
     def motor_inertia(self) -> float:
@@ -933,11 +935,11 @@ class KinematicErrorTracking:
 
     @property
     def actuation_per_torque(self) -> float:
-        """What the motor takes, per torque p [1/(N.m)]"""
+        """Actuation of the motor per torque, p [1/(N.m)]"""
 
     @property
     def actuation_per_speed(self) -> float:
-        """What the motor takes, per input speed b: its back-EMF [s/rad]"""
+        """Actuation of the motor per input speed, b: its back-EMF [s/rad]"""
 
     @property
     def limit(self) -> float:

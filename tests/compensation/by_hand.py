@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Instant:
-    """What is known at an instant: what is seen, what it is multiplied by, and what is asked for so far."""
+    """Inputs of a compensator at an instant, and the sum of the requests before it."""
 
     seen: sw.Seen
     ratio: float
@@ -37,10 +37,10 @@ class Instant:
 
 
 class Compensator(Protocol):
-    """It adds to what is asked for, and learns of it once the motor was given a torque [N.m]."""
+    """Adds its requests; learns from the torque [N.m] that the motor gave."""
 
     def add(self, now: Instant) -> None: ...
-    def learn(self, now: Instant, given: float) -> None: ...
+    def learn(self, now: Instant, motor_torque: float) -> None: ...
 
 
 @dataclass
@@ -62,7 +62,7 @@ class LostMotionMap:
         now.lead_rate += 0.0 if self.angle is None else now.ratio * (lead - self.lead) / now.period
         self.angle, self.lead = at, lead
 
-    def learn(self, now: Instant, given: float) -> None: ...
+    def learn(self, now: Instant, motor_torque: float) -> None: ...
 
 
 @dataclass
@@ -79,7 +79,7 @@ class AdaptiveFourier:
         rate = order * self.speed * (sine * np.cos(angle) - cosine * np.sin(angle))
         now.lead_rate += now.ratio * float(rate.sum())
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law, order = self.law, np.array(self.law.order)
         late = order * now.seen.input_angle - order * self.speed * law.lag
         step = (
@@ -113,7 +113,7 @@ class Repetitive:
         now.lead += now.ratio * float(hats(now.seen.input_angle) @ self.values)
         now.lead_rate += now.ratio * float(slope) * self.speed
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law = self.law
         if not law.min_speed <= abs(self.speed) < law.max_speed:
             return
@@ -155,20 +155,20 @@ class IterativeLearning:
             now.lead_rate += now.ratio * float(self.shares @ slopes) * rate
         now.lead_rate += now.ratio * 0.5 * (forward - backward) * (np.sign(rate) - self.sense) * abs(rate) / law.reach
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law, at = self.law, now.seen.command
         if not (law.low <= at <= law.high and law.min_speed <= abs(self.speed) < law.max_speed):
             return
+        source = at - now.seen.command_rate * law.lag
         hat = np.array([np.interp(at, self.angles, row) for row in np.eye(32)])
-        late = np.array([np.interp(at - now.seen.command_rate * law.lag, self.angles, row) for row in np.eye(32)])
+        late = np.array([np.interp(source, self.angles, row) for row in np.eye(32)]) * (law.low <= source <= law.high)
         even = 0.5 * (
             np.pad(self.tables, ((0, 0), (1, 1)), mode="edge")[:, :-2]
             + np.pad(self.tables, ((0, 0), (1, 1)), mode="edge")[:, 2:]
         )
         width = (law.high - law.low) / 31
-        moved = min(law.gain, abs(now.seen.command_rate) / width) * late * now.error - law.smoothing * hat * (
-            self.tables - even
-        )
+        rate = min(law.gain, abs(now.seen.command_rate) / width, 1.0 / now.period)
+        moved = rate * late * now.error - law.smoothing * hat * (self.tables - even)
         self.tables = np.clip(self.tables + now.period * self.shares[:, None] * moved, -law.limit, law.limit)
 
 
@@ -208,7 +208,7 @@ class TwistIdentification:
             self.next_rate = 0.0
         self.torsion, self.begun = torsion, True
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law, dt = self.law, now.period
         self.torsion_rate = self.next_rate
         if abs(self.speed) < law.min_speed:
@@ -245,9 +245,9 @@ class DisturbanceObserver:
         self.momentum = law.bandwidth * law.inertia * (now.seen.input_speed - now.speed)
         now.torque += float(np.clip(self.filtered - self.momentum, -law.limit, law.limit))
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law = self.law
-        torque = law.torque_constant * now.seen.current if law.torque_constant else given
+        torque = law.torque_constant * now.seen.current if law.torque_constant else motor_torque
         towards = torque - self.expected + self.momentum
         self.filtered = towards + float(np.exp(-law.bandwidth * now.period)) * (self.filtered - towards)
 
@@ -263,7 +263,7 @@ class FrictionScale:
         now.torque += (self.scale - 1.0) * now.friction
         now.friction *= self.scale
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law = self.law
         if abs(now.speed) >= law.min_speed:
             error = now.speed - now.seen.input_speed
@@ -296,7 +296,7 @@ class BristleObserver:
         now.torque += supplied - now.friction
         now.friction = supplied
 
-    def learn(self, now: Instant, given: float) -> None:
+    def learn(self, now: Instant, motor_torque: float) -> None:
         law = self.law
         error = now.speed - now.seen.input_speed
         error += law.position_gain * (now.ratio * now.seen.command + now.lead - now.seen.input_angle)
@@ -319,7 +319,7 @@ class Dither:
         now.torque += float(sense * self.law.amplitude * np.sin(2.0 * np.pi * self.turns))
         self.turns += abs(sense) * self.law.frequency * now.period
 
-    def learn(self, now: Instant, given: float) -> None: ...
+    def learn(self, now: Instant, motor_torque: float) -> None: ...
 
 
 @dataclass
@@ -337,7 +337,7 @@ class DryFriction:
         if moved != 0.0:
             self.sense = np.sign(moved) + (self.sense - np.sign(moved)) * np.exp(-abs(moved) / self.presliding)
 
-    def learn(self, now: Instant, given: float) -> None: ...
+    def learn(self, now: Instant, motor_torque: float) -> None: ...
 
 
 @dataclass

@@ -82,3 +82,12 @@ def test_its_phase_stays_within_a_turn() -> None:
     assert abs(run.end["control.compensation.dither.phase"]) <= 0.5
     turns = 3.7 * 20.0
     assert (run.end["control.compensation.dither.phase"] - turns + 0.5) % 1.0 - 0.5 == pytest.approx(0.0, abs=4e-3)
+
+
+def test_a_frequency_that_the_sampling_folds_is_refused() -> None:
+    """At half of the sample rate the sine is sampled at its zeros."""
+    law = sw.control.PositionSpeed()
+    swings = {each: sw.Compensation(dither=Dither(amplitude=0.01, frequency=each)) for each in (480.0, 500.0)}
+    assert sw.control.Sampled(law=law, period=1e-3, compensation=swings[480.0]).period == 1e-3
+    with pytest.raises(ValueError, match="frequency of the dither must be below half of the sample rate"):
+        sw.control.Sampled(law=law, period=1e-3, compensation=swings[500.0])

@@ -125,6 +125,14 @@ def test_no_value_exceeds_its_limit(limit: float, lag: float, gain: float, smoot
     assert max(np.abs(table).max() for table in tables(sw.simulate(one, passes(1), sample=0.01).end)) <= limit
 
 
+@pytest.mark.parametrize("end", [END, 5e-4])
+def test_no_pass_learns_more_than_the_whole_error(end: float) -> None:
+    """Nor do cells that pass within less than a period, as those of a table of 1 mrad."""
+    run = sw.simulate(drive(learner(gain=1e5, low=-end, high=end), hysteresis=LOOP), passes(0), sample=1e-3)
+    largest = np.abs(run["command"] - run["output_angle"]).max()
+    assert 0.1 * largest < max(np.abs(table).max() for table in tables(run.end)) <= 1.01 * largest
+
+
 def test_within_its_guard_it_does_not_diverge() -> None:
     """The cells pass at v / h = 31 Hz at most, where the loop of (s + 100)^2 lags by two times 45 degrees below 100 rad/s."""
     run = sw.simulate(drive(learner(gain=1e3, lag=0.0), hysteresis=LOOP), passes(60), sample=0.01)

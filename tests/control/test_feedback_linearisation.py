@@ -191,3 +191,27 @@ def test_a_gear_without_stiffness_asks_for_what_is_finite() -> None:
     run = sw.simulate(drive(control, TORQUE).replace(gear=gear), sw.scenario.constant(0.1, 0.5), sample=1e-3)
     assert np.isfinite(run["output_angle"]).all()
     assert np.abs(run["motor_torque"]).max() == 0.3
+
+
+@pytest.mark.parametrize("law", [sw.control.FeedbackLinearisation, sw.control.KinematicErrorTracking])
+def test_a_model_whose_ratio_is_rounded_has_that_of_the_drive(law: Any) -> None:
+    """A drive accepts a difference of 0.1 %. By its own ratio the law would be wrong in proportion to the angle."""
+    load, others = sw.loads.Inertia(inertia=0.5), {"motor_inertia": ROTOR, "limit": 1e6}
+    plain = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=1e5), damping=50.0)
+    model = plain.replace({"kinematics.reduction": 100.05})
+    run = sw.simulate(joint(law(gear=model, load=load, **others), load, plain), sw.scenario.ramp(2.0, 3.0), sample=1e-3)
+    assert abs(run["command"][-1] - run["output_angle"][-1]) < 1e-7
+
+
+@pytest.mark.parametrize("law", [sw.control.FeedbackLinearisation, sw.control.KinematicErrorTracking])
+def test_a_period_beyond_the_lags_of_the_command_is_refused(law: Any) -> None:
+    within = law(gear=GEAR, load=ARM, reference_time=0.005)
+    assert sw.control.Sampled(law=within, period=0.005).period == 0.005
+    with pytest.raises(ValueError, match="period must not exceed reference_time of the law"):
+        sw.control.Sampled(law=within, period=0.0051)
+
+
+def test_a_feedforward_of_another_ratio_than_that_of_the_law_is_refused() -> None:
+    other = sw.compensation.ModelFeedforward(gear=sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=50.0)))
+    with pytest.raises(ValueError, match="law and compensation contain models of different ratios"):
+        sw.control.Sampled(law=law_for(GEAR, ARM), compensation=sw.Compensation(feedforward=other))

@@ -68,14 +68,14 @@ def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, lim
     assert (np.abs(wanted["actuation"]).max() == limit) == (limit < 1.0)
 
 
-def test_the_rigid_gear_with_this_law_obeys_the_equation_of_the_lyapunov_function() -> None:
+def test_the_equations_of_the_page_have_the_lyapunov_function() -> None:
     """The law as the page states it, on the rigid gear of Lagrange: V = M s^2/2 falls by K s^2, in any motion."""
 
     def of(time: float, x: Array) -> tuple[float, float, float]:
         """Acceleration, V and K s^2."""
         angle, speed = x[:2]
-        error, slope, bend = error_and_derivatives(angle)
-        g, dg = 1.0 / RATIO - slope, -bend
+        error, slope, curvature = error_and_derivatives(angle)
+        g, dg = 1.0 / RATIO - slope, -curvature
         q, mass, dmass = angle / RATIO - error, ROTOR + INERTIA * g**2, 2.0 * INERTIA * g * dg
         w = np.pi
         r, dr, ddr = 0.3 * np.sin(w * time), 0.3 * w * np.cos(w * time), -0.3 * w**2 * np.sin(w * time)

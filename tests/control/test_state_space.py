@@ -77,7 +77,7 @@ def test_a_controller_of_discrete_time_is_exact() -> None:
 
 
 def test_tracking_ends_the_windup_of_an_integral() -> None:
-    """Held at its limit, the integral of a PI comes to where what is asked exceeds the limit by error times tracking time."""
+    """At its limit the integral of a PI stops where the unlimited output exceeds the limit by error / tracking."""
     gain, integral, limit, tracking = 0.5, 3.0, 0.4, 40.0
     plain = {"A": [0.0], "B": [1.0], "C": [integral], "D": [gain], "limit": limit}
     heavy = sw.motor.TorqueSource(inertia=1e12)

@@ -148,7 +148,7 @@ def test_other_methods_converge_to_the_same_motion(name: str, sampled: bool, met
     errors = [
         np.abs(sw.simulate(one, COMMAND, dt, sample=1e-3, method=method)["output_angle"] - fine).max() for dt in (1e-4, 5e-5)
     ]
-    assert errors[0] < 1e-3 * np.abs(fine).max()
+    assert errors[0] < (1e-3 if name in MODELS else 1e-4) * np.abs(fine).max()
     assert errors[1] < errors[0] / 3.0 + 1e-10
 
 

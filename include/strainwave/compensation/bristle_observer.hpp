@@ -54,15 +54,16 @@ struct BristleObserver {
         tau_fric is the friction that the feed-forward already requests. It is taken off, so no friction is supplied twice.
 
         k = 0 bends the bristles by the measured speed alone: friction is supplied after the input has moved. k = 1 bends them by
-        omega_r + lambda (theta_r - theta), so a shaft at rest receives more torque until it breaks away, at most the breakaway
-        torque. Bristles never leave their bounds. A set-valued law acts in the sense s of v, as
-        ds = (sgn(v) - s) |v| dt / presliding. F is evaluated at the measured speed. Its load is the rest of the torque that the
-        feed-forward requests.
+        omega_r + lambda (theta_r - theta). A shaft at rest then receives more torque until it breaks away, at most rho s^ times
+        the breakaway torque. Bristles never leave their bounds. A set-valued law acts in the sense s of v, as
+        ds = (sgn(v) - s) |v| dt / presliding. F is evaluated at the measured speed. Its load is the torque that
+        feed-forward and dither request without friction, thus with the inertial torque.
 
         The scale converges to the true one over rho. rho s_max is the largest share of the friction of the law that is
         supplied: keep it below the true scale if over-compensation must not occur. Over-compensated friction drives the shaft by
-        itself, because the compensation follows the measured motion. Where the loop gives k_c sigma with an inertia
-        J <= k_c / lambda, and F is exact, J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s/rho - s^)^2 / gamma never grows.
+        itself, because the compensation follows the measured motion. Let the loop give k_c sigma, with an inertia
+        J <= k_c / lambda, F exact and s/rho within [s_min, s_max]. Then J (sigma^2 + lambda^2 (theta_r - theta)^2) +
+        (s/rho - s^)^2 / gamma never grows.
         Below omega_min of the command the scale stands still.
 
         >>> import strainwave as sw
@@ -76,7 +77,7 @@ struct BristleObserver {
         visit(SW_FIELD(m, friction_share, "1", "Share rho of the friction that is supplied", 0, 1));
         visit(SW_FIELD(m, bristle_gain, "1", "Share k of the error that bends the bristles", 0, 10));
         visit(SW_FIELD(m, position_gain, "1/s", "Weight lambda of the error of the input angle", 0));
-        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error sigma; 0: constant scale", 0));
+        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error sigma; 0: constant scale", 0, 1e12));
         visit(SW_FIELD(m, min_scale, "1", "Least scale s_min, of the friction of the law", 0, 1));
         visit(SW_FIELD(m, max_scale, "1", "Largest scale s_max", 1, 10));
         visit(SW_FIELD(m, min_speed, "rad/s", "Slowest commanded input speed omega_min that determines the scale", 0));

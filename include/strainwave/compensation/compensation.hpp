@@ -40,11 +40,11 @@ struct Compensation {
         .. math:: \theta_r = i r + \theta_f + \theta_l, \qquad u_f = p\,(\tau_f + \tau_d + \tau_l + \tau_o) + q\,\dot\theta_r
 
         with r the commanded output angle, theta_f, theta_l the leads of the input by feed-forward and learner, tau_f, tau_d, tau_l,
-        tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The controller follows
-        theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
+        tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The
+        controller follows theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
 
-        p is 1 for a motor that takes a torque, 1 over the torque constant for a motor that takes a current and for a Cascade, and
-        the resistance over the torque constant for a motor that takes a voltage, with q the back-EMF constant.
+        p is 1 if the motor takes a torque, and 1 over the torque constant if it takes a current, and for a Cascade. For a motor that
+        takes a voltage p is resistance over torque constant, and q the back-EMF constant.
 
         >>> import strainwave as sw
         >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))
@@ -57,8 +57,8 @@ struct Compensation {
         visit(SW_PART(m, learning, "Learning of errors that repeat"));
         visit(SW_PART(m, observer, "Observer of what the model lacks"));
         visit(SW_PART(m, dither, "Torque that swings around zero"));
-        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
-        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed q: its back-EMF"));
+        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "Actuation of the motor per torque, p", smallest));
+        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "Actuation of the motor per input speed, q: its back-EMF"));
     }
 
     constexpr auto compile() const {

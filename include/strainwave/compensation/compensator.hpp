@@ -67,10 +67,4 @@ constexpr S slid_sense(const S& sense, const S& moved, const S& presliding) {
     return select(towards == S(0.0), sense, next);
 }
 
-template <class S>
-constexpr Angle<S> reduced(const S& angle) {
-    const S turns = rint(angle * S(0.5 / pi));
-    return {angle - S(2.0 * pi) * turns, turns};
-}
-
 }  // namespace strainwave::compensation

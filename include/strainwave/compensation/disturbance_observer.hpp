@@ -23,9 +23,10 @@ struct DisturbanceObserver {
         supplies the difference. The filter is exact for a torque that is constant over a period.
 
         tau is the actuation of the motor over actuation_per_torque. With a torque_constant it is that times the measured current,
-        as a Cascade needs, whose actuation is a voltage. tau_f does not contain the feed-forward of the law of control, so the
-        observer would supply it twice: set viscous_feedforward and coulomb_feedforward of the law to 0, and compensate friction
-        by the model. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
+        as a Cascade needs, whose actuation is a voltage. tau_f does not contain the torque that the law of control computes from
+        its command or model. The observer would supply that torque twice. Set viscous_feedforward and coulomb_feedforward of the
+        law to 0, and compensate friction by the model. Do not use the observer with FeedbackLinearisation or
+        KinematicErrorTracking. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
         vibration of the load, J_r is the inertia of the input. A bandwidth near that vibration excites it.
 
         >>> from strainwave.compensation import DisturbanceObserver

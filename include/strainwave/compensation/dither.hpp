@@ -12,7 +12,7 @@ struct Dither {
     static constexpr auto source =
         "ArmstrongHelouvry1994; mean of Coulomb friction, by the dual-input describing function: GelbVanderVelde1968";
     static constexpr auto doc = R"(
-        Torque that swings around zero, so that the input never rests: the mean of its friction becomes smooth over the speed.
+        Torque that swings around zero. The input does not rest, so its mean friction becomes smooth over the speed.
 
         .. math:: \tau_d = A \sin(2 \pi \varphi)\, \operatorname{sgn}(\dot r), \qquad \dot\varphi = f \;\text{ where } \dot r \ne 0
 
@@ -21,7 +21,10 @@ struct Dither {
         mean friction is (2 / pi) F_c asin(v / a) if v < a: about that of a viscous friction, in place of a jump. Choose A so
         that a exceeds the speeds at which the drive sticks.
 
-        Keep f above the bandwidth of the speed loop, away from the vibrations of the drive, and below half of the sample rate.
+        If A is at most 4 F_c / pi the input rests during a part of each period, and the formula does not hold.
+
+        Keep f above the bandwidth of the speed loop and away from the vibrations of the drive. It must be below half of the sample
+        rate.
         Dither heats the motor, wears the gear, and can be heard. It swings the input; the output follows with the share that gear
         and load let through.
 
@@ -34,6 +37,9 @@ struct Dither {
         visit(SW_FIELD(m, amplitude, "N.m", "Amplitude A, of the motor", 0));
         visit(SW_FIELD(m, frequency, "Hz", "Frequency f", smallest));
     }
+
+    static constexpr double share_of_sample_rate = 0.49;  ///< that the frequency may reach
+    constexpr S max_period() const { return S(share_of_sample_rate) / frequency; }
 
     struct State {
         S phase{0.0};

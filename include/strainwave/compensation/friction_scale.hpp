@@ -33,7 +33,7 @@ struct FrictionScale {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error sigma", 0));
+        visit(SW_FIELD(m, gain, "1/(N.m.rad)", "Rate gamma of the scale per friction and error sigma", 0, 1e12));
         visit(SW_FIELD(m, position_gain, "1/s", "Weight lambda of the error of the input angle", 0));
         visit(SW_FIELD(m, min_scale, "1", "Least scale s_min, of the friction of the model", 0, 1));
         visit(SW_FIELD(m, max_scale, "1", "Largest scale s_max", 1, 10));

@@ -60,9 +60,7 @@ struct LostMotionMap {
     };
 
     constexpr RequestAndState<S, State> step(const State& x, const control::Command<S>& command, const S& period) const {
-        const S moved = x.begun * (command.value - x.angle), towards = sign(moved);
-        const S kept = exp(-min(abs(moved) / reach, S(beyond_digits)));
-        const S sense = select(towards == S(0.0), x.sense, towards + (x.sense - towards) * kept);
+        const S sense = slid_sense(x.sense, x.begun * (command.value - x.angle), reach);
         const S mean = S(0.5) * (on(forward, command.value) + on(backward, command.value));
         const S half = S(0.5) * (on(forward, command.value) - on(backward, command.value));
         const S lead = mean + sense * half, rate = x.begun * (lead - x.lead) / period;

@@ -82,7 +82,7 @@ struct ModelFeedforward {
     }
 
     constexpr Contradiction<S> problem() const {
-        if (const auto found = drive_model::problem_of_load<S>(load); found.text) return found;
+        if (const auto contradiction = drive_model::problem_of_load<S>(load); contradiction.text) return contradiction;
         const S contraction = drive_model::contraction<S>(gear);
         if (rounds == 0 || all(contraction < S(1.0))) return {};
         return {
@@ -133,24 +133,24 @@ struct ModelFeedforward {
         const S carried = inertia_of<S>(load) * acceleration + load_torque<S>(load, command.value, command.rate, S(0.0)) +
                           output_sense * braking<S>(load, S(0.0)).slip;
         const S inverse = S(1.0) / command.ratio;
-        const Contact output{command.rate, output_sense, drive_model::reduced(command.value), carried, temperature};
+        const Contact output{command.rate, output_sense, reduced(command.value), carried, temperature};
         const S at_output = slid(gear.friction_output, x.gear.friction_output, output, period, next.gear.friction_output);
         const S transmitted = carried + at_output;
 
         next.twist = inverse_twist(gear, x.gear.hysteresis, x.twist, transmitted, temperature);
         next.gear.hysteresis = gear.hysteresis.advance(x.gear.hysteresis, next.twist - x.twist);
         const S twist_rate = changed(next.twist, x.twist);
-        const auto found = engaged(command, next.twist, transmitted);
-        const S lead = command.ratio * (found.value + next.twist);
+        const auto error = engaged(command, next.twist, transmitted);
+        const S lead = command.ratio * (error.value + next.twist);
         // input speed = ratio (rate + twist rate + slope * input speed)
-        const S follows = max(S(1.0) - command.ratio * found.slope, S(least_follow));
+        const S follows = max(S(1.0) - command.ratio * error.slope, S(least_follow));
         const S speed = command.ratio * (command.rate + twist_rate) / follows;
         const S lead_rate = speed - command.ratio * command.rate;
         const S input_acceleration = command.ratio * acceleration + changed(lead_rate, x.lead_rate);
 
-        const S per_input = inverse - found.slope;
-        const Angle<S> angle = drive_model::reduced(command.ratio * command.value + lead);
-        const Contact mesh{speed * per_input, output_sense, drive_model::reduced(command.value), transmitted, temperature};
+        const S per_input = inverse - error.slope;
+        const Angle<S> angle = reduced(command.ratio * command.value + lead);
+        const Contact mesh{speed * per_input, output_sense, reduced(command.value), transmitted, temperature};
         const S at_mesh = slid(gear.friction_mesh, x.gear.friction_mesh, mesh, period, next.gear.friction_mesh);
         const Contact input{speed, x.sense, angle, per_input * transmitted, temperature};
         const S at_input = slid(gear.friction_input, x.gear.friction_input, input, period, next.gear.friction_input);
@@ -178,12 +178,12 @@ private:
     /// The kinematic error at the input angle that the command needs.
     constexpr kinematic_error::Error<S> engaged(const control::Command<S>& command, const S& twist, const S& torque) const {
         const S relief = kinematic_error::relief(gear.kinematic_error, torque).factor;
-        kinematic_error::Error<S> found{};
+        kinematic_error::Error<S> error{};
         for (int i = 0; i < rounds; ++i) {
-            const auto full = gear.kinematic_error.at(drive_model::reduced(command.ratio * (command.value + twist + found.value)));
-            found = {relief * full.value, relief * full.slope};
+            const auto full = gear.kinematic_error.at(reduced(command.ratio * (command.value + twist + error.value)));
+            error = {relief * full.value, relief * full.slope};
         }
-        return found;
+        return error;
     }
 };
 

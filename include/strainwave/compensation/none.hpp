@@ -50,7 +50,7 @@ struct NoObserver {
     static constexpr auto name = "no_observer";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        No observer: what disturbs the drive is not estimated.
+        No observer: disturbances are not estimated.
 
         .. math:: \hat d = 0
 
@@ -72,7 +72,7 @@ struct NoLearning {
     static constexpr auto name = "no_learning";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        No learning: what repeats with the angle is not corrected.
+        No learning: errors that repeat with the angle are not corrected.
 
         .. math:: \hat e = 0
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/compensation/compensator.hpp>
+#include <strainwave/compensation/wave.hpp>
 
 namespace strainwave::compensation {
 
@@ -58,7 +59,7 @@ struct Repetitive {
         S value(0.0), slope(0.0);
         for (int j = 0; j < cells; ++j) {
             const S apart = distance(place, j);
-            value = value + weight(apart) * x.value[j];
+            value = value + hat(apart) * x.value[j];
             slope = slope - select(abs(apart) < S(1.0), sign(apart), S(0.0)) * x.value[j];
         }
         const S ratio = inputs.command.ratio, per_angle = S(cells / (2.0 * pi));
@@ -72,8 +73,7 @@ struct Repetitive {
         State next = x;
         for (int j = 0; j < cells; ++j) {
             const S even = S(0.5) * (x.value[(j + cells - 1) % cells] + x.value[(j + 1) % cells]);
-            const S moved =
-                gain * step * weight(distance(late, j)) * error - taken * weight(distance(place, j)) * (x.value[j] - even);
+            const S moved = gain * step * hat(distance(late, j)) * error - taken * hat(distance(place, j)) * (x.value[j] - even);
             next.value[j] = clip(x.value[j] + moved, -limit, limit);
         }
         return next;
@@ -90,7 +90,6 @@ private:
         const S apart = place - S(j);
         return apart - S(cells) * rint(apart * S(1.0 / cells));
     }
-    static constexpr S weight(const S& apart) { return max(S(1.0) - abs(apart), S(0.0)); }
 };
 
 }  // namespace strainwave::compensation

@@ -6,7 +6,7 @@ namespace strainwave::compensation {
 
 /// One quantity for each number of a TwistIdentification.
 template <class S>
-struct TwistNumbers {
+struct TwistParameters {
     static constexpr int orders = 4;
     static constexpr int capacity = 2 + 2 * orders;
 
@@ -35,9 +35,9 @@ private:
 
 template <class S>
 struct TwistIdentification {
-    using Numbers = TwistNumbers<S>;
+    using Parameters = TwistParameters<S>;
 
-    Sequence<S, Numbers::orders> order{};
+    Sequence<S, Parameters::orders> order{};
     S compliance_prior{0.3};
     S amplitude_prior{3e-4};
     S offset_prior{1e-3};
@@ -74,7 +74,8 @@ struct TwistIdentification {
         The inverse of the excitation is the time in which the motion determines the number as well as its prior does. Otherwise
         the number and its standard deviation are kept, and the gain of the others accounts for its uncertainty. A constant torque does
         not determine the compliance. At an input speed below ``min_speed`` nothing changes. No number exceeds ``limit`` standard
-        deviations of its prior. Its own lead moves theta and i theta_out alike, so it does not see itself.
+        deviations of its prior. Keep |i| n times the largest amplitude below 1: beyond that the input has several angles for one
+        command. Its own lead changes theta and i theta_out alike, so it does not change z.
 
         The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the size of what
         the estimates leave. The deviations are right while the model errs by ``noise``, for no longer than ``noise_time`` in
@@ -101,8 +102,8 @@ struct TwistIdentification {
     }
 
     struct State {
-        Numbers value{}, deviation{}, excitation{}, mean{};
-        Array<S, Numbers::capacity*(Numbers::capacity - 1) / 2> correlation{};
+        Parameters value{}, deviation{}, excitation{}, mean{};
+        Array<S, Parameters::capacity*(Parameters::capacity - 1) / 2> correlation{};
         S residual{0.0};
         S time{0.0};
         S torsion{0.0};
@@ -156,9 +157,9 @@ struct TwistIdentification {
 
 private:
     static constexpr double least_variance = 1e-30;  ///< of a number: it keeps correlations finite
-    using Vector = Array<S, Numbers::capacity>;
+    using Vector = Array<S, Parameters::capacity>;
     struct Covariance {
-        S item[Numbers::capacity][Numbers::capacity];
+        S item[Parameters::capacity][Parameters::capacity];
     };
 
     /// Of the noise, whose variance over a time t is density / t [rad2.s].
@@ -216,7 +217,7 @@ private:
         for (int i = 0; i < count(); ++i)
             for (int j = 0; j <= i; ++j) p.item[i][j] = p.item[i][j] - left[i] * gain[j] + variance * gain[i] * gain[j];
         keep(x, p, moves);
-        const S share = moves * period / max(x.time, S(smallest)), before = x.residual * x.residual;
+        const S share = min(moves * period / max(x.time, S(smallest)), S(1.0)), before = x.residual * x.residual;
         const S after = sqrt(max(before + share * (innovation * innovation - before), S(least_variance)));
         x.residual = select(moves > S(0.0), after, x.residual);
     }
@@ -226,9 +227,9 @@ private:
             x.deviation[i] = sqrt(max(p.item[i][i], S(least_variance)));
             inverse[i] = S(1.0) / x.deviation[i];
             for (int j = 0; j < i; ++j) {
-                const S found = clip(p.item[i][j] * inverse[i] * inverse[j], S(-1.0), S(1.0));
+                const S coefficient = clip(p.item[i][j] * inverse[i] * inverse[j], S(-1.0), S(1.0));
                 S& correlation = x.correlation[place(i, j)];
-                correlation = select(moves > S(0.0), found, correlation);
+                correlation = select(moves > S(0.0), coefficient, correlation);
             }
         }
     }

@@ -11,4 +11,10 @@ constexpr SinCos<S> wave(const S& order, const S& angle, const S& phase) {
     return sincos(within - phase + S(2.0 * pi) * (turned - rint(turned)));
 }
 
+/// Hat function: 1 at 0, falling to 0 at a distance of 1.
+template <class S>
+constexpr S hat(const S& apart) {
+    return max(S(1.0) - abs(apart), S(0.0));
+}
+
 }  // namespace strainwave::compensation

@@ -37,11 +37,11 @@ struct FeedbackLinearisation {
         with r the commanded output angle, theta, omega the measured input angle and speed, q the measured output angle, i the signed
         ratio, e the kinematic error, T the stiffness of ``gear``, J the inertia of ``load``, J_in = motor_inertia + gear.input_inertia,
         w = bandwidth, p = actuation_per_torque, b = actuation_per_speed (see ``Compensation``), u_f the feed-forward of a compensation,
-        u_max = limit. Where the model is exact and the limit is not reached, the output has four poles at -w: its error obeys
-        (d/dt + w)^4 (r - q) = r^(4) + what the lags below miss of the derivatives of r.
+        u_max = limit. If the model is exact and the limit is not reached, the output has four poles at -w. Its error obeys
+        (d/dt + w)^4 (r - q) = r^(4) plus the error of the derivatives of r by the lags.
 
         It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-        lags of the time reference_time, which must exceed the period of a sampled controller. Derivatives of load and stiffness over
+        lags of the time reference_time, which must be at least the period of a sampled controller. Derivatives of load and stiffness over
         the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
 
         A stiffness of the model of k times the real one moves the poles to those of
@@ -50,13 +50,14 @@ struct FeedbackLinearisation {
                   \Omega^2 = \frac{T'}{J} \Big(1 + \frac{J}{i^2 J_{in}}\Big)
 
         Omega is the vibration of the joint with both ends free. With k above 1 the joint is stable only if w^2 exceeds
-        (k - 1) Omega^2 / (5 - 1/k): where the stiffness is uncertain, take a smaller one.
+        (k - 1) Omega^2 / (5 - 1/k). If the stiffness is uncertain, use a smaller one.
 
-        Friction, damping and hysteresis of the gear are left out: give the friction to a compensation. It has no integral: a
-        load torque d that the model lacks leaves the error (6/w^2 - T'/(J w^4)) d/J, since its twist counts as acceleration.
-        It ignores the input leads of a compensation, because gear and load are in it; a ModelFeedforward beside it must have the
-        friction alone. Needs a stiffness that is nowhere zero, and sensors
-        and a period that are fast against w. A large w amplifies noise by w^4.
+        The law leaves out friction, damping and hysteresis of the gear, the relief of its kinematic error by load, and a brake of the
+        load. Compensate the friction by a compensation. The law has no integral. A load torque d that the model lacks leaves the
+        error (6/w^2 - T'/(J w^4)) d/J: its twist counts as acceleration. The law ignores the input leads of a compensation, because
+        it contains gear and load. A ModelFeedforward for it must have the friction alone. If actuation_per_speed of the
+        ``Compensation`` is not 0, set that of the law to 0: both add the back-EMF. The stiffness must be nowhere zero. Sensors and
+        period must be fast against w. A large w amplifies noise by w^4.
 
         >>> import strainwave as sw
         >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9))
@@ -65,18 +66,19 @@ struct FeedbackLinearisation {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, gear, "What is known of the gear"));
-        visit(SW_PART(m, load, "What the output carries"));
+        visit(SW_PART(m, gear, "Model of the gear"));
+        visit(SW_PART(m, load, "Model of the load"));
         visit(SW_FIELD(m, motor_inertia, "kg.m2", "Inertia of the motor's rotor", 0));
-        visit(SW_FIELD(m, bandwidth, "rad/s", "Magnitude w of the four poles of the output", smallest));
+        visit(SW_FIELD(m, bandwidth, "rad/s", "Magnitude w of the four poles of the output", 1e-3, 1e5));
         visit(SW_FIELD(m, reference_time, "s", "Time of the lags that the derivatives of the command come from", smallest));
-        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
-        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed b: its back-EMF"));
+        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "Actuation of the motor per torque, p", smallest));
+        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "Actuation of the motor per input speed, b: its back-EMF"));
         visit(SW_FIELD(m, limit, "1", "Largest actuation, of either sign", smallest));
     }
 
     constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
     constexpr S model_ratio() const { return gear.kinematics.ratio(); }
+    constexpr S max_period() const { return reference_time; }
 
     constexpr auto compile() const {
         return FeedbackLinearisation<S, decltype(gear.compile()), decltype(compiled(load))>{
@@ -87,24 +89,24 @@ struct FeedbackLinearisation {
     using State = ReferenceLags<S>;
 
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        const Motion at = motion(measured);
+        const Motion at = motion(command, measured);
         const S torque = motor_torque(at, measured.input_speed, snap(x, command, measured, at));
-        const S asked = actuation_per_torque * torque + actuation_per_speed * measured.input_speed + command.feedforward;
-        return measured.limits.within(limit).limited(asked);
+        const S unlimited = actuation_per_torque * torque + actuation_per_speed * measured.input_speed + command.feedforward;
+        return measured.limits.within(limit).limited(unlimited);
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
         return ReferenceMotion<S>(x, command, reference_time).rate();
     }
-    /// As of an integral: forward differences of a ramp leave no error, which the step that is exact for a constant does.
+    /// 0, as of an integral: forward differences follow a ramp without error, the exact step of a lag does not.
     constexpr State relaxation_rate() const { return {}; }
-    /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
+    /// Rate of the lag over 2.5: a Runge-Kutta step of fourth order is stable up to 2.78 of its time.
     constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 
 private:
     static constexpr double share_of_difference = 0.01;  ///< of 1 / bandwidth, over which derivatives are differences
     static constexpr double least_stiffness = 1e-3;      ///< of inertia times bandwidth squared: what the law divides by at least
 
-    /// What the model determines from the measurements.
+    /// Quantities that the model determines from the measurements.
     struct Motion {
         S per_input;          ///< twist per input angle g
         S per_input_rate;     ///< 1/s
@@ -117,13 +119,13 @@ private:
         S load_acceleration;  ///< second derivative of the load torque over time, N.m/s2
     };
 
-    constexpr Motion motion(const Measurement<S>& measured) const {
-        const S inverse = gear.kinematics.inverse_ratio(), inertia = inertia_of<S>(load), step = S(share_of_difference) / bandwidth;
-        const auto error = drive_model::bent_error<S>(gear, measured.input_angle);
+    constexpr Motion motion(const Command<S>& command, const Measurement<S>& measured) const {
+        const S inverse = S(1.0) / command.ratio, inertia = inertia_of<S>(load), step = S(share_of_difference) / bandwidth;
+        const auto error = drive_model::error_with_curvature<S>(gear, measured.input_angle);
         const S per_step = S(0.5) / step;
         Motion at{};
         at.per_input = inverse - error.slope;
-        at.per_input_rate = -error.bend * measured.input_speed;
+        at.per_input_rate = -error.curvature * measured.input_speed;
         const S twist = inverse * measured.input_angle - measured.output_angle - error.value;
         at.twist_rate = at.per_input * measured.input_speed - measured.output_speed;
         const S twisted = step * at.twist_rate;

@@ -39,12 +39,13 @@ struct KinematicErrorTracking {
         The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
         M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
-        exact. Then s falls with the rate K / M, and the error r - q with lambda. A torque d that the model lacks leaves |s| at |d| / K and the error at g |d| / (K lambda). A slope
-        e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
-        the command comes from a lag of the time reference_time, which must exceed the period of a sampled controller.
+        exact. Then s falls at the rate K / M, and the error r - q at lambda. A torque d that the model lacks leaves |s| up to |d| / K, and
+        an error up to g |d| / (K lambda). A slope e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
+        the command comes from a lag of the time reference_time, which must be at least the period of a sampled controller.
 
-        The torsion of the gear is left out: K / M must be well below the vibration of load and gear. Friction is left out: give it to a
-        compensation, whose input leads the law ignores. It has no integral.
+        The law leaves out torsion: K / M must be well below the vibration of load and gear. It leaves out friction: compensate it by a
+        compensation, whose input leads the law ignores. It has no integral. If actuation_per_speed of the ``Compensation`` is not 0,
+        set that of the law to 0: both add the back-EMF.
 
         >>> import strainwave as sw
         >>> error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[3e-4], phase=[0.0])
@@ -54,20 +55,21 @@ struct KinematicErrorTracking {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, gear, "What is known of the gear"));
-        visit(SW_PART(m, load, "What the output carries"));
+        visit(SW_PART(m, gear, "Model of the gear"));
+        visit(SW_PART(m, load, "Model of the load"));
         visit(SW_FIELD(m, motor_inertia, "kg.m2", "Inertia of the motor's rotor", 0));
         visit(SW_FIELD(m, bandwidth, "1/s", "Rate lambda at which the error of the output falls", smallest));
         visit(SW_FIELD(m, speed_gain, "N.m.s/rad", "Torque K per error s of the input speed", 0));
         visit(SW_FIELD(m, reference_time, "s", "Time of the lag that the acceleration of the command comes from", smallest));
-        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "What the motor takes, per torque p", smallest));
-        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "What the motor takes, per input speed b: its back-EMF"));
+        visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "Actuation of the motor per torque, p", smallest));
+        visit(SW_FIELD(m, actuation_per_speed, "s/rad", "Actuation of the motor per input speed, b: its back-EMF"));
         visit(SW_FIELD(m, limit, "1", "Largest actuation, of either sign", smallest));
         visit(SW_FIELD(m, feedback, "1", "The shaft whose encoder gives the output angle"));
     }
 
     constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
     constexpr S model_ratio() const { return gear.kinematics.ratio(); }
+    constexpr S max_period() const { return reference_time; }
 
     constexpr auto compile() const {
         return KinematicErrorTracking<S, decltype(gear.compile()), decltype(compiled(load))>{
@@ -78,31 +80,31 @@ struct KinematicErrorTracking {
     using State = ReferenceLags<S>;
 
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        const S asked = actuation_per_torque * motor_torque(x, command, measured) + actuation_per_speed * measured.input_speed +
-                        command.feedforward;
-        return measured.limits.within(limit).limited(asked);
+        const S unlimited = actuation_per_torque * motor_torque(x, command, measured) + actuation_per_speed * measured.input_speed +
+                            command.feedforward;
+        return measured.limits.within(limit).limited(unlimited);
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
         return ReferenceMotion<S>(x, command, reference_time).rate();
     }
-    /// As of an integral: forward differences of a ramp leave no error, which the step that is exact for a constant does.
+    /// 0, as of an integral: forward differences follow a ramp without error, the exact step of a lag does not.
     constexpr State relaxation_rate() const { return {}; }
-    /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
+    /// Rate of the lag over 2.5: a Runge-Kutta step of fourth order is stable up to 2.78 of its time.
     constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 
 private:
     constexpr S motor_torque(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        const auto error = drive_model::bent_error<S>(gear, measured.input_angle);
-        const S inverse = gear.kinematics.inverse_ratio(), per_input = inverse - error.slope;
+        const auto error = drive_model::error_with_curvature<S>(gear, measured.input_angle);
+        const S inverse = S(1.0) / command.ratio, per_input = inverse - error.slope;
         const S speed = measured.input_speed, output_speed = per_input * speed, inertia = inertia_of<S>(load);
         const S output = feedback == Feedback::output ? measured.output_angle : inverse * measured.input_angle - error.value;
         const S wanted = (command.rate + bandwidth * (command.value - output)) / per_input;
         const ReferenceMotion<S> reference(x, command, reference_time);
         // d/dt of wanted * per_input = reference speed; per_input changes by -e'' per input angle
         const S towards = reference.acceleration + bandwidth * (command.rate - output_speed);
-        const S wanted_rate = (towards + wanted * error.bend * speed) / per_input;
+        const S wanted_rate = (towards + wanted * error.curvature * speed) / per_input;
         const S mass = motor_inertia + gear.input_inertia + inertia * per_input * per_input;
-        const S half_slope = -inertia * per_input * error.bend;
+        const S half_slope = -inertia * per_input * error.curvature;
         const S carried = load_torque<S>(load, output, output_speed, S(0.0));
         return mass * wanted_rate + half_slope * speed * wanted + per_input * carried - speed_gain * (speed - wanted);
     }

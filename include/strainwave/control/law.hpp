@@ -118,6 +118,8 @@ constexpr bool follows_angle(const Law& law) {
         return false;
 }
 
+inline constexpr double max_ratio_error = 1e-3;  ///< relative, of the ratio of a model of the gear
+
 /// Ratio of the gear of which a law or a compensator has a model; 0 if it has none.
 template <class S, class Law>
 constexpr S model_ratio(const Law& law) {
@@ -125,6 +127,15 @@ constexpr S model_ratio(const Law& law) {
         return law.model_ratio();
     else
         return S(0.0);
+}
+
+/// Longest sample period [s] of a law or a compensator; unbounded if it has none.
+template <class S, class Law>
+constexpr S max_period(const Law& law) {
+    if constexpr (requires { law.max_period(); })
+        return law.max_period();
+    else
+        return S(unbounded);
 }
 
 /// Whether a law acts at once by the current it measures: then the current must not follow the actuation at once.

@@ -49,10 +49,17 @@ struct Sampled {
 
     constexpr const char* problem() const {
         if (!all(delay <= period)) return "delay must not exceed period";
+        if (!all(period <= control::max_period<S>(law)))
+            return "period must not exceed reference_time of the law: the lags of its command would grow";
+        if (!all(period <= control::max_period<S>(compensation.dither)))
+            return "frequency of the dither must be below half of the sample rate";
+        const S of_law = control::model_ratio<S>(law), of_model = compensation.model_ratio();
+        if (!all(of_law == S(0.0)) && !all(of_model == S(0.0)) && !all(abs(of_law - of_model) <= S(max_ratio_error) * abs(of_law)))
+            return "law and compensation contain models of different ratios: give both the kinematics of the drive";
         return !compensation.active() || follows_angle(law)
                    ? nullptr
                    : "compensation is that of a motion: law must follow an angle, as PositionSpeed, Cascade, PID, LeadLag, "
-                     "StateSpace and StateFeedback do";
+                     "StateSpace, StateFeedback, FeedbackLinearisation and KinematicErrorTracking do";
     }
 
     /// That of the law; that of the compensation if the law has no model.

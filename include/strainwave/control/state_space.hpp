@@ -34,10 +34,10 @@ struct StateSpace {
         state. The states begin at 0. An angle error counts from the input lead of the compensation, as in StateFeedback.
 
         In ``control.Sampled`` the states go forward by Euler, x + T (A x + B y). A controller of discrete time, x + = A_d x + B_d y, has
-        thus A = (A_d - 1)/T, B = B_d/T and the same C and D, and is then exact.
+        A = (A_d - 1)/T and B = B_d/T, and the same C and D. It is then exact.
 
         Where the output is limited, ``tracking`` leads the states. An observer that contains C takes the actuation limited with l =
-        the input matrix of its model. A PI controller takes l = 1/t, t its tracking time. Without tracking an integral winds up.
+        the input matrix of its model. A PI controller takes l = 1/(C t), with t its tracking time. Without tracking an integral winds up.
 
         u is a voltage, and the units of a motor that takes one. For a motor that takes a current or a torque read A or N.m in place of V.
 
@@ -83,11 +83,11 @@ struct StateSpace {
         return D.count > current && (sought(D[current]) || any(!(D[current] == S(0.0))));
     }
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        return measured.limits.within(limit).limited(asked(x, inputs(command, measured), command));
+        return measured.limits.within(limit).limited(unlimited(x, inputs(command, measured), command));
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const auto y = inputs(command, measured);
-        const S wanted = asked(x, y, command), beyond = measured.limits.within(limit).limited(wanted) - wanted;
+        const S wanted = unlimited(x, y, command), beyond = measured.limits.within(limit).limited(wanted) - wanted;
         State rate{};
         for (int i = 0; i < C.count; ++i) {
             S sum = tracking.count > 0 ? tracking[i] * beyond : S(0.0);
@@ -98,7 +98,7 @@ struct StateSpace {
         return rate;
     }
     constexpr State relaxation_rate() const { return {}; }
-    /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
+    /// Rate of the fastest state over 2.5: a Runge-Kutta step of fourth order is stable up to 2.78 of its time.
     constexpr S fastest() const { return S(1.0 / 2.5) * spectral_radius(); }
 
 private:
@@ -107,7 +107,7 @@ private:
                  command.value - measured.output_angle, command.rate - measured.output_speed, measured.current, measured.torque,
                  command.value, command.rate}};
     }
-    constexpr S asked(const State& x, const Array<S, max_inputs>& y, const Command<S>& command) const {
+    constexpr S unlimited(const State& x, const Array<S, max_inputs>& y, const Command<S>& command) const {
         S sum = command.feedforward;
         for (int k = 0; k < C.count; ++k) sum = sum + C[k] * x.value[k];
         for (int k = 0; k < D.count; ++k) sum = sum + D[k] * y[k];
