@@ -47,12 +47,19 @@ def made(model: Any, **changed: Any) -> Any:
 
 def suited(part: Any, kinematics: Any) -> Any:
     """A part of a gear as the gear takes it: with its ratio and its teeth, where the part or what it holds asks for them."""
-    for name in ("law", "springs"):
-        if hasattr(part, name):
-            part = part.replace(**{name: suited(getattr(part, name), kinematics)})
+    if inner := {name: suited(getattr(part, name), kinematics) for name in HOLDING if hasattr(part, name)}:
+        part = part.replace(**inner)
+    if hasattr(part, "gear"):  # a controller with a model
+        part = part.replace(gear=modelled(part.gear, kinematics))
     if type(part) is sw.stiffness.MultiCompliance:
         return part.replace(reduction=max(1.0, abs(kinematics.ratio)))
     return with_teeth_of(kinematics, part) if type(part) is sw.kinematic_error.ToothErrors else part
+
+
+def modelled(gear: sw.Gear, kinematics: Any) -> sw.Gear:
+    """The gear of a model with these kinematics; without its error, whose slope may be too steep for them."""
+    parts = {name: suited(getattr(gear, name), kinematics) for name in SUITED}
+    return gear.replace(kinematics=kinematics, **(parts | {"kinematic_error": sw.kinematic_error.Fourier()}))
 
 
 def with_teeth_of(kinematics: Any, error: Any) -> Any:
@@ -62,6 +69,7 @@ def with_teeth_of(kinematics: Any, error: Any) -> Any:
     return error.replace(**{field["name"]: getattr(kinematics, field["name"]) for field in kinematics.fields})
 
 
+HOLDING = ("law", "springs", "compensation", "feedforward")  # parts within a part
 SUITED = ("kinematic_error", "stiffness", "hysteresis")  # parts of a gear that may be told what its kinematics are
 
 
@@ -133,6 +141,8 @@ def drawn(draw: st.DrawFn, model: Any) -> Any:
             members |= {name: suited(members[name], members["kinematics"]) for name in SUITED}
         try:
             with warnings.catch_warnings(action="ignore", category=_core.PassivityWarning):
+                if model is sw.Drive:
+                    members["control"] = suited(members["control"], members["gear"].kinematics)
                 return model(**members)
         except ValueError:
             continue

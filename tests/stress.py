@@ -89,6 +89,8 @@ def model(kind: Any, random: np.random.Generator) -> Any:
         if "kinematics" in members:
             members |= {name: suited(members[name], members["kinematics"]) for name in SUITED}
         try:
+            if kind is sw.Drive:
+                members["control"] = suited(members["control"], members["gear"].kinematics)
             return kind(**members)
         except ValueError:
             continue

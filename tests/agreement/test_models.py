@@ -126,9 +126,9 @@ def test_a_gear_with_any_law_runs_one_trajectory_in_every_scalar(part: str, mode
 def test_a_drive_with_any_other_part_runs_one_trajectory_in_every_scalar(
     part: str, model: Any, data: st.DataObject, seed: int
 ) -> None:
-    law = data.draw(built(model))
-    assume(getattr(law, "inertia", 1.0) > 1e-3 or part != "load")
     base = CONTROLLED if part in ("control", "sensors") else DRIVE
+    law = suited(data.draw(built(model)), base.gear.kinematics)
+    assume(getattr(law, "inertia", 1.0) > 1e-3 or part != "load")
     agree(base.replace(**{part: sw.Sensors(output_angle=law, input_speed=law) if part == "sensors" else law}), seed)
 
 

@@ -11,8 +11,8 @@ from hypothesis import given, reject
 from hypothesis import strategies as st
 from strainwave import _core
 
-from tests.control.discrete import ARM, CURRENT, DC, TORQUE, drive
-from tests.strategies import built, models, usual
+from tests.control.discrete import ARM, CURRENT, DC, RATIO, TORQUE, drive
+from tests.strategies import built, models, suited, usual
 
 LOOPS = {"position_gain": 25.0, "speed_proportional": 0.1, "speed_integral": 2.0, "speed_feedforward": 0.9}
 # Gains that suit the drive of these tests; another law has those that it has by default.
@@ -87,6 +87,7 @@ def test_the_opposite_command_gives_the_opposite_motion(name: str, sampled: bool
 @given(models("control"), st.sampled_from([-1.0, 1.0]), st.floats(1e-3, 1e3))
 def test_whatever_is_asked_no_more_than_its_limit_is_given(law: Any, sense: float, size: float) -> None:
     """Of any numbers, at once and after a while."""
+    law = suited(law, sw.kinematics.PlainRatio(reduction=RATIO))
     plain = getattr(law, "law", law)
     limit = getattr(plain, "voltage_limit", getattr(plain, "limit", None))
     try:

@@ -88,7 +88,8 @@ def test_the_ten_drives_have_every_model_between_them() -> None:
     models = [
         each for family in families for each in vars(family).values() if isinstance(each, type) and hasattr(each, "fields")
     ]
-    aside = {"ideal", "grid_density", "prandtl_ishlinskii"}  # what a sensor is untold, another density, and an inverse
+    # What a sensor is untold, another density, an inverse, and laws that contain a second gear: docs/control.md has these.
+    aside = {"ideal", "grid_density", "prandtl_ishlinskii", "feedback_linearisation", "kinematic_error_tracking"}
     wanted = {model.name for model in models} - aside
     assert sorted(wanted - used) == []
     drives = [sw.GearSet.read(path).drive for path in DRIVES]

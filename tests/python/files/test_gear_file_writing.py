@@ -16,7 +16,7 @@ from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, load, save
 
 from tests.samples import sample
-from tests.strategies import drives, gears, models
+from tests.strategies import drives, gears, models, suited
 
 # Examples may share one folder; the first of them pays for the imports.
 untimed = settings(
@@ -44,6 +44,7 @@ def gear_sets(draw: st.DrawFn) -> GearSet:
     families = {"motor": "motor", "control": "control", "load": "loads"}
     chosen = {part: draw(st.none() | models(family)) for part, family in families.items()}
     gear = draw(gears)
+    chosen["control"] = suited(chosen["control"], gear.kinematics)
     motor, control = chosen["motor"], chosen["control"]
     fits = not isinstance(innermost(control), sw.control.Cascade | sw.control.StateFeedback)
     assume(fits or motor is None or isinstance(motor, sw.motor.BrushlessDC | sw.motor.PMSM))
