@@ -1,9 +1,10 @@
 """Instructions, code and stack of one step of exported controllers on microcontrollers.
 
-Controllers with each compensator are exported as firmware, compiled for Cortex-M4F and Cortex-M7 by GCC with newlib, and run in
-a machine that QEMU emulates, which prints each instruction that it executes. These are instructions, not cycles: a quotient or
-a root takes 14 cycles on a Cortex-M4F, most others one. The inputs are those of a simulated motion with many reversals, then
-random ones, far outside of it. The largest number of a step is over all of them, with sinf, cosf and expf.
+Controllers with each compensator, and with each law of control that contains a gear, are exported as firmware, compiled for
+Cortex-M4F and Cortex-M7 by GCC with newlib, and run in a machine that QEMU emulates, which prints each instruction that it
+executes. These are instructions, not cycles: a quotient or a root takes 14 cycles on a Cortex-M4F, most others one. The inputs
+are those of a simulated motion with many reversals, then random ones, far outside of it. The largest number of a step is over
+all of them, with sinf, cosf and expf.
 
 Needs the packages qemu-system-arm, gcc-arm-none-eabi, libnewlib-arm-none-eabi and libstdc++-arm-none-eabi-newlib of Debian.
 """
@@ -64,8 +65,11 @@ class Step:
     largest_m7: int
 
 
-def controllers() -> dict[str, sw.Compensation]:
-    """Return a compensation with each compensator, and with several at once."""
+def controllers() -> dict[str, sw.control.Sampled]:
+    """Return a cascade with each compensator and with several at once, then the laws of control that contain a gear."""
+    cascade = sw.control.PositionSpeed(
+        position_gain=30.0, speed_proportional=0.02, speed_integral=0.3, speed_feedforward=1.0, limit=2.0
+    )
     friction = sw.friction.LuGre(
         coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, bristle_stiffness=50.0, bristle_damping=1e-3, viscous=1e-3
     )
@@ -84,7 +88,7 @@ def controllers() -> dict[str, sw.Compensation]:
     passes = sw.compensation.IterativeLearning(low=-0.2, high=0.2)
     twist = sw.compensation.TwistIdentification(order=[1, 2, 4, 2.02])
     every = sw.Compensation
-    return {
+    compensations = {
         "cascade alone": every(),
         "model of friction and inertia": every(feedforward=model(bare)),
         "model of the whole gear": every(feedforward=model(gear)),
@@ -99,18 +103,26 @@ def controllers() -> dict[str, sw.Compensation]:
         "dither": every(dither=sw.compensation.Dither(amplitude=0.02, frequency=80.0)),
         "whole gear, adaptive Fourier, observer": every(feedforward=model(gear), learning=fourier, observer=observer),
     }
+    with_gear = {"gear": gear, "load": load, "motor_inertia": 2e-5, "reference_time": 2e-3, "limit": 2.0}
+    laws: dict[str, Any] = {
+        "Kalman regulator, state space": sw.regulator(drive(), period=SAMPLE_PERIOD, error=1e-3, encoder="input"),
+        "feedback linearisation": sw.control.FeedbackLinearisation(bandwidth=60.0, **with_gear),
+        "kinematic-error tracking": sw.control.KinematicErrorTracking(bandwidth=30.0, speed_gain=0.03, **with_gear),
+    }
+    sampled = sw.control.Sampled
+    return {
+        **{name: sampled(law=cascade, period=SAMPLE_PERIOD, compensation=each) for name, each in compensations.items()},
+        **{name: sampled(law=law, period=SAMPLE_PERIOD) for name, law in laws.items()},
+    }
 
 
-def drive(compensation: sw.Compensation) -> sw.Drive:
-    """Return a joint under a cascade with a compensation."""
-    law = sw.control.PositionSpeed(
-        position_gain=30.0, speed_proportional=0.02, speed_integral=0.3, speed_feedforward=1.0, limit=2.0
-    )
+def drive(control: Any = None) -> sw.Drive:
+    """Return a joint under a controller."""
     return sw.Drive(
         gear=sw.load("csg-20-100"),
         motor=sw.motor.TorqueSource(inertia=2e-5),
         load=sw.loads.Pendulum(inertia=0.5, gravity_torque=10.0),
-        control=sw.control.Sampled(law=law, period=SAMPLE_PERIOD, compensation=compensation),
+        control=control or sw.control.OpenLoop(),
     )
 
 
@@ -118,7 +130,7 @@ def inputs() -> np.ndarray[Any, Any]:
     """Return the inputs of a controller, one row per step: a motion that reverses every 25 ms, then random inputs."""
     duration = SAMPLE_PERIOD * MOTION_STEPS
     motion = sw.scenario.sine(0.02, 20.0, duration) + sw.scenario.sine(0.5, 3.0, duration)
-    run = sw.simulate(drive(sw.Compensation()), motion, sample=SAMPLE_PERIOD)
+    run = sw.simulate(drive(controllers()["cascade alone"]), motion, sample=SAMPLE_PERIOD)
     rows = np.zeros((MOTION_STEPS + RANDOM_STEPS, len(INPUTS)))
     random = np.random.default_rng(1)
     for column, (name, *_) in enumerate(INPUTS):
@@ -130,11 +142,11 @@ def inputs() -> np.ndarray[Any, Any]:
     return rows
 
 
-def measured(name: str, compensation: sw.Compensation, rows: np.ndarray[Any, Any]) -> Step:
+def measured(name: str, control: sw.control.Sampled, rows: np.ndarray[Any, Any]) -> Step:
     """Return the step of one controller."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        written = sw.export.firmware(drive(compensation), folder)
+        written = sw.export.firmware(drive(control), folder)
         lines = (
             "{" + ",".join(f"{value!r}f" for value in row) + "},\n" for row in rows.astype(np.float32).astype(float).tolist()
         )
@@ -189,7 +201,7 @@ def run(console: Console) -> None:
         console.print(f"instructions: left out, as {', '.join(missing)} is not installed")
         return
     rows = inputs()
-    found = [measured(name, compensation, rows) for name, compensation in controllers().items()]
+    found = [measured(name, control, rows) for name, control in controllers().items()]
     cells = [
         [
             each.controller,
