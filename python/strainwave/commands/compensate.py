@@ -26,9 +26,11 @@ def compensate(
     period: Annotated[float, typer.Option(help="Period of the controller [s].")] = 1e-3,
     delay: Annotated[float, typer.Option(help="From a sample to the output of the controller [s].")] = 0.0,
     encoder: Annotated[str, typer.Option(help="output if the controller sees the output angle too.")] = "input",
-    travel: Annotated[float, typer.Option(help="Travel of the output, for position [rad].")] = 0.2,
+    travel: Annotated[float | None, typer.Option(help="Travel of the output, for position [rad]; usually 0.2.")] = None,
     speed: Annotated[float | None, typer.Option(help="Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
-    torque: Annotated[float | None, typer.Option(help="Torque of the output, for torque [N.m].")] = None,
+    torque: Annotated[
+        float | None, typer.Option(help="Torque of the output, for torque [N.m]; usually a fifth of the largest.")
+    ] = None,
     members: Annotated[int, typer.Option(help="Number of drawn gears; usually 40, for a slot 200.")] = 40,
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
     slot: Annotated[

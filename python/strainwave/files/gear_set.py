@@ -124,7 +124,10 @@ class GearSet:
             ValueError: the set has no motor or no load.
         """
         if missing := [name for name in ("motor", "load") if getattr(self, name) is None]:
-            raise ValueError(f"{self.name} has no [{'] and no ['.join(missing)}]; a drive needs a motor and a load")
+            missing_parts = f"no [{'] and no ['.join(missing)}]"
+            raise ValueError(
+                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave drives lists whole drives"
+            )
         return _drive(vars(self))
 
     @property

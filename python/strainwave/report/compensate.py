@@ -33,10 +33,10 @@ def verdict(found: Compensated) -> str:
     after = typeset.quantity(found.chosen.median(figure), unit)
     if not found.is_compensated:
         cascade = f"the {found.baseline.candidate.name}, whose {figure} is {before}"
-        return f"{found.gear_set.name}: no compensation gains over {cascade} in the median of {found.members} drawn gears."
+        return f"{found.gear_set.name}: no compensation gains over {cascade} in the median of {found.members} gears drawn anew."
     return (
         f"{found.gear_set.name}: {found.chosen.candidate.name} brings the {figure} from {before} to {after} "
-        f"(−{100.0 * found.gain:.0f} %), in the median of {found.members} drawn gears."
+        f"(−{100.0 * found.gain:.0f} %), in the median of {found.members} gears drawn anew."
     )
 
 
@@ -47,10 +47,10 @@ def compensate_summary(found: Compensated) -> str:
 
 def _lines(found: Compensated) -> Iterator[str]:
     yield verdict(found)
-    figure = found.goal.judged_by
-    yield f"  {figure}: the gear as it is stated, median, 95 % below; median of {found.goal.second}"
+    on = f"{found.goal.judged_by} on the gears by which one was chosen"
+    yield f"  {on}: the gear as it is stated, median, 95 % below; median of {found.goal.secondary_figure}"
     for judged in found.tried[: 1 + MAX_LISTED]:
-        yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}; {_second(judged, found)}"
+        yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}; {_secondary(judged, found)}"
     yield from (f"  {line}" for line in (*removed(found), *too_much(found), *elsewhere(found), margins(found)))
     yield from (f"  note: {remark}" for remark in found.remarks)
 
@@ -60,8 +60,9 @@ def _figures(judged: Judged, found: Compensated) -> list[str]:
     return [_or_none(value, unit) for value in (judged.nominal[figure], judged.median(figure), judged.upper(figure))]
 
 
-def _second(judged: Judged, found: Compensated) -> str:
-    return _or_none(judged.median(found.goal.second), found.goal.units[found.goal.second])
+def _secondary(judged: Judged, found: Compensated) -> str:
+    name = found.goal.secondary_figure
+    return _or_none(judged.median(name), found.goal.units[name])
 
 
 def _or_none(value: float, unit: str) -> str:
@@ -86,10 +87,11 @@ def removed(found: Compensated) -> Iterator[str]:
 def too_much(found: Compensated) -> Iterator[str]:
     """Yield for each effect how much less of it the drive may have than the model of the chosen controller."""
     for each in found.over_compensation:
-        most = each.factors[-1]
-        gains = f"gains up to {each.gains_up_to:g} times less" if each.gains_up_to > 1.0 else "does not gain"
-        fails = "" if each.stable_up_to == most else f", and fails above {each.stable_up_to:g} times less"
-        yield f"{each.effect}: if the drive has less of it than the model, the controller {gains} (of {most:g} tried){fails}"
+        first, most = each.factors[0], each.factors[-1]
+        less = f"if the drive has up to {each.gains_up_to:g} times less of it than the model"
+        gains = f"gains {less if each.gains_up_to > 1.0 else 'with none of these'}"
+        fails = "" if each.stable_up_to == most else f"; runs fail above {each.stable_up_to:g} times"
+        yield f"{each.effect}, tried with {first:g} to {most:g} times less: the controller {gains}{fails}"
 
 
 def _too_much(found: Compensated) -> Iterator[tuple[str, str, str, str]]:
@@ -204,7 +206,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
                 (
                     each.candidate.name,
                     *_figures(each, found),
-                    _second(each, found),
+                    _secondary(each, found),
                     each.failures,
                     each.candidate is found.chosen.candidate,
                 )
@@ -215,7 +217,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
                 for name, unit in units.items()
             ],
             "removed": list(removed(found)),
-            "second": found.goal.second,
+            "secondary_figure": found.goal.secondary_figure,
             "too_much": list(_too_much(found)),
             "limits": list(too_much(found)),
             "conditions": list(_conditions(found)) if found.is_compensated else [],

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from strainwave import Compensation, Drive, Gear, _core, compensation, control, friction, loads, motor, stiffness
+from strainwave import Compensation, Drive, Gear, _core, arguments, compensation, control, friction, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
@@ -58,6 +58,19 @@ class Plant:
     limit: float
     period: float
     delay: float
+
+    @classmethod
+    def read(cls, drive: GearSet | Drive | Gear | str | Path, period: float, delay: float) -> Plant:
+        """Return the plant of a set, of a drive, or of a file by its name or path.
+
+        Raises:
+            TypeError: `drive` is none of these, or a time is no number
+            ValueError: the period is not positive, the delay is negative or exceeds the period, and as `of`
+        """
+        period, delay = arguments.seconds("period", period), arguments.number("delay", delay, "s", "[)", 0.0)
+        if delay > period:
+            raise ValueError(f"delay = {delay:g} s exceeds the period of {period:g} s; take a longer period or a shorter delay")
+        return cls.of(gear_set_of(drive), period, delay)
 
     @classmethod
     def of(cls, gear_set: GearSet, period: float, delay: float) -> Plant:
@@ -162,7 +175,7 @@ class Setting:
     """Tuning parameters of a cascade.
 
     Attributes:
-        sharpness: of its loops, as a share of what the delay allows, in (0, 1]
+        sharpness: of its loops; at 1 the delay takes `PHASE_OF_DELAY` where the speed loop crosses over
         feedback: encoder on which the position loop closes
         observer_share: bandwidth of the disturbance observer over that of the speed loop; 0 for none
     """

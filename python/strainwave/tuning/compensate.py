@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
 from strainwave.files.gear_set import GearSet
-from strainwave.messages import listed
+from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
-from strainwave.tuning.cascade import Plant, Setting, gear_set_of, tuned_law
+from strainwave.tuning.cascade import Plant, Setting, gear_set_of
 from strainwave.tuning.conditions import Condition, OverCompensation, conditions, over_compensation
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
-from strainwave.tuning.judging import Judged, judged
-from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, margins_of, sharpest
+from strainwave.tuning.judging import AT_LIMIT, Judged, judged
+from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, Loops, margins_of, sharpest
 
 Array = NDArray[np.float64]
 
@@ -31,6 +31,8 @@ MIN_SAMPLES = 100  # periods of a motion
 MIN_MEMBERS = 3
 MIN_GAIN = 0.05  # relative: what gains less is not worth another part
 CREEP_SPEED_SHARE = 0.01  # of the usual speed, for the goal `smooth`
+USUAL_TRAVEL = 0.2  # rad of the output, for the goal `position`
+GOAL_OF_OPTION = {"travel": "position", "torque": "torque"}  # the only goal that uses an option
 SPEED_GOAL_TURNS = 8.0  # of the input, over which the speed is judged
 TORQUE_SHARE = 0.2  # of the largest torque of the motor, times the ratio, for the goal `torque`
 TORQUE_FREQUENCY = 1.0  # Hz, at which the torque goes to and fro
@@ -56,7 +58,7 @@ class Compensated:
         baseline: the cascade, on as many gears drawn anew
         chosen: the controller of the fewest parts that gains about as much as the best, likewise; the cascade if none gains
         members: number of gears of each draw
-        margins: of the loops of the chosen controller, linearised
+        margins: of the loops of the chosen controller, linearised, without what learns and observers of friction
         over_compensation: cascade and chosen controller where the drive has less of an effect than the model, for each effect
         conditions: both at other speeds, load inertias and temperatures, on the gears drawn anew
         remarks: what was assumed
@@ -108,7 +110,7 @@ def compensate(
     period: float = 1e-3,
     delay: float = 0.0,
     encoder: str = "input",
-    travel: float = 0.2,
+    travel: float | None = None,
     speed: float | None = None,
     torque: float | None = None,
     members: int = 40,
@@ -123,7 +125,7 @@ def compensate(
             (to and fro against a stop as stiff as the gear, in place of the load)
         period, delay: of the controller [s]
         encoder: "output" if the controller sees the output angle, too
-        travel: of the output for the goal of position [rad]
+        travel: of the output for the goal of position [rad]; 0.2 rad if not given
         speed: of the output [rad/s]; if not given, that of 20 rad/s of the input, for "smooth" a hundredth of it, for "torque"
             that of one motion a second
         torque: of the output for the goal of torque, from end to end [N.m]; a fifth of the largest one if not given
@@ -133,7 +135,8 @@ def compensate(
 
     Raises:
         TypeError: `drive` is no drive
-        ValueError: it has no motor or no load, its motor cannot be given a torque, or a number is out of its range
+        ValueError: it has no motor or no load, its motor cannot be given a torque, a number is out of its range, or the goal
+            does not use a number that is given
 
     >>> import strainwave as sw
     >>> found = compensate("robot-joint", members=3, travel=0.05)
@@ -143,10 +146,10 @@ def compensate(
     gear_set = gear_set_of(drive)
     arguments.one_of("encoder", encoder, ("input", "output"))
     arguments.whole("members", members, MIN_MEMBERS)
-    plant = Plant.of(
-        gear_set, arguments.number("period", period, "s", low=0.0), arguments.number("delay", delay, "s", "[]", 0.0, period)
-    )
     arguments.one_of("goal", goal, ("position", "speed", "smooth", "torque"))
+    _refuse_unused(goal, travel=travel, torque=torque)
+    plant = Plant.read(gear_set, period, delay)
+    travel = USUAL_TRAVEL if travel is None else travel
     if goal == "torque":
         torque = _wanted_torque(plant, torque)
         gear_set = _against_stop(gear_set, plant, torque)
@@ -156,33 +159,15 @@ def compensate(
     def goal_at(pace: float) -> Goal:
         return goal_of(goal, plant, travel, speed, pace)
 
-    wanted = goal_at(1.0)
-    if wanted.command.duration < MIN_SAMPLES * plant.period:
-        raise ValueError(
-            f"the motion lasts {wanted.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
-            "take a lower speed, a longer travel or a shorter period"
-        )
-    draws, anew = (_drawn(gear_set, plant, members, each) for each in (seed, seed + 1))
-    encoders = ("input", "output") if encoder == "output" else ("input",)
-    cascades = [best_cascade(plant, wanted, draws, each, progress) for each in encoders]
-    cascades.sort(key=lambda found: found.upper(wanted.judged_by))
-    best = cascades[0]
-    if best.failures == members:
-        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}")
-    others = []
-    for candidate in candidates(plant, [each.candidate.setting for each in cascades], wanted, draws):
-        progress(candidate.name)
-        others.append(judged(candidate, wanted, draws, plant))
-    others.sort(key=lambda found: found.median(wanted.judged_by))
+    wanted = _long_enough(goal_at(1.0), plant)
+    draws, anew = (_drawn(gear_set, plant, members, each, known_load=goal == "torque") for each in (seed, seed + 1))
+    cascades = _cascades(plant, wanted, draws, encoder, progress)
+    best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, progress)
     chosen = _chosen(best, others, wanted)
-    before, after = (judged(each.candidate, wanted, anew, plant) for each in (best, chosen))
+    before, after = _judged_anew(best, chosen, wanted, anew, plant)
     remarks = list(_remarks(gear_set, plant, wanted, best))
-    figure = wanted.judged_by
-    if chosen is not best and not after.median(figure) < (1.0 - MIN_GAIN) * before.median(figure):
+    if chosen is not best and after is before:
         remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
-        chosen = best
-    if chosen is best:
-        after = before
     progress("other conditions")
     return Compensated(
         gear_set,
@@ -191,25 +176,100 @@ def compensate(
         before,
         after,
         members,
-        margins_of(plant, after.candidate.setting),
+        Loops.of(plant, after.candidate.drive.control).margins(),
         tuple(over_compensation((before, after), wanted, plant)),
         tuple(conditions((before, after), goal_at, anew, plant)),
         tuple(remarks),
     )
 
 
-def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int) -> dict[str, Array]:
-    """Return numbers of drives under an ideal current loop; a stop is as the goal states it."""
+def _refuse_unused(goal: str, **options: float | None) -> None:
+    """
+    Raises:
+        ValueError: a number is given that the goal does not use
+    """
+    for name, value in options.items():
+        if value is not None and goal != GOAL_OF_OPTION[name]:
+            raise ValueError(
+                f"{name} = {shortened(value)} is not used by the goal {goal}, only by {GOAL_OF_OPTION[name]}; leave it out"
+            )
+
+
+def _long_enough(goal: Goal, plant: Plant) -> Goal:
+    """Return a goal whose motion has enough periods of the controller.
+
+    Raises:
+        ValueError: it has not
+    """
+    if goal.command.duration < MIN_SAMPLES * plant.period:
+        raise ValueError(
+            f"the motion lasts {goal.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
+            "take a lower speed, a longer travel or a shorter period"
+        )
+    return goal
+
+
+def _cascades(
+    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, progress: Callable[[str], None]
+) -> list[Judged]:
+    """Return the best cascade of each encoder that the controller sees, the better one first.
+
+    Raises:
+        ValueError: no run under the better one came to its end
+    """
+    encoders = ("input", "output") if encoder == "output" else ("input",)
+    found = [best_cascade(plant, goal, draws, each, progress) for each in encoders]
+    found.sort(key=lambda each: each.upper(goal.judged_by))
+    best = found[0]
+    if best.failures == len(best.figures[goal.judged_by]):
+        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}{_advice(best, goal, plant)}")
+    return found
+
+
+def _advice(best: Judged, goal: Goal, plant: Plant) -> str:
+    """Return what to do if the motor is at its limit; nothing if it is not."""
+    if best.reason != AT_LIMIT:
+        return ""
+    lower = " or ".join(["speed", *(name for name, user in GOAL_OF_OPTION.items() if user == goal.name)])
+    return f"; the motor takes at most {plant.limit:g} {plant.effort_unit}: take a lower {lower}"
+
+
+def _judged_candidates(
+    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], progress: Callable[[str], None]
+) -> list[Judged]:
+    """Return all compensations of these cascades, best first."""
+    others = []
+    for candidate in candidates(plant, [each.candidate.setting for each in cascades], goal, draws):
+        progress(candidate.name)
+        others.append(judged(candidate, goal, draws, plant))
+    return sorted(others, key=lambda each: each.median(goal.judged_by))
+
+
+def _judged_anew(best: Judged, chosen: Judged, goal: Goal, draws: Mapping[str, Array], plant: Plant) -> tuple[Judged, Judged]:
+    """Return cascade and chosen controller on other gears; the cascade in place of a controller that gains nothing there."""
+    before = judged(best.candidate, goal, draws, plant)
+    if chosen is best:
+        return before, before
+    after = judged(chosen.candidate, goal, draws, plant)
+    gains = after.median(goal.judged_by) < (1.0 - MIN_GAIN) * before.median(goal.judged_by)
+    return before, after if gains else before
+
+
+def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int, known_load: bool) -> dict[str, Array]:
+    """Return numbers of drives under an ideal current loop; those of a load that is known are not drawn."""
     ideal = gear_set.with_parts(motor=plant.drive.motor, control=plant.drive.control, source="current loop")
     draws = drawn_gears(ideal, members, seed)
-    stop = isinstance(gear_set.load, loads.TorsionSpring)
-    return {path: values for path, values in draws.items() if not (stop and path.startswith("load."))}
+    return {path: values for path, values in draws.items() if not (known_load and path.startswith("load."))}
 
 
 def _wanted_torque(plant: Plant, torque: float | None) -> float:
-    if torque is not None:
-        return arguments.number("torque", torque, "N.m", low=0.0)
-    return TORQUE_SHARE * plant.limit / plant.actuation_per_torque * abs(plant.ratio)
+    """Return the torque of the output from end to end [N.m], that is stated or usual.
+
+    Raises:
+        ValueError: it is not positive, or exceeds the largest torque of the motor times the ratio
+    """
+    largest = plant.limit / plant.actuation_per_torque * abs(plant.ratio)
+    return TORQUE_SHARE * largest if torque is None else arguments.number("torque", torque, "N.m", "(]", 0.0, largest)
 
 
 def _against_stop(gear_set: GearSet, plant: Plant, torque: float) -> GearSet:
@@ -265,6 +325,12 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: f
 
 def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
     """Yield what was assumed, and what cannot be gained."""
+    yield from _of_the_drive(gear_set, plant, goal)
+    yield from _of_effects(gear_set, plant)
+    yield from _of_the_cascade(plant, goal, best)
+
+
+def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
     if not plant.drive.motor.inertia:
@@ -278,6 +344,9 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
         yield f"the load is a stop of {load.stiffness:.3g} N·m/rad, against which the torque goes from 0 to {highest:.3g} N·m"
     if cogging := getattr(gear_set.motor, "cogging_torque", 0.0):
         yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
+
+
+def _of_effects(gear_set: GearSet, plant: Plant) -> Iterator[str]:
     for effect in EFFECTS:
         if not has_effect(plant.drive.gear, effect):
             yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
@@ -288,14 +357,18 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
                 f"{'any phase and ' if _has_unknown_phase(gear_set, effect) else ''}more or less of it by a factor of up to 1.3"
             )
             yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
-    bandwidth = tuned_law(plant, best.candidate.setting).position_gain
-    if bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
+
+
+def _of_the_cascade(plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
+    margins = margins_of(plant, best.candidate.setting)
+    bandwidth, modulus = margins.position.crossover, margins.modulus
+    if modulus and bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
         yield (
             f"the position loop reaches {bandwidth:.3g} rad/s with period {plant.period:g} s and delay {plant.delay:g} s, and "
             f"the motion has {goal.pace:.3g} rad/s: a shorter period or delay would gain, too"
         )
-    if (margin := margins_of(plant, best.candidate.setting).modulus) < MIN_MODULUS:
-        yield f"no cascade tried has a modulus margin of {MIN_MODULUS:g}; it is {margin:.2g}: the gear has little damping"
+    if modulus < MIN_MODULUS:
+        yield f"the modulus margin of the cascade is {modulus:.2g}, and {MIN_MODULUS:g} is wanted: the gear has little damping"
     if best.failures:
         yield f"{best.failures} of the drawn gears did not run to their end under the cascade"
 

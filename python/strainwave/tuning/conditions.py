@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 PACES = {"half the speed": 0.5, "1.5 times the speed": 1.5}
 INERTIAS = {"half the inertia of the load": 0.5, "1.5 times the inertia of the load": 1.5}
 TEMPERATURES = {"cold, 0 °C": 273.15, "warm, 60 °C": 333.15}  # K
+INITIAL_TEMPERATURE = "thermal.initial_temperature"  # of a gear that heats up; that of any other is the temperature around it
 SMALLER_BY = (1.25, 1.5, 2.0, 3.0)  # factors of an effect, of which the drive has less than the model
 SPEED_OF_FRICTION = 20.0  # rad/s of the input, at which friction is compared between temperatures
 
@@ -58,16 +59,14 @@ def conditions(
     usual = goal_at(1.0)
     for name, pace in PACES.items():
         yield at(name, goal_at(pace), draws)
-    inertia = draws.get("load.inertia", np.full(len(controllers[0].figures[usual.judged_by]), _load_inertia(plant)))
+    numbers, members = every(plant.drive), len(controllers[0].figures[usual.judged_by])
+    inertia = draws.get("load.inertia", np.full(members, numbers["load.inertia"].value))
     for name, factor in INERTIAS.items():
         yield at(name, usual, {**draws, "load.inertia": factor * inertia})
     if depends_on_temperature(plant.drive):
         for name, temperature in TEMPERATURES.items():
-            yield at(name, usual, draws, temperature=temperature)
-
-
-def _load_inertia(plant: Plant) -> float:
-    return float(every(plant.drive)["load.inertia"].value)
+            start = {INITIAL_TEMPERATURE: np.full(members, temperature)} if INITIAL_TEMPERATURE in numbers else {}
+            yield at(name, usual, {**draws, **start}, temperature=temperature)
 
 
 def depends_on_temperature(drive: Drive) -> bool:

@@ -36,7 +36,7 @@ class Goal:
         figures: of an ensemble, each of shape (members,), by name
         units: of the figures
         speed: largest speed of the output [rad/s]
-        second: the figure that stands beside that by which controllers are judged
+        secondary_figure: printed after that by which controllers are judged
         pace: of the motion, the angular frequency at which it repeats [rad/s]; 0 if it does not
         per_angle: factor of an error, the stiffness of a stop for a torque [N.m/rad]
     """
@@ -47,7 +47,7 @@ class Goal:
     figures: Callable[[Ensemble, Scenario], Mapping[str, Array]]
     units: Mapping[str, str]
     speed: float
-    second: str
+    secondary_figure: str
     pace: float = 0.0
     per_angle: float = 1.0
 

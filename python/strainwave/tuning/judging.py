@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 MIN_SHARE_OF_LIMIT = 0.999  # actuation over the limit of the motor, from which on the motor is at its limit
 MAX_SHARE_AT_LIMIT = 0.01  # of the time, of a run that counts
+AT_LIMIT = "the motor is at its limit"  # reason of a run that failed
 MAX_STEP = 2e-4  # s, of the simulation
 STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a stiffer gear is followed, too
 
@@ -83,7 +84,7 @@ def judged(
     with np.errstate(over="ignore", invalid="ignore"):  # of a run that grows without bound
         measured = goal.figures(runs, goal.command)
     figures = {name: np.where(at_limit, np.nan, values) for name, values in measured.items()}
-    stopped = "the motor is at its limit" if at_limit.any() else "the output does not move"
+    stopped = AT_LIMIT if at_limit.any() else "the output does not move"
     reason = next(iter(runs.failures.values()), stopped if np.isnan(figures[goal.judged_by]).any() else "")
     return Judged(
         candidate,

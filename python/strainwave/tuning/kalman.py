@@ -64,7 +64,8 @@ def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, rat
     size = count + 1 + plant.is_late
     if size + 1 > MAX_STATES:
         raise ValueError(
-            f"the law has {size + 1} states and control.StateSpace {MAX_STATES}: give a drive with fewer, without structure"
+            f"the law has {size + 1} states, and control.StateSpace has at most {MAX_STATES}: take the lumped gear "
+            "(structure.Lumped)"
         )
     disturbs = plant.now + plant.late
     step, now = np.zeros((size, size)), np.zeros(size)

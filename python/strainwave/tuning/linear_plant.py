@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Gear, Sensors, friction, hysteresis, kinematic_error, meter, stiffness, thermal
+from strainwave import Gear, Sensors, arguments, friction, hysteresis, kinematic_error, meter, stiffness, thermal
 from strainwave.analysis.linear import linearise
 from strainwave.tuning.cascade import Plant, line_of_friction
 
@@ -52,6 +52,22 @@ class LinearPlant:
         output = np.array([shares.get(name, 0.0) for name in linear.states])
         b, torque = linear.B[:, linear.inputs.index("command")], linear.C[linear.outputs.index("torque")]
         return cls(linear.A, b, linear.states, output, torque)
+
+    def cost(self, error: float, speed_error: float | None = None) -> Array:
+        """Return the weights of the states, shape (n, n): squares of the output angle and speed over these errors.
+
+        Args:
+            error: of the output angle [rad]
+            speed_error: of the output [rad/s]; its speed does not count if not given
+
+        Raises:
+            ValueError: an error is not positive
+        """
+        weights = np.outer(self.output, self.output) / arguments.number("error", error, "rad", low=0.0) ** 2
+        if speed_error is not None:
+            place = self.states.index("output_speed")
+            weights[place, place] += 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
+        return weights
 
     def held(self, period: float, delay: float = 0.0) -> HeldPlant:
         """Return the plant from one sampling instant to the next, whose input comes a delay [s] after the instant."""

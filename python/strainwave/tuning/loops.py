@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Compensation, Drive, arguments, compensation, control
 from strainwave.files.gear_set import GearSet
-from strainwave.tuning.cascade import Plant, Setting, gear_set_of, observer_of, tuned_law
-from strainwave.tuning.linear_plant import LinearPlant
+from strainwave.tuning.cascade import Plant, Setting, observer_of, tuned_law
+from strainwave.tuning.linear_plant import HeldPlant, LinearPlant
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -66,7 +66,8 @@ def loop_margins(drive: Drive) -> LoopMargins:
     """Return the stability margins of a drive under `PositionSpeed` in a computer, linearised at rest.
 
     Delay, hold and the vibration of the gear count; of its friction the viscous part alone, of its hysteresis the slope after a
-    reversal. The current loop of the motor is taken as ideal.
+    reversal. The current loop of the motor is taken as ideal. Learning and observers of friction are left out; a
+    `DisturbanceObserver` counts.
 
     Source: AstromWittenmark1997, section 3.3 (loops with delay and hold), AstromMurray2008, section 9.3 (margins).
 
@@ -82,8 +83,10 @@ def loop_margins(drive: Drive) -> LoopMargins:
     """
     sampled = arguments.drive(drive).control
     if not (isinstance(sampled, control.Sampled) and isinstance(sampled.law, control.PositionSpeed)):
+        law = f"(law={type(sampled.law).__name__})" if isinstance(sampled, control.Sampled) else ""
         raise ValueError(
-            "margins are those of a PositionSpeed in a computer: control must be control.Sampled(law=PositionSpeed(…))"
+            f"drive.control = {type(sampled).__name__}{law} must be control.Sampled(law=control.PositionSpeed(…)); sw.cascade "
+            "returns such a law"
         )
     gear_set = GearSet.of(drive.replace(control=control.OpenLoop()), name="the drive", source="given")
     return Loops.of(Plant.of(gear_set, sampled.period, sampled.delay), sampled).margins()
@@ -96,6 +99,9 @@ def cascade(
 
     Both loops keep a modulus margin of 0.5, so that no disturbance is more than doubled; `loop_margins` computes all margins.
     The law feeds the speed forward. Friction, weight and inertia are for the compensation to feed forward.
+
+    Its actuation is a current, or a torque if the motor is a `TorqueSource`: the current loop of any other motor is taken as
+    ideal. To simulate it, replace such a motor by `motor.CurrentSource`.
 
     Args:
         drive: with motor and load: a set, a drive, or the name or path of a file
@@ -111,11 +117,7 @@ def cascade(
     True
     """
     arguments.one_of("encoder", encoder, ("input", "output"))
-    plant = Plant.of(
-        gear_set_of(drive),
-        arguments.number("period", period, "s", low=0.0),
-        arguments.number("delay", delay, "s", "[]", 0.0, period),
-    )
+    plant = Plant.read(drive, period, delay)
     setting = sharpest(plant, encoder, 0.0)
     if margins_of(plant, setting).modulus < MIN_MODULUS:
         raise ValueError(
@@ -128,12 +130,14 @@ def cascade(
 
 def sharpest(plant: Plant, encoder: str, observer_share: float) -> Setting:
     """Return the setting of the largest sharpness that keeps `MIN_MODULUS`; the smallest of all if none does."""
-    linearised, setting = LinearPlant.of(plant), Setting(MAX_SHARPNESS, encoder, observer_share)
-    for halvings in range(2 * SHARPNESS_HALVINGS + 1):
-        setting = Setting(MAX_SHARPNESS * 0.5 ** (0.5 * halvings), encoder, observer_share)
-        if Loops.around(linearised, plant, sampled_cascade(plant, setting)).margins().modulus >= MIN_MODULUS:
-            break
-    return setting
+    linear = LinearPlant.of(plant)
+
+    def is_robust(setting: Setting) -> bool:
+        return Loops.around(linear, plant, sampled_cascade(plant, setting)).margins().modulus >= MIN_MODULUS
+
+    halvings = range(2 * SHARPNESS_HALVINGS + 1)
+    settings = [Setting(MAX_SHARPNESS * 0.5 ** (0.5 * count), encoder, observer_share) for count in halvings]
+    return next(filter(is_robust, settings), settings[-1])
 
 
 def margins_of(plant: Plant, setting: Setting) -> LoopMargins:
@@ -168,30 +172,24 @@ class Loops:
 
     @classmethod
     def of(cls, plant: Plant, sampled: Any) -> Loops:
-        """Return the loops of a sampled `PositionSpeed`, whose observer is none or a `DisturbanceObserver`."""
+        """Return the loops of a sampled `PositionSpeed`, of whose compensation a `DisturbanceObserver` alone counts."""
         return cls.around(LinearPlant.of(plant), plant, sampled)
 
     @classmethod
     def around(cls, linear: LinearPlant, plant: Plant, sampled: Any) -> Loops:
         """Return the same around a plant that is linearised already."""
-        law, observer, states = sampled.law, sampled.compensation.observer, linear.states
-        held, count = linear.held(plant.period, plant.delay), len(states)
+        law, states, count = sampled.law, linear.states, len(linear.states)
+        held = linear.held(plant.period, plant.delay)
         unit = np.eye(count + 3)
         speed, angle = unit[states.index("input_speed")], unit[states.index("input_angle")]
         at_output = np.append(linear.output, np.zeros(3))
         output_held, integral, filtered = unit[count:]
         per_torque = sampled.compensation.actuation_per_torque
-        observes = isinstance(observer, compensation.DisturbanceObserver)
-        momentum = observer.bandwidth * observer.inertia if observes else 0.0
-        passed = -np.expm1(-observer.bandwidth * plant.period) if observes else 0.0
+        momentum, passed = _observing(sampled.compensation.observer, plant.period)
         actuated = np.append(held.now, np.zeros(3)) + output_held + passed / per_torque * filtered
-        actuation = law.speed_integral * integral + observes * per_torque * (filtered - momentum * speed)
-        free = np.zeros((count + 3, count + 3))
-        free[:count, :count], free[:count, count] = held.step, held.late
-        free += np.outer(integral, integral) + (1.0 - passed) * np.outer(filtered, filtered)
-        free += passed * momentum * np.outer(filtered, speed)
+        actuation = law.speed_integral * integral + (passed > 0.0) * per_torque * (filtered - momentum * speed)
         return cls(
-            a=free + np.outer(actuated, actuation),
+            a=_free(held, speed, momentum, passed) + np.outer(actuated, actuation),
             of_error=law.speed_proportional * actuated + plant.period * integral,
             of_command=per_torque * momentum * actuated - passed * momentum * filtered,
             input_speed=speed,
@@ -237,6 +235,23 @@ class Loops:
         shift = np.exp(1j * at * self.period)[:, np.newaxis, np.newaxis] * np.eye(len(transition))
         given = np.broadcast_to(given, (len(at), len(transition)))
         return np.asarray(np.linalg.solve(shift - transition, given[..., np.newaxis])[..., 0] @ read)
+
+
+def _observing(observer: Any, period: float) -> tuple[float, float]:
+    """Return the momentum per speed of a disturbance observer, and what its filter passes in a period; 0 of any other."""
+    if not isinstance(observer, compensation.DisturbanceObserver):
+        return 0.0, 0.0
+    return observer.bandwidth * observer.inertia, float(-np.expm1(-observer.bandwidth * period))
+
+
+def _free(held: HeldPlant, speed: Array, momentum: float, passed: float) -> Array:
+    """Return the transition without actuation; the last states are the output that is held, the integral and the filter."""
+    count = len(held.step)
+    transition = np.zeros((count + 3, count + 3))
+    transition[:count, :count], transition[:count, count] = held.step, held.late
+    transition[-2, -2], transition[-1, -1] = 1.0, 1.0 - passed
+    transition[-1] += passed * momentum * speed
+    return transition
 
 
 def _margins(at: Array, loop: Complex, closed: Array) -> Margins:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
 from strainwave.files.gear_set import GearSet
+from strainwave.messages import listed, shortened
 from strainwave.simulation.controller import Seen
 from strainwave.simulation.scenario import Scenario
-from strainwave.tuning.cascade import Plant, gear_set_of
+from strainwave.tuning.cascade import Plant
 from strainwave.tuning.linear_plant import LinearPlant, optimal
 
 Array = NDArray[np.float64]
@@ -24,6 +25,7 @@ TOLERANCE = 1e-4  # of the solver, in efforts and in shares of a limit
 RELATIVE_TOLERANCE = 1e-6  # of its largest gradient, which is some 10^4 where a limit acts
 STEP_SIZE = 1.0  # rho of the solver, where it begins, and where it stays in C
 MAX_ITERATIONS = 4000
+MAX_TIME_ERROR_SHARE = 1e-6  # of the period, from one call to the next
 LIMIT_ERROR = 1.0  # rad of the output: an error that is as bad as a limit exceeded by its own size
 SOLVED, NEARLY_SOLVED = 1, 2  # by OSQP
 
@@ -116,16 +118,22 @@ class PredictiveController:
         self._plan = np.zeros(self._program.horizon)
         self._bias = np.zeros(len(self.states))
         self._predicted = np.zeros(len(self.states) + 1)
-        self._is_first = True
+        self._time: float | None = None
 
     def __call__(self, seen: Seen) -> float:
-        """Return the actuation, in the unit of the motor of `drive`."""
+        """Return the actuation, in the unit of the motor of `drive`.
+
+        Raises:
+            ValueError: the last call was not a period before
+        """
         if seen.time == 0.0:
             self.reset()
+        self._check_period(seen.time)
         parameters = np.concatenate((self._measured(seen), self._bias, *self._commanded(seen)))
         self._plan = self._planned(parameters)
         actuation = float(self._plan[0]) * self._effort
         self._predicted = self._model.step @ parameters[: len(self._predicted)] + self._model.input * actuation
+        self._time = seen.time
         return actuation
 
     def generate_c(self, folder: str | Path) -> Path:
@@ -154,6 +162,18 @@ class PredictiveController:
         write_c(path, self.states, self._program.horizon, constants, arrays)
         return path
 
+    def _check_period(self, time: float) -> None:
+        """
+        Raises:
+            ValueError: the last call was not a period before
+        """
+        if self._time is None or abs(time - self._time - self.period) <= MAX_TIME_ERROR_SHARE * self.period:
+            return
+        raise ValueError(
+            f"the controller is called {time - self._time:g} s after the last call, and its design has a period of "
+            f"{self.period:g} s; simulate it with period=controller.period, delay=controller.delay"
+        )
+
     def _planned(self, parameters: Array) -> Array:
         """Return the actuations of the horizon in efforts. Where no limit acts, they need no solver."""
         program, shift = self._program, self._program.shift @ parameters
@@ -179,9 +199,8 @@ class PredictiveController:
             "transmission_error": seen.input_angle / self._ratio - seen.output_angle,
         }
         states = np.array([values[name] for name in self.states])
-        if not self._is_first:
+        if self._time is not None:
             self._bias += self._share * (states - self._predicted[:-1] - self._bias)
-        self._is_first = False
         return np.append(states, self._predicted[-1])
 
     def _commanded(self, seen: Seen) -> tuple[Array, Array]:
@@ -294,30 +313,46 @@ def predictive(
     >>> bool(abs(run["output_angle"][-1] - 0.1) < 1e-5), bool(abs(run["torque"]).max() < 20.5)
     (True, True)
     """
-    period = arguments.number("period", period, "s", low=0.0)
-    plant = Plant.of(gear_set_of(drive), period, arguments.number("delay", delay, "s", "[]", 0.0, period))
+    plant = Plant.read(drive, period, delay)
     horizon = arguments.whole("horizon", horizon, 1, 500)
+    if preview is not None and not isinstance(preview, Scenario):
+        raise TypeError(
+            f"preview must be a scenario of the command, as sw.scenario.table(…) makes one, not {shortened(preview)}"
+        )
+    linear = _linear_of(plant, torque_limit)
+    size = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
+    bandwidth = arguments.number("bandwidth", bandwidth, "rad/s", "[)", 0.0)
+    model = Model.of(plant, linear, linear.cost(error, speed_error), size)
+    program = _program(plant, model, _limits(linear, speed_limit, torque_limit), horizon, (LIMIT_ERROR / error) ** 2)
+    return PredictiveController(plant, program, model, preview, -float(np.expm1(-bandwidth * plant.period)))
+
+
+def _linear_of(plant: Plant, torque_limit: float | None) -> LinearPlant:
+    """Return the linear model of a drive whose states are all measured.
+
+    Raises:
+        ValueError: it has other states, or the limit is not positive
+    """
     if torque_limit is not None:
         torque_limit = arguments.number("torque_limit", torque_limit, "N.m", low=0.0)
     linear = LinearPlant.of(plant, torque_limit)
     if sorted(linear.states) != sorted(STATES):
-        raise ValueError(f"the states of the drive are {linear.states}; angle and speed of both shafts are measured, no others")
-    error = arguments.number("error", error, "rad", low=0.0)
-    weight = np.outer(linear.output, linear.output) / error**2
-    if speed_error is not None:
-        place = linear.states.index("output_speed")
-        weight[place, place] += 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
-    size = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
-    bandwidth = arguments.number("bandwidth", bandwidth, "rad/s", "[)", 0.0)
+        raise ValueError(
+            f"the states of the drive are {listed(linear.states)}, and predictive control measures angle and speed of both "
+            "shafts alone; take the lumped gear (structure.Lumped) and a load that is one inertia"
+        )
+    return linear
+
+
+def _limits(linear: LinearPlant, speed_limit: float | None, torque_limit: float | None) -> list[Array]:
+    """Return the sums of the states that are limited, each in its limit."""
     limits: list[Array] = []
     if speed_limit is not None:
         limit = arguments.number("speed_limit", speed_limit, "rad/s", low=0.0)
         limits.append(_unit(linear.states, "input_speed") / limit)
     if torque_limit is not None:
         limits.append(linear.torque / torque_limit)
-    model = Model.of(plant, linear, weight, size)
-    program = _program(plant, model, limits, horizon, (LIMIT_ERROR / error) ** 2)
-    return PredictiveController(plant, program, model, preview, -float(np.expm1(-bandwidth * period)))
+    return limits
 
 
 def _program(plant: Plant, model: Model, limits: Sequence[Array], horizon: int, penalty: float) -> Program:

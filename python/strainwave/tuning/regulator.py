@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal, overload
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, control
 from strainwave.files.gear_set import GearSet
-from strainwave.tuning.cascade import Plant, gear_set_of
+from strainwave.tuning.cascade import Plant
 from strainwave.tuning.kalman import Noise, with_filter
 from strainwave.tuning.linear_plant import LinearPlant
 
@@ -70,6 +71,9 @@ def regulator(
     rests at the output angle 0, hanging down, with viscous friction alone; its input is held over each period. Put the result
     into `control.Sampled` of the same period and delay.
 
+    Its actuation is a current, or a torque if the motor is a `TorqueSource`: the current loop of any other motor is taken as
+    ideal. To simulate it, replace such a motor by `motor.CurrentSource`.
+
     With encoder="output" all is measured, and the result is a `StateFeedback`. It has no integral: add a `Compensation` whose
     observer takes away constant disturbances.
 
@@ -103,40 +107,39 @@ def regulator(
     >>> len(regulator("robot-joint", error=1e-3, encoder="input").C)
     6
     """
-    plant = Plant.of(
-        gear_set_of(drive),
-        arguments.number("period", period, "s", low=0.0),
-        arguments.number("delay", delay, "s", "[]", 0.0, period),
-    )
-    weight = 1.0 / arguments.number("error", error, "rad", low=0.0) ** 2
+    plant = Plant.read(drive, period, delay)
     limit = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
     by_input = arguments.one_of("encoder", encoder, ("output", "input")) == "input"
     linear = LinearPlant.of(plant)
-    states, output = linear.states, linear.output
-    speed = 0.0 if speed_error is None else 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
-    cost = weight * np.outer(output, output)
-    cost[states.index("output_speed"), states.index("output_speed")] += speed
+    cost = linear.cost(error, speed_error)
     if by_input:
-        late = linear.held(plant.period, plant.delay)
-        largest = plant.limit / plant.actuation_per_torque
-        noise = Noise(
-            angle=arguments.number("resolution", resolution, "rad", low=0.0) / np.sqrt(12.0),
-            effort=plant.actuation_per_torque * _or_share("torque_noise", torque_noise, "N.m", NOISE_SHARE * largest),
-            effort_rate=plant.actuation_per_torque
-            * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
-        )
-        gains = late.gains(cost, limit)
-        return with_filter(late, gains, states.index("input_angle"), noise, plant.ratio, plant.limit)
+        late, noise = linear.held(plant.period, plant.delay), _noise(plant, resolution, torque_noise, disturbance_rate)
+        measured = linear.states.index("input_angle")
+        return with_filter(late, late.gains(cost, limit), measured, noise, plant.ratio, plant.limit)
     gains = linear.held(plant.period).gains(cost, limit)
     _check_with_delay(linear, gains, plant)
-    found = dict(zip(states, gains, strict=True))
-    of_twist = found["transmission_error"]
+    return _state_feedback(plant, dict(zip(linear.states, gains.tolist(), strict=True)))
+
+
+def _state_feedback(plant: Plant, gains: Mapping[str, float]) -> control.StateFeedback:
+    """Return the law of both shafts that has these gains of the states."""
+    of_twist = gains["transmission_error"]
     return control.StateFeedback(
-        input_angle=found["input_angle"] + of_twist / plant.ratio,
-        input_speed=found["input_speed"],
+        input_angle=gains["input_angle"] + of_twist / plant.ratio,
+        input_speed=gains["input_speed"],
         output_angle=-of_twist,
-        output_speed=found["output_speed"],
+        output_speed=gains["output_speed"],
         limit=plant.limit,
+    )
+
+
+def _noise(plant: Plant, resolution: float, torque_noise: float | None, disturbance_rate: float | None) -> Noise:
+    """Return the noise of an encoder and of the torque, in the unit of the actuation."""
+    per_torque, largest = plant.actuation_per_torque, plant.limit / plant.actuation_per_torque
+    return Noise(
+        angle=arguments.number("resolution", resolution, "rad", low=0.0) / np.sqrt(12.0),
+        effort=per_torque * _or_share("torque_noise", torque_noise, "N.m", NOISE_SHARE * largest),
+        effort_rate=per_torque * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
     )
 
 

@@ -284,7 +284,12 @@ def test_a_wrong_value_is_refused(make: Any, error: type[Exception], message: st
 
 def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() -> None:
     bare = GearSet.of(sw.Gear(), name="bare", source="x")
-    with pytest.raises(ValueError, match=exactly("bare has no [motor] and no [load]; a drive needs a motor and a load")):
+    with pytest.raises(
+        ValueError,
+        match=exactly(
+            "bare has no [motor] and no [load]; a drive needs a motor and a load; strainwave drives lists whole drives"
+        ),
+    ):
         _ = bare.drive
     motor, load = sw.motor.DC(resistance=2.0), sw.loads.Inertia(inertia=3.0)
     drive = sw.Drive(gear=sw.Gear(damping=7.0), motor=motor, load=load)
@@ -293,7 +298,9 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
     sources = {path: entry for path, entry in whole.sources.items() if not path.startswith("control.")}
     assert whole.replace(control=None, sources=sources).drive.control == sw.control.OpenLoop(gain=1.0)
     sources = {path: entry for path, entry in sources.items() if not path.startswith("load.")}
-    with pytest.raises(ValueError, match=exactly("whole has no [load]; a drive needs a motor and a load")):
+    with pytest.raises(
+        ValueError, match=exactly("whole has no [load]; a drive needs a motor and a load; strainwave drives lists whole drives")
+    ):
         _ = whole.replace(control=None, load=None, sources=sources).drive
 
 

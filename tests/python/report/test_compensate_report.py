@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.report.compensate import compensate_files, compensate_summary, verdict
+from strainwave.report.compensate import compensate_files, compensate_summary, too_much, verdict
+from strainwave.tuning.conditions import OverCompensation
 
 from tests.python.report.reading import Page
 
@@ -50,6 +51,8 @@ def test_the_verdict_is_the_first_line_and_each_effect_is_named(found: sw.Compen
     first, *rest = compensate_summary(found).splitlines()
     assert first == verdict(found).replace("\N{NO-BREAK SPACE}", " ")
     assert f"(−{100.0 * found.gain:.0f} %)" in first if found.is_compensated else "no compensation gains" in first
+    assert "in the median of 3 gears drawn anew" in first
+    assert rest[0].strip().startswith("tracking error on the gears by which one was chosen: ")
     effects = {line.split(":")[0].strip() for line in rest if "its model" in line}
     assert effects == {"torsion", "kinematic error"}  # friction is the line that the cascade has, too
 
@@ -67,6 +70,20 @@ def test_margins_conditions_and_less_of_an_effect_are_on_the_page_and_among_the_
     for written, each in zip(numbers["over_compensation"], found.over_compensation, strict=True):
         assert (written["effect"], written["gains_up_to"]) == (each.effect, each.gains_up_to)
         assert written["chosen"] == list(each.chosen)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "words"),
+    [
+        ((1.0, 2.0, 3.0), "gains if the drive has up to 3 times less of it than the model"),
+        ((1.0, 2.0, 5.0), "gains if the drive has up to 2 times less of it than the model"),
+        ((5.0, 2.0, np.nan), "gains with none of these; runs fail above 2 times"),
+    ],
+)
+def test_how_much_less_of_an_effect_the_drive_may_have(found: sw.Compensated, chosen: tuple[float, ...], words: str) -> None:
+    less = OverCompensation("torsion", np.array([1.25, 2.0, 3.0]), np.full(3, 4.0), np.array(chosen))
+    (line,) = too_much(replace(found, over_compensation=(less,)))
+    assert line == f"torsion, tried with 1.25 to 3 times less: the controller {words}"
 
 
 def test_what_is_not_reached_is_a_dash_and_no_number(found: sw.Compensated) -> None:

@@ -10,10 +10,12 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.tuning.candidates import baseline, candidates
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.compensate import _remarks
-from strainwave.tuning.goals import position
+from strainwave.tuning.compensate import _drawn, _remarks
+from strainwave.tuning.goals import position, smooth, speed
 from strainwave.tuning.judging import Judged
 from strainwave.tuning.loops import sharpest
+
+from tests.python.command import refused
 
 STATED = sw.GearSet.read("robot-joint")
 KNOWN = STATED.replace(sources=dict.fromkeys(STATED.sources, Entry("measured", spread=0.01)))
@@ -62,11 +64,12 @@ def test_a_motion_that_creeps_may_have_its_friction_by_the_measured_motion() -> 
     assert observer.friction == drive.gear.friction_input
     assert found.gain > 0.5
     assert found.chosen.median("time at rest") == 0.0 < found.baseline.median("time at rest")
+    assert found.margins == sw.loop_margins(found.drive)  # an observer of friction is none of its loops
 
 
 def test_friction_is_by_the_measured_motion_only_where_it_creeps() -> None:
     plant, setting = Plant.of(STATED, 1e-3, 0.0), Setting(0.5, "input", 0.5)
-    usual, creeping = (list(candidates(plant, [setting], creeps=creeps)) for creeps in (False, True))
+    usual, creeping = (list(candidates(plant, [setting], goal(2e-3, 4.0, "A"), {})) for goal in (speed, smooth))
     more = [each for each in creeping if each.name not in {other.name for other in usual}]
     assert len(creeping) > len(usual)
     for each in more:
@@ -94,9 +97,14 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
     [
         ({"goal": "force"}, "goal"),
         ({"goal": "torque", "torque": -1.0}, "torque"),
+        ({"goal": "torque", "torque": 1e6}, r"torque = 1000000\.0 N\.m must lie in \(0, "),
+        ({"torque": 20.0}, r"torque = 20\.0 is not used by the goal position, only by torque; leave it out"),
+        ({"goal": "speed", "travel": 0.2}, r"travel = 0\.2 is not used by the goal speed, only by position; leave it out"),
         ({"encoder": "both"}, "encoder"),
         ({"period": 0.0}, "period"),
-        ({"delay": 2e-3}, "delay"),
+        ({"delay": -1e-3}, "delay"),
+        ({"delay": 2e-3}, r"delay = 0\.002 s exceeds the period of 0\.001 s; take a longer period or a shorter delay"),
+        ({"speed": 40.0, "travel": 8.0}, r"motor is at its limit; the motor takes at most \S+ A: take a lower speed or travel"),
         ({"travel": -1.0}, "travel"),
         ({"speed": 0.0}, "speed"),
         ({"members": 1}, "members"),
@@ -105,6 +113,18 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
 def test_what_is_out_of_range_is_refused(changes: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         sw.compensate(STATED, **changes)  # type: ignore[arg-type]
+
+
+def test_the_command_refuses_a_travel_that_its_goal_does_not_use(tmp_path: Path) -> None:
+    refused(tmp_path, ("compensate", "robot-joint", "--goal", "smooth", "--travel", "0.2"), "travel = 0.2 is not used")
+
+
+def test_the_spring_of_a_load_is_drawn_and_that_of_a_known_stop_is_not() -> None:
+    load = sw.loads.TorsionSpring(inertia=1.0, stiffness=100.0)
+    gear_set = STATED.with_parts(load=load, source="assumed")
+    plant = Plant.read(gear_set, 1e-3, 0.0)
+    drawn, known = (_drawn(gear_set, plant, 3, 0, known_load=each) for each in (False, True))
+    assert drawn.keys() - known.keys() == {"load.inertia", "load.stiffness"}
 
 
 def test_a_gear_alone_is_refused() -> None:
@@ -183,4 +203,4 @@ def test_a_loop_without_margin_is_remarked() -> None:
     gear_set, setting = sw.GearSet.of(drive, name="joint", source="stated"), sharpest(plant, "output", 0.0)
     best = Judged(baseline(plant, setting), {"tracking error": np.zeros(3)}, {"tracking error": 0.0})
     remarks = list(_remarks(gear_set, plant, position(0.2, 0.2, "N.m"), best))
-    assert any("no cascade tried has a modulus margin of 0.5" in remark for remark in remarks)
+    assert any(" and 0.5 is wanted: the gear has little damping" in remark for remark in remarks)

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.tuning.conditions import OverCompensation, depends_on_temperature, smaller_effect
+from strainwave.tuning.candidates import baseline
+from strainwave.tuning.cascade import Plant, Setting
+from strainwave.tuning.conditions import TEMPERATURES, OverCompensation, conditions, depends_on_temperature, smaller_effect
+from strainwave.tuning.drawn import drawn_gears
+from strainwave.tuning.goals import position
+from strainwave.tuning.judging import judged
 
 SET = sw.GearSet.read("robot-joint")
 
@@ -67,3 +74,17 @@ def test_a_gear_whose_friction_falls_with_temperature_is_judged_cold_and_warm() 
     load = sw.loads.Inertia(inertia=0.1)
     assert depends_on_temperature(sw.Drive(gear=plain.replace(friction_input=law), load=load))
     assert not depends_on_temperature(sw.Drive(gear=plain, load=load))
+
+
+def test_a_gear_that_heats_up_is_cold_and_warm_from_the_begin() -> None:
+    """In a motion of seconds it hardly warms up: its figures are those of a gear that keeps the temperature around it."""
+    joint = sw.GearSet.read("space-pointing-joint")
+    plant, draws = Plant.read(joint, 1e-3, 0.0), drawn_gears(joint, 3)
+    goal, cascade = position(0.05, 0.1, plant.effort_unit), baseline(plant, Setting(0.5, "input", 0.5))
+    both = (judged(cascade, goal, draws, plant),) * 2
+    *_, cold, warm = (each.baseline for each in conditions(both, lambda pace: goal, draws, plant))
+    assert warm.median("tracking error") != pytest.approx(cold.median("tracking error"), rel=0.01)
+    kept = replace(cascade, drive=cascade.drive.replace(thermal=sw.thermal.Isothermal()))
+    for found, temperature in zip((cold, warm), TEMPERATURES.values(), strict=True):
+        expected = judged(kept, goal, draws, plant, temperature=temperature).figures["tracking error"]
+        assert found.figures["tracking error"] == pytest.approx(expected, rel=2e-3)

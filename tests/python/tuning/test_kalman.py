@@ -214,6 +214,7 @@ def test_on_the_robot_joint_it_is_about_as_good_as_all_that_is_measured() -> Non
     ("changes", "words"),
     [
         ({"encoder": "motor"}, "encoder"),
+        ({"encoder": "input", "delay": 2 * PERIOD}, "exceeds the period"),
         ({"encoder": "input", "resolution": 0.0}, "resolution"),
         ({"encoder": "input", "torque_noise": -1.0}, "torque_noise"),
         ({"encoder": "input", "disturbance_rate": 0.0}, "disturbance_rate"),

@@ -86,7 +86,8 @@ def test_the_cascade_is_as_sharp_as_its_modulus_margin_allows() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "words"), [({"encoder": "both"}, "encoder"), ({"period": 0.0}, "period"), ({"delay": 2.0}, "delay")]
+    ("changes", "words"),
+    [({"encoder": "both"}, "encoder"), ({"period": 0.0}, "period"), ({"delay": 2.0}, "delay = 2 s exceeds the period")],
 )
 def test_what_the_cascade_refuses(changes: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
@@ -99,5 +100,8 @@ def test_a_joint_without_damping_has_no_cascade_at_its_output() -> None:
 
 
 def test_margins_are_those_of_a_position_in_a_computer() -> None:
-    with pytest.raises(ValueError, match=r"control\.Sampled"):
-        sw.loop_margins(joint(1e4, 1.0))
+    drive = joint(1e4, 1.0)
+    with pytest.raises(ValueError, match=r"OpenLoop must be control\.Sampled\(law=control\.PositionSpeed.*sw\.cascade"):
+        sw.loop_margins(drive)
+    with pytest.raises(ValueError, match=r"Sampled\(law=PID\) must be"):
+        sw.loop_margins(drive.replace(control=sw.control.Sampled(law=sw.control.PID(), period=1e-3)))

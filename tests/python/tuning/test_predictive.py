@@ -174,7 +174,7 @@ def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
         ({"horizon": 0}, "horizon"),
         ({"torque_limit": 0.0}, "torque_limit"),
         ({"bandwidth": -1.0}, "bandwidth"),
-        ({"delay": 2e-3}, "delay"),
+        ({"delay": 2e-3}, "exceeds the period"),
     ],
 )
 def test_what_it_refuses(changes: dict[str, float], words: str) -> None:
@@ -182,6 +182,19 @@ def test_what_it_refuses(changes: dict[str, float], words: str) -> None:
         sw.predictive(joint(), **changes)  # type: ignore[arg-type]
 
 
+def test_what_is_known_beforehand_is_a_scenario() -> None:
+    with pytest.raises(TypeError, match=r"preview must be a scenario.*not 3\.0"):
+        sw.predictive(joint(), preview=3.0)  # type: ignore[arg-type]
+
+
+def test_a_run_with_another_period_than_that_of_the_design_is_refused() -> None:
+    controller = sw.predictive(joint(), error=ERROR, effort=EFFORT)
+    with pytest.raises(
+        ValueError, match=r"called 0\.002 s after the last call.*a period of 0\.001 s; simulate it with period="
+    ):
+        sw.simulate_controlled(controller.drive, controller, STEP, period=2e-3)
+
+
 def test_a_gear_with_bodies_of_its_own_is_refused() -> None:
-    with pytest.raises(ValueError, match="no others"):
+    with pytest.raises(ValueError, match=r"structure\.windup.*take the lumped gear"):
         sw.predictive("tilt-actuator")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.tuning.cascade import Plant
+from strainwave.tuning.linear_plant import LinearPlant
 
 ROTOR, ARM, RATIO = 1e-4, 0.6, 100.0
 ERROR, EFFORT = 1e-3, 0.2
@@ -19,7 +21,7 @@ def joint(stiffness: float, damping: float = 0.0) -> sw.Drive:
 
 def test_of_a_rigid_joint_it_is_that_of_a_double_integrator() -> None:
     """J w' = u: the gains are q/r and (2 J q/r)^(1/2), with q = 1/(i e), r = 1/u_0, as the period goes to zero."""
-    law = sw.regulator(joint(1e8, damping=1e3), period=1e-5, error=ERROR, effort=EFFORT)
+    law = sw.regulator(joint(1e7, damping=1e3), period=1e-5, error=ERROR, effort=EFFORT)
     inertia = ROTOR + ARM / RATIO**2
     stiff = EFFORT / (RATIO * ERROR)
     assert law.input_angle + law.output_angle / RATIO == pytest.approx(stiff, rel=2e-2)
@@ -39,6 +41,15 @@ def test_the_poles_of_the_drive_lie_on_the_symmetric_root_locus() -> None:
     roots = np.roots(whole)
     stable = np.sort_complex(roots[roots.real < 0.0])
     assert found == pytest.approx(stable, rel=1e-2)
+
+
+def test_errors_of_angle_and_speed_are_weighed_as_they_are_stated() -> None:
+    """The cost of a state is 2 if the angle and the speed of the output are as large as the errors."""
+    linear = LinearPlant.of(Plant.read(joint(2e3), 1e-3, 0.0))
+    state = dict.fromkeys(linear.states, 0.0) | {"input_angle": 0.02 * RATIO, "transmission_error": 0.01, "output_speed": 3.0}
+    values = np.array([state[name] for name in linear.states])
+    assert values @ linear.cost(0.01, 3.0) @ values == pytest.approx(2.0)
+    assert values @ linear.cost(0.01) @ values == pytest.approx(1.0)
 
 
 def test_with_an_observer_it_holds_the_robot_joint_against_its_friction_and_weight() -> None:
