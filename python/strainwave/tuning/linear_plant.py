@@ -9,9 +9,12 @@ from numpy.typing import NDArray
 
 from strainwave import Gear, Sensors, arguments, friction, hysteresis, kinematic_error, meter, stiffness, thermal
 from strainwave.analysis.linear import linearise
+from strainwave.messages import listed
 from strainwave.tuning.cascade import Plant, line_of_friction
 
 Array = NDArray[np.float64]
+
+MEASURED = ("input_angle", "input_speed", "output_speed", "transmission_error")  # by the encoders of both shafts
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,19 @@ class LinearPlant:
             place = self.states.index("output_speed")
             weights[place, place] += 1.0 / arguments.number("speed_error", speed_error, "rad/s", low=0.0) ** 2
         return weights
+
+    def measured_by_encoders(self) -> LinearPlant:
+        """Return the same.
+
+        Raises:
+            ValueError: it has states besides angle and speed of both shafts
+        """
+        if sorted(self.states) != sorted(MEASURED):
+            raise ValueError(
+                f"the states of the drive are {listed(self.states)}, and encoders measure only angle and speed of both shafts; "
+                "take the lumped gear (structure.Lumped) and a load that is one inertia"
+            )
+        return self
 
     def held(self, period: float, delay: float = 0.0) -> HeldPlant:
         """Return the plant from one sampling instant to the next, whose input comes a delay [s] after the instant."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
 from strainwave.files.gear_set import GearSet
-from strainwave.messages import listed, shortened
+from strainwave.messages import shortened
 from strainwave.simulation.controller import Seen
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning.cascade import Plant
@@ -20,7 +20,6 @@ from strainwave.tuning.linear_plant import LinearPlant, optimal
 
 Array = NDArray[np.float64]
 
-STATES = ("input_angle", "input_speed", "output_speed", "transmission_error")  # that both encoders measure
 TOLERANCE = 1e-4  # of the solver, in efforts and in shares of a limit
 RELATIVE_TOLERANCE = 1e-6  # of its largest gradient, which is some 10^4 where a limit acts
 STEP_SIZE = 1.0  # rho of the solver, where it begins, and where it stays in C
@@ -335,13 +334,7 @@ def _linear_of(plant: Plant, torque_limit: float | None) -> LinearPlant:
     """
     if torque_limit is not None:
         torque_limit = arguments.number("torque_limit", torque_limit, "N.m", low=0.0)
-    linear = LinearPlant.of(plant, torque_limit)
-    if sorted(linear.states) != sorted(STATES):
-        raise ValueError(
-            f"the states of the drive are {listed(linear.states)}, and predictive control measures angle and speed of both "
-            "shafts alone; take the lumped gear (structure.Lumped) and a load that is one inertia"
-        )
-    return linear
+    return LinearPlant.of(plant, torque_limit).measured_by_encoders()
 
 
 def _limits(linear: LinearPlant, speed_limit: float | None, torque_limit: float | None) -> list[Array]:

@@ -99,7 +99,8 @@ def regulator(
             given. A larger one takes disturbances away faster
 
     Raises:
-        ValueError: as `compensate`; or the loop is not stable with this delay; or the drive has more states than a `StateSpace`
+        ValueError: as `compensate`; or the loop is not stable with this delay; or the drive has states that its encoders do
+            not measure, or more than a `StateSpace`
 
     >>> law = regulator("robot-joint", error=1e-3)
     >>> law.input_angle != 0.0 and law.output_angle != 0.0
@@ -116,7 +117,7 @@ def regulator(
         late, noise = linear.held(plant.period, plant.delay), _noise(plant, resolution, torque_noise, disturbance_rate)
         measured = linear.states.index("input_angle")
         return with_filter(late, late.gains(cost, limit), measured, noise, plant.ratio, plant.limit)
-    gains = linear.held(plant.period).gains(cost, limit)
+    gains = linear.measured_by_encoders().held(plant.period).gains(cost, limit)
     _check_with_delay(linear, gains, plant)
     return _state_feedback(plant, dict(zip(linear.states, gains.tolist(), strict=True)))
 

@@ -75,3 +75,9 @@ def test_with_an_observer_it_holds_the_robot_joint_against_its_friction_and_weig
 def test_what_it_refuses(changes: dict[str, float], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         sw.regulator(joint(2e3, damping=1.0), **changes)
+
+
+def test_states_that_no_encoder_measures_are_refused() -> None:
+    """The bodies within a staged gear; their gains were dropped."""
+    with pytest.raises(ValueError, match=r"the states of the drive are .*; take the lumped gear"):
+        sw.regulator("tilt-actuator", error=1e-3)
