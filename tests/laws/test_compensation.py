@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, assume, given, reject, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import _core, compensation
@@ -352,6 +352,8 @@ def test_whatever_its_numbers_it_gives_no_more_than_the_limit_of_its_controller(
     one = drive_with(part, sw.control.PID(limit=0.5))
     try:
         run = sw.simulate(one, sw.scenario.sine(speed / 20.0, 3.0, 0.1), 1e-4)
+    except FloatingPointError:  # so fast a vibration that steps do not follow it
+        reject()
     except ValueError as error:  # a law of the model is not valid there
         assume("lies outside of" not in str(error))
         raise

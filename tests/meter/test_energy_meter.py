@@ -66,8 +66,9 @@ def test_the_drives_drawn_move_but_for_a_few_that_friction_holds() -> None:
 
 
 # Of these tests/structure/test_staged.py shows the balance: here definitions are those of a gear of one spring.
-COMPENSATING = {"feedforward", "learning", "observer"}  # they change what a motor is asked for, and no energy
+COMPENSATING = {"feedforward", "learning", "observer", "dither"}  # they change what a motor is asked for, and no energy
 BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled"}
+ACTING_AS_OTHERS = {"StateSpace", "FeedbackLinearisation", "KinematicErrorTracking"}  # laws of control without energy
 
 
 def test_the_drives_drawn_hold_every_model_between_them() -> None:
@@ -75,7 +76,7 @@ def test_the_drives_drawn_hold_every_model_between_them() -> None:
     drawn_ones = set().union(*(models_of(drawn(seed)) for seed in SEEDS))
     families = {name: models for name, models in _core.families.items() if name not in COMPENSATING}
     known = {model.__name__ for models in families.values() for model in models.values()}
-    assert known - drawn_ones == {"NoMeter", "GridDensity"} | BALANCED_WITH_STAGES
+    assert known - drawn_ones == {"NoMeter", "GridDensity"} | BALANCED_WITH_STAGES | ACTING_AS_OTHERS
 
 
 # Powers by definition
