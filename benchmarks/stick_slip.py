@@ -134,8 +134,8 @@ def run(console: Console, quick: bool) -> None:
         priced = costs(kinds)
     speed = simulated(kinds["Stribeck, sticks"], 1e-4)["input_speed"]
     stops = int(np.count_nonzero(np.diff(speed == 0.0)))
-    told = f"{stops} stops and breakaways seen at 1 kHz; ratio: time over that of strainwave's cheapest with errors no larger"
-    print_table(console, "Stick and slip, 5 s", SETS, [result_row(each, results) for each in results], told)
+    caption = f"{stops} stops and breakaways at 1 kHz; ratio: time over that of strainwave's cheapest with errors no larger"
+    print_table(console, "Stick and slip, 5 s", SETS, [result_row(each, results) for each in results], caption)
     for outcome in outcomes:
         if isinstance(outcome, Failure):
             console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)

@@ -137,7 +137,7 @@ class IterativeLearning:
 
     @property
     def shares(self) -> Array:
-        """Of both tables in the lead."""
+        """Shares of the forward and the backward table in the lead."""
         return 0.5 * (1.0 + np.array([self.sense, -self.sense]))
 
     def add(self, now: Instant) -> None:

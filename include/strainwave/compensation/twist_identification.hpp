@@ -162,7 +162,7 @@ private:
         S item[Parameters::capacity][Parameters::capacity];
     };
 
-    /// Of the noise, whose variance over a time t is density / t [rad2.s].
+    /// Density of the noise [rad2.s]: its variance over a time t is density / t.
     constexpr S density() const { return noise * noise * noise_time; }
     constexpr int count() const { return 2 + 2 * order.count; }
     constexpr S prior(int j) const { return j == 0 ? compliance_prior : j == 1 ? offset_prior : amplitude_prior; }

@@ -4,7 +4,7 @@
 /// Derivatives of a command beyond its rate, for laws that need them: each is a difference to a lag, over the time of the lag.
 namespace strainwave::control {
 
-/// What lags behind the rate of the command and behind its derivative.
+/// Lags of the rate of the command and of its derivative.
 template <class S>
 struct ReferenceLags {
     S rate{0.0};

@@ -62,7 +62,7 @@ struct Sampled {
                      "StateSpace, StateFeedback, FeedbackLinearisation and KinematicErrorTracking do";
     }
 
-    /// That of the law; that of the compensation if the law has no model.
+    /// Ratio of the model of the law, or of the compensation if the law has no model; 0 without a model.
     constexpr S model_ratio() const {
         const S of_law = control::model_ratio<S>(law);
         return select(of_law == S(0.0), compensation.model_ratio(), of_law);

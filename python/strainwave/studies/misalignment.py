@@ -66,7 +66,7 @@ INJECTED = {
 }
 FEWEST_ROWS = 2  # of a measured ramp
 RECORDS = {"transmission_error": 2e-5, "current": 0.02}  # root mean square of the noise: two encoders [rad], current sensor [A]
-RUNS = 200  # of the drive with its gear in series, in a study: a kernel that is compiled at the begin spares most of the time
+SERIES_RUNS = 200  # about, of the drive with its gear in series: as many determine whether a kernel is compiled first
 TRIALS = 12  # noises with which the recovery is tried
 
 
@@ -230,7 +230,7 @@ def misalignment(
     progress("ramp with and without misalignment")
     shown = {side: _shown(ramp.closed_on(side), law) for side in LOOPS}
     series = in_series(ramp)
-    kernels.prepare(series.drive, "simulate_many", RUNS * duration / series.dt)
+    kernels.prepare(series.drive, "simulate_many", SERIES_RUNS * duration / series.dt)
     shown_in_series = shown[OUTPUT] if series is ramp else _shown(series, law)
     levels = {}
     for combine, side in product(COMBINE, LOOPS):

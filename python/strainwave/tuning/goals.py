@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 AROUND_REVERSAL = 0.1  # of a period, either side of a reversal
 SETTLING_SHARE = 0.5  # of a run, left out at its begin
-REST = 0.5  # s, after a motion to and fro
+REST_AFTER_MOTION = 0.5  # s: longer than any loop of interest settles
 SETTLING_BAND_SHARE = 5e-4  # of the travel, within which the error of a position that has settled stays
 TORQUE_BAND_SHARE = 0.05  # of the torque, likewise
 MAX_STICKING_SPEED_SHARE = 0.1  # of the commanded speed: below it the output rests
@@ -79,7 +79,7 @@ class _ToAndFro:
         phase = 2.0 * np.pi * time / period
         level, slope = 0.5 * travel * (1.0 - np.cos(phase)), np.pi * travel / period * np.sin(phase)
         level[-1], slope[-1] = travel, 0.0
-        return cls(Scenario(float(time[-1]) + REST, time, level, slope), period, float(time[-1]), scale, band)
+        return cls(Scenario(float(time[-1]) + REST_AFTER_MOTION, time, level, slope), period, float(time[-1]), scale, band)
 
     def figures(self, runs: Ensemble, error_name: str) -> dict[str, Array]:
         """Return the figures of the second motion and of the rest."""

@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 MIN_MODULUS = 0.5  # modulus margin of the sharpest cascade: no disturbance is more than doubled
 MAX_SHARPNESS = 2.0  # of a cascade; at 1 the delay takes half a radian at the crossover of its speed loop
 SHARPNESS_HALVINGS = 10  # of the sharpness that are tried, in steps of a root of 2
-FREQUENCIES = 1000  # at which a loop is evaluated, up to half the sample rate
+FREQUENCY_COUNT = 1000  # of a loop, up to half the sample rate
 FREQUENCIES_OF_PEAK = 100  # likewise, around each vibration
 LOWEST_SHARE = 1e-5  # lowest frequency over half the sample rate
 MAX_JUMP = 0.5  # of half a turn of the loop, or of the logarithm of its size, from one frequency to the next
@@ -226,7 +226,7 @@ class Loops:
 
     def _frequencies(self) -> Array:
         highest = np.pi / self.period
-        whole = np.geomspace(LOWEST_SHARE * highest, highest, FREQUENCIES, endpoint=False)
+        whole = np.geomspace(LOWEST_SHARE * highest, highest, FREQUENCY_COUNT, endpoint=False)
         peaks = [each * np.geomspace(0.8, 1.25, FREQUENCIES_OF_PEAK) for each in self.vibrations if each]
         found = np.unique(np.concatenate([whole, *peaks]))
         return np.asarray(found[found < highest])

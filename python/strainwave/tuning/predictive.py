@@ -20,7 +20,7 @@ from strainwave.tuning.linear_plant import LinearPlant, optimal
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-4  # of the solver, in efforts and in shares of a limit
+SOLVER_TOLERANCE = 1e-4  # in efforts and in shares of a limit
 RELATIVE_TOLERANCE = 1e-6  # of its largest gradient, which is some 10^4 where a limit acts
 STEP_SIZE = 1.0  # rho of the solver, where it begins, and where it stays in C
 MAX_ITERATIONS = 4000
@@ -83,7 +83,7 @@ class Program:
             self.bound,
             verbose=False,
             warm_starting=True,
-            eps_abs=TOLERANCE,
+            eps_abs=SOLVER_TOLERANCE,
             eps_rel=RELATIVE_TOLERANCE,
             rho=STEP_SIZE,
             max_iter=MAX_ITERATIONS,

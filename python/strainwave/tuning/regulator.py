@@ -16,7 +16,7 @@ from strainwave.tuning.kalman import Noise, with_filter
 from strainwave.tuning.linear_plant import LinearPlant
 
 Array = NDArray[np.float64]
-RESOLUTION = 2.0 * np.pi / 2**14  # rad: an encoder of 14 bit on the motor
+USUAL_RESOLUTION = 2.0 * np.pi / 2**14  # rad: an encoder of 14 bit on the motor
 NOISE_SHARE = 0.01  # of the torque limit, as the standard deviation of the torque over a period
 RATE_SHARE = 1.0  # of the torque limit, by which the disturbance wanders in 1 s
 
@@ -59,7 +59,7 @@ def regulator(
     effort: float | None = None,
     speed_error: float | None = None,
     encoder: Literal["output", "input"] = "output",
-    resolution: float = RESOLUTION,
+    resolution: float = USUAL_RESOLUTION,
     torque_noise: float | None = None,
     disturbance_rate: float | None = None,
 ) -> control.StateFeedback | control.StateSpace:
