@@ -1,5 +1,6 @@
 #include "motor.hpp"
 
+#include <strainwave/fastest.hpp>
 #include <strainwave/motor/models.hpp>
 
 #include "laws.hpp"
@@ -61,6 +62,10 @@ bool Motor<S>::prescribes() const {
 template <class S>
 S Motor<S>::acceleration(const S& asked) const {
     return MotorLaws<S>::visit(*this, [&](const auto& law) { return motor::acceleration<S>(law, asked); });
+}
+template <class S>
+S Motor<S>::fastest() const {
+    return MotorLaws<S>::visit(*this, [](const auto& law) { return strainwave::fastest<S>(law); });
 }
 
 SW_GENERAL(Motor)

@@ -28,6 +28,7 @@ struct Motor : Part {
     Limits<S> limits(const State& x, const Rotor& rotor) const;
     bool prescribes() const;
     S acceleration(const S& asked) const;
+    S fastest() const;
 };
 
 }  // namespace strainwave::general

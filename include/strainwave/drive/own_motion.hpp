@@ -103,7 +103,7 @@ template <class S, class Drive>
 constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto& gear = drive.gear;
     const S filters = max(drive.sensors.fastest(), strainwave::fastest<S>(drive.control));
-    const S inner = max(filters, strainwave::fastest<S>(drive.thermal));
+    const S inner = max(max(filters, strainwave::fastest<S>(drive.motor)), strainwave::fastest<S>(drive.thermal));
     const S stiffest = detail::steepest<S>(drive, twist, temperature);
     const auto random = gear.random_unevenness(stiffest);
     const S stiffness = gear.structure.rigid() ? stiffest * (S(1.0) + random.per_twist) : stiffest;

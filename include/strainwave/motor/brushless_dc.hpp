@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/motor/cogging.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/motor/winding.hpp>
 
@@ -13,6 +14,8 @@ struct BrushlessDC {
     S supply_voltage{48.0};
     S current_limit{10.0};
     S resistance_rise{0.0};
+    S cogging_torque{0.0};
+    S cogging_order{24.0};
 
     static constexpr auto name = "brushless_dc";
     static constexpr auto actuation = "voltage";
@@ -21,7 +24,7 @@ struct BrushlessDC {
     static constexpr auto doc = R"(
         Brushless DC motor as the DC motor that equals it, with the limits of its amplifier.
 
-        .. math:: L \dot i = u - R i - K \omega, \qquad \tau = K i, \qquad
+        .. math:: L \dot i = u - R i - K \omega, \qquad \tau = K i + \tau_c \sin(n \theta), \qquad
                   |u| \le U, \quad |u - K \omega| \le R I
 
         with u the voltage between the two phases that conduct, omega the input speed, R = resistance, L = inductance of those two
@@ -30,7 +33,8 @@ struct BrushlessDC {
         whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
         Where a load turns the motor faster than (U + R I) / K the supply cannot hold the current back any more, and it exceeds I.
 
-        Leaves out commutation, cogging, and ripple: those of PMSM. Leaves out, too, that an amplifier may first use all of its
+        tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
+        Leaves out commutation and its ripple: that of PMSM. Leaves out, too, that an amplifier may first use all of its
         voltage: here a current that is asked to be I approaches it with the time constant L / R.
 
         >>> from strainwave.motor import BrushlessDC
@@ -46,6 +50,8 @@ struct BrushlessDC {
         visit(SW_FIELD(m, supply_voltage, "V", "Largest voltage U, of either sign", smallest));
         visit(SW_FIELD(m, current_limit, "A", "Largest current I, of either sign", smallest));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
+        visit(SW_FIELD(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
+        visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
     }
 
     struct State {
@@ -67,7 +73,9 @@ struct BrushlessDC {
         }
     };
 
-    constexpr S torque(const State& x, const S&, const Rotor<S>&) const { return torque_constant * x.current; }
+    constexpr S torque(const State& x, const S&, const Rotor<S>& rotor) const {
+        return cogging().added_to(torque_constant * x.current, rotor.angle);
+    }
     constexpr S current(const State& x, const S&, const Rotor<S>&) const { return x.current; }
     constexpr Limits<S> limits(const State&, const Rotor<S>& rotor) const {
         const S induced = torque_constant * rotor.speed, most = winding().resistance_at(rotor.temperature) * current_limit;
@@ -79,7 +87,7 @@ struct BrushlessDC {
     constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
         const S i = x.current;
         return {limits(x, rotor).limited(asked) * i, winding().resistance_at(rotor.temperature) * i * i,
-                S(0.5) * inductance * i * i};
+                cogging().stored_with(S(0.5) * inductance * i * i, rotor.angle)};
     }
     constexpr State rate(const State& x, const S& asked, const Rotor<S>& rotor) const {
         const S voltage = limits(x, rotor).limited(asked), resistance_now = winding().resistance_at(rotor.temperature);
@@ -88,6 +96,7 @@ struct BrushlessDC {
     constexpr State relaxation_rate() const { return {resistance / inductance}; }
 
 private:
+    constexpr Cogging<S> cogging() const { return Cogging<S>::of(cogging_torque, cogging_order); }
     constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
 };
 

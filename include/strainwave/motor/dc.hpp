@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/motor/cogging.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/motor/winding.hpp>
 
@@ -13,6 +14,8 @@ struct DC {
     S inertia{1e-5};
     S brush_drop{0.0};
     S resistance_rise{0.0};
+    S cogging_torque{0.0};
+    S cogging_order{24.0};
 
     static constexpr auto name = "dc";
     static constexpr auto actuation = "voltage";
@@ -20,7 +23,7 @@ struct DC {
     static constexpr auto doc = R"(
         Armature-controlled DC motor.
 
-        .. math:: L \dot i = u - R i - K_b \omega - V_b \operatorname{sgn} i, \qquad \tau = K_m i, \qquad
+        .. math:: L \dot i = u - R i - K_b \omega - V_b \operatorname{sgn} i, \qquad \tau = K_m i + \tau_c \sin(n \theta), \qquad
                   R = R_0\,(1 + \alpha\,(T - 293.15\,\mathrm{K}))
 
         with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance,
@@ -29,7 +32,8 @@ struct DC {
         current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
         difference counts as lost, as iron losses do. It does so only while the motor drives: a motor with K_b > K_m that brakes,
         and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron losses.
-        Leaves out cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
+        tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
+        Leaves out limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
         is a CurrentSource.
 
         >>> from strainwave.motor import DC
@@ -45,6 +49,8 @@ struct DC {
         visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
         visit(SW_FIELD(m, brush_drop, "V", "Voltage V_b that the brushes take from any current", 0));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise alpha of the resistance per kelvin", 0));
+        visit(SW_FIELD(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
+        visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
     }
 
     constexpr const char* problem() const {
@@ -79,9 +85,10 @@ struct DC {
         Winding<S> winding;
         S per_inductance, torque_constant, back_emf, inertia, brush_drop;
         bool has_brush_drop;
+        Cogging<S> cogging;
 
         constexpr S torque(const State& x, const S& voltage, const Rotor<S>& rotor) const {
-            return torque_constant * current(x, voltage, rotor);
+            return cogging.added_to(torque_constant * current(x, voltage, rotor), rotor.angle);
         }
         constexpr S current(const State& x, const S& voltage, const Rotor<S>& rotor) const {
             S driving = voltage - back_emf * rotor.speed;
@@ -95,7 +102,7 @@ struct DC {
             const S i = current(x, voltage, rotor), copper = winding.resistance_at(rotor.temperature) * i * i;
             const S inductance = select(per_inductance > S(0.0), S(1.0) / max(per_inductance, S(smallest)), S(0.0));
             return {voltage * i, copper + brush_drop * abs(i) + (back_emf - torque_constant) * rotor.speed * i,
-                    S(0.5) * inductance * i * i};
+                    cogging.stored_with(S(0.5) * inductance * i * i, rotor.angle)};
         }
         constexpr State rate(const State& x, const S& voltage, const Rotor<S>& rotor) const {
             return {(voltage - winding.resistance_at(rotor.temperature) * x.current - back_emf * rotor.speed) * per_inductance};
@@ -106,8 +113,14 @@ struct DC {
 
     constexpr Compiled compile() const {
         const S per_inductance = select(inductance > S(0.0), S(1.0) / max(inductance, S(smallest)), S(0.0));
-        return {Winding<S>::of(resistance, resistance_rise),   per_inductance, torque_constant, back_emf, inertia, brush_drop,
-                sought(brush_drop) || any(brush_drop > S(0.0))};
+        return {Winding<S>::of(resistance, resistance_rise),
+                per_inductance,
+                torque_constant,
+                back_emf,
+                inertia,
+                brush_drop,
+                sought(brush_drop) || any(brush_drop > S(0.0)),
+                Cogging<S>::of(cogging_torque, cogging_order)};
     }
 
     // The same, for a motor that is not compiled.

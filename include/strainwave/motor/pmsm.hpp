@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/motor/phases.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/motor/winding.hpp>
 
@@ -19,11 +20,16 @@ struct PMSM {
     S cogging_order{24.0};
     S current_offset{0.0};
     S resistance_rise{0.0};
+    S phase_resistance_excess{0.0};
+    S dead_time_voltage{0.0};
+    S dead_time_current{0.1};
 
     static constexpr auto name = "pmsm";
     static constexpr auto actuation = "voltage";
     static constexpr auto source =
-        "PillayKrishnan1989, eqs. (1)-(7), in amplitudes; limits of the inverter and their order of precedence are ours";
+        "PillayKrishnan1989, eqs. (1)-(7), in amplitudes; dead time: JeongPark1991; the uneven phase is the same equations with "
+        "three "
+        "resistances; limits of the inverter and their order of precedence are ours";
     static constexpr auto doc = R"(
         Permanent-magnet synchronous motor in the frame of its rotor, with an inverter that keeps the field oriented.
 
@@ -46,9 +52,31 @@ struct PMSM {
         The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
         controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
         ripple of i_d is left out. The energy of cogging is held, not lost. R rises with the temperature of the
-        winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
-        and the switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
+        winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux and the
+        switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
         the current with the time constant L_q / R.
+
+        Two faults take voltages v_d, v_q from u_d and u_q. The first phase, which the magnets face at theta = 0, has the
+        resistance R + DR, DR = phase_resistance_excess. With phi = p theta:
+
+        .. math:: v_d = \tfrac{2}{3} \Delta R \cos\varphi \; i_1, \qquad
+                  v_q = -\tfrac{2}{3} \Delta R \sin\varphi \; i_1, \qquad i_1 = i_d \cos\varphi - i_q \sin\varphi
+
+        The currents and the torque get a ripple of order 2 p. DR does not depend on the temperature. DR far above R and
+        p omega L_q is an open phase: i_1 tends to 0 as 1 / DR, and two phases are left. An exactly open phase has one current
+        less, and is not a value of DR.
+
+        The inverter waits between its two switches: each phase k loses dead_time_voltage against its current, which is the
+        voltage of the supply times the dead time times the switching frequency. The loss is smaller in proportion below
+        dead_time_current, at which the current recharges the switches within the dead time:
+
+        .. math:: v_d = \tfrac{2}{3} \sum_k w_k \cos\varphi_k, \quad v_q = -\tfrac{2}{3} \sum_k w_k \sin\varphi_k, \quad
+                  w_k = V \operatorname{clip}(i_k / i_c, \pm 1), \quad \varphi_k = \varphi - (k - 1) \tfrac{2 \pi}{3}
+
+        V = dead_time_voltage, i_c = dead_time_current. The ripple has the order 6 p. Dead time takes no energy: the inverter gives
+        less. The column voltage is the voltage that the inverter is set to, before these losses. The inverter limits i_q by
+        measuring it, so that its limits include v_q; i_d is not controlled by a measurement, and is no longer i_d0 exactly.
+        Fixed steps must follow the decay by 2/3 DR / L and by V / (i_c L), L being the smaller of L_d and L_q.
 
         >>> from strainwave.motor import PMSM
         >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)
@@ -70,6 +98,9 @@ struct PMSM {
         visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
         visit(SW_FIELD(m, current_offset, "A", "Amplitude I_o that the current sensors add", 0));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
+        visit(SW_FIELD(m, phase_resistance_excess, "Ohm", "Resistance DR that one phase has more than the others", 0));
+        visit(SW_FIELD(m, dead_time_voltage, "V", "Voltage V that a phase loses by the dead time of the inverter", 0));
+        visit(SW_FIELD(m, dead_time_current, "A", "Phase current i_c below which the dead time takes less", smallest));
     }
 
     constexpr const char* problem() const {
@@ -110,7 +141,8 @@ struct PMSM {
         const S direct = direct_voltage(x, rotor), reach = sqrt(max(length() * length() - direct * direct, S(smallest)));
         const S along = max(abs(x.direct_current), abs(direct_current));  // i_d is on its way from one to the other
         const S others = sqrt(max(current_limit * current_limit - along * along, S(smallest)));
-        const S most = winding().resistance_at(rotor.temperature) * others, induced = back_emf(x, rotor);
+        const S most = winding().resistance_at(rotor.temperature) * others;
+        const S induced = has_faults() ? back_emf(x, rotor) + fault_drop(x, rotor).across : back_emf(x, rotor);
         return Limits<S>{induced - most, induced + most}.within(reach);
     }
     constexpr Output output(const State& x, const S& asked, const Rotor<S>& rotor) const {
@@ -118,22 +150,49 @@ struct PMSM {
     }
     constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
         const S i_q = x.quadrature_current, i_d = x.direct_current;
-        const S supplied = limits(x, rotor).limited(asked) * i_q + direct_voltage(x, rotor) * i_d;
-        const S lost = winding().resistance_at(rotor.temperature) * (i_q * i_q + i_d * i_d);
+        S supplied = limits(x, rotor).limited(asked) * i_q + direct_voltage(x, rotor) * i_d;
+        S lost = winding().resistance_at(rotor.temperature) * (i_q * i_q + i_d * i_d);
+        if (has_faults()) {
+            const auto phases = phases_of(x, rotor);
+            const auto kept = phases.dead_time_drop(dead_time_voltage, dead_time_current);
+            supplied = supplied - (kept.across * i_q + kept.along * i_d);
+            lost = lost + S(2.0 / 3.0) * phase_resistance_excess * phases.first * phases.first;
+        }
         const S magnetic = S(0.75) * (quadrature_inductance * i_q * i_q + direct_inductance * i_d * i_d);
         const S cogging = cogging_torque / cogging_order * cos(cogging_order * rotor.angle.within);
         return {S(1.5) * supplied, S(1.5) * lost, magnetic + cogging};
     }
     constexpr State rate(const State& x, const S& asked, const Rotor<S>& rotor) const {
         const S resistance_now = winding().resistance_at(rotor.temperature);
-        const S across = limits(x, rotor).limited(asked) - resistance_now * x.quadrature_current - back_emf(x, rotor);
-        const S along = direct_voltage(x, rotor) - resistance_now * x.direct_current +
-                        pole_pairs * rotor.speed * quadrature_inductance * x.quadrature_current;
+        S across = limits(x, rotor).limited(asked) - resistance_now * x.quadrature_current - back_emf(x, rotor);
+        S along = direct_voltage(x, rotor) - resistance_now * x.direct_current +
+                  pole_pairs * rotor.speed * quadrature_inductance * x.quadrature_current;
+        if (has_faults()) {
+            const auto drop = fault_drop(x, rotor);
+            across = across - drop.across;
+            along = along - drop.along;
+        }
         return {across / quadrature_inductance, along / direct_inductance};
     }
     constexpr State relaxation_rate() const { return {resistance / quadrature_inductance, resistance / direct_inductance}; }
+    /// Steps do not take the decay by faults exactly: it turns with the rotor.
+    constexpr S fastest() const {
+        const S decay = S(2.0 / 3.0) * phase_resistance_excess + dead_time_voltage / dead_time_current;
+        return S(1.0 / 2.5) * decay / min(direct_inductance, quadrature_inductance);
+    }
 
 private:
+    constexpr bool has_faults() const {
+        return sought(phase_resistance_excess) || sought(dead_time_voltage) ||
+               any(max(phase_resistance_excess, dead_time_voltage) > S(0.0));
+    }
+    constexpr Phases<S> phases_of(const State& x, const Rotor<S>& rotor) const {
+        return Phases<S>::of(x.direct_current, x.quadrature_current, pole_pairs * rotor.angle.within);
+    }
+    constexpr RotorVoltage<S> fault_drop(const State& x, const Rotor<S>& rotor) const {
+        const auto phases = phases_of(x, rotor);
+        return phases.resistance_drop(phase_resistance_excess) + phases.dead_time_drop(dead_time_voltage, dead_time_current);
+    }
     constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
     /// The longest voltage that the inverter can give, V.
     constexpr S length() const { return supply_voltage * S(0.57735026918962576); }

@@ -1,0 +1,26 @@
+#pragma once
+#include <strainwave/angle.hpp>
+
+namespace strainwave::motor {
+
+/// The torque with which the magnets of a rotor hold to the teeth of its stator: a sine over the angle, without loss.
+template <class S>
+struct Cogging {
+    S amplitude{0.0};  ///< N.m
+    S order{1.0};      ///< periods per revolution
+    bool acts = false;
+
+    static constexpr Cogging of(const S& amplitude, const S& order) {
+        return {amplitude, order, sought(amplitude) || any(amplitude > S(0.0))};
+    }
+    /// Of a motor with this electric torque [N.m]; its very bits without cogging.
+    constexpr S added_to(const S& electric, const Angle<S>& angle) const {
+        return acts ? electric + amplitude * sin(order * angle.within) : electric;
+    }
+    /// The energy [J] of a motor that stores this beside it.
+    constexpr S stored_with(const S& magnetic, const Angle<S>& angle) const {
+        return acts ? magnetic + amplitude / order * cos(order * angle.within) : magnetic;
+    }
+};
+
+}  // namespace strainwave::motor
