@@ -417,7 +417,7 @@ class Drive:
     Parameters
     ----------
     gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
-    motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05, brush_drop=0.0, resistance_rise=0.0)
+    motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05, brush_drop=0.0, resistance_rise=0.0, cogging_torque=0.0, cogging_order=24.0)
     control: What turns the command into the motor's voltage, current or torque; default OpenLoop(gain=1.0)
     load: What the output shaft carries; default Inertia(inertia=0.01)
     sensors: What the controller sees the drive through; default Sensors(input_angle=Ideal(), input_speed=Ideal(), output_angle=Ideal(), output_speed=Ideal(), current=Ideal(), torque=Ideal())

@@ -7,7 +7,7 @@ class DC:
     """
     Armature-controlled DC motor.
 
-    .. math:: L \\dot i = u - R i - K_b \\omega - V_b \\operatorname{sgn} i, \\qquad \\tau = K_m i, \\qquad
+    .. math:: L \\dot i = u - R i - K_b \\omega - V_b \\operatorname{sgn} i, \\qquad \\tau = K_m i + \\tau_c \\sin(n \\theta), \\qquad
               R = R_0\\,(1 + \\alpha\\,(T - 293.15\\,\\mathrm{K}))
 
     with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance,
@@ -16,7 +16,8 @@ class DC:
     current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
     difference counts as lost, as iron losses do. It does so only while the motor drives: a motor with K_b > K_m that brakes,
     and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron losses.
-    Leaves out cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
+    tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
+    Leaves out limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
     is a CurrentSource.
 
     >>> from strainwave.motor import DC
@@ -32,6 +33,8 @@ class DC:
     inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
     brush_drop: Voltage V_b that the brushes take from any current [V], in [0, inf); default 0.0
     resistance_rise: Relative rise alpha of the resistance per kelvin [1/K], in [0, inf); default 0.0
+    cogging_torque: Amplitude tau_c of the cogging [N.m], in [0, inf); default 0.0
+    cogging_order: Periods n of the cogging per input revolution, in [1, 10000]; default 24.0
 
     Raises
     ------
@@ -43,9 +46,9 @@ class DC:
     document P, armature equation u = R i + L di/dt + K_b omega
     """
 
-    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ..., brush_drop: float = ..., resistance_rise: float = ...) -> None: ...
+    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ..., brush_drop: float = ..., resistance_rise: float = ..., cogging_torque: float = ..., cogging_order: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ..., brush_drop: float = ..., resistance_rise: float = ...) -> DC:
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ..., brush_drop: float = ..., resistance_rise: float = ..., cogging_torque: float = ..., cogging_order: float = ...) -> DC:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -78,6 +81,14 @@ class DC:
     def resistance_rise(self) -> float:
         """Relative rise alpha of the resistance per kelvin [1/K]"""
 
+    @property
+    def cogging_torque(self) -> float:
+        """Amplitude tau_c of the cogging [N.m]"""
+
+    @property
+    def cogging_order(self) -> float:
+        """Periods n of the cogging per input revolution"""
+
     def __repr__(self) -> str: ...
 
     def __eq__(self, other: object, /) -> bool: ...
@@ -100,7 +111,7 @@ class BrushlessDC:
     """
     Brushless DC motor as the DC motor that equals it, with the limits of its amplifier.
 
-    .. math:: L \\dot i = u - R i - K \\omega, \\qquad \\tau = K i, \\qquad
+    .. math:: L \\dot i = u - R i - K \\omega, \\qquad \\tau = K i + \\tau_c \\sin(n \\theta), \\qquad
               |u| \\le U, \\quad |u - K \\omega| \\le R I
 
     with u the voltage between the two phases that conduct, omega the input speed, R = resistance, L = inductance of those two
@@ -109,7 +120,8 @@ class BrushlessDC:
     whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
     Where a load turns the motor faster than (U + R I) / K the supply cannot hold the current back any more, and it exceeds I.
 
-    Leaves out commutation, cogging, and ripple: those of PMSM. Leaves out, too, that an amplifier may first use all of its
+    tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
+    Leaves out commutation and its ripple: that of PMSM. Leaves out, too, that an amplifier may first use all of its
     voltage: here a current that is asked to be I approaches it with the time constant L / R.
 
     >>> from strainwave.motor import BrushlessDC
@@ -125,6 +137,8 @@ class BrushlessDC:
     supply_voltage: Largest voltage U, of either sign [V], in (0, inf); default 48.0
     current_limit: Largest current I, of either sign [A], in (0, inf); default 10.0
     resistance_rise: Relative rise of the resistance per kelvin [1/K], in [0, inf); default 0.0
+    cogging_torque: Amplitude tau_c of the cogging [N.m], in [0, inf); default 0.0
+    cogging_order: Periods n of the cogging per input revolution, in [1, 10000]; default 24.0
 
     Raises
     ------
@@ -136,9 +150,9 @@ class BrushlessDC:
     document A, section Electric Motor: a brushless DC motor, simplified; the limits of amplifier and supply are ours
     """
 
-    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., resistance_rise: float = ...) -> None: ...
+    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., resistance_rise: float = ..., cogging_torque: float = ..., cogging_order: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., resistance_rise: float = ...) -> BrushlessDC:
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., resistance_rise: float = ..., cogging_torque: float = ..., cogging_order: float = ...) -> BrushlessDC:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -170,6 +184,14 @@ class BrushlessDC:
     @property
     def resistance_rise(self) -> float:
         """Relative rise of the resistance per kelvin [1/K]"""
+
+    @property
+    def cogging_torque(self) -> float:
+        """Amplitude tau_c of the cogging [N.m]"""
+
+    @property
+    def cogging_order(self) -> float:
+        """Periods n of the cogging per input revolution"""
 
     def __repr__(self) -> str: ...
 
@@ -212,9 +234,31 @@ class PMSM:
     The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
     controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
     ripple of i_d is left out. The energy of cogging is held, not lost. R rises with the temperature of the
-    winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
-    and the switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
+    winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux and the
+    switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
     the current with the time constant L_q / R.
+
+    Two faults take voltages v_d, v_q from u_d and u_q. The first phase, which the magnets face at theta = 0, has the
+    resistance R + DR, DR = phase_resistance_excess. With phi = p theta:
+
+    .. math:: v_d = \\tfrac{2}{3} \\Delta R \\cos\\varphi \\; i_1, \\qquad
+              v_q = -\\tfrac{2}{3} \\Delta R \\sin\\varphi \\; i_1, \\qquad i_1 = i_d \\cos\\varphi - i_q \\sin\\varphi
+
+    The currents and the torque get a ripple of order 2 p. DR does not depend on the temperature. DR far above R and
+    p omega L_q is an open phase: i_1 tends to 0 as 1 / DR, and two phases are left. An exactly open phase has one current
+    less, and is not a value of DR.
+
+    The inverter waits between its two switches: each phase k loses dead_time_voltage against its current, which is the
+    voltage of the supply times the dead time times the switching frequency. The loss is smaller in proportion below
+    dead_time_current, at which the current recharges the switches within the dead time:
+
+    .. math:: v_d = \\tfrac{2}{3} \\sum_k w_k \\cos\\varphi_k, \\quad v_q = -\\tfrac{2}{3} \\sum_k w_k \\sin\\varphi_k, \\quad
+              w_k = V \\operatorname{clip}(i_k / i_c, \\pm 1), \\quad \\varphi_k = \\varphi - (k - 1) \\tfrac{2 \\pi}{3}
+
+    V = dead_time_voltage, i_c = dead_time_current. The ripple has the order 6 p. Dead time takes no energy: the inverter gives
+    less. The column voltage is the voltage that the inverter is set to, before these losses. The inverter limits i_q by
+    measuring it, so that its limits include v_q; i_d is not controlled by a measurement, and is no longer i_d0 exactly.
+    Fixed steps must follow the decay by 2/3 DR / L and by V / (i_c L), L being the smaller of L_d and L_q.
 
     >>> from strainwave.motor import PMSM
     >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)
@@ -236,6 +280,9 @@ class PMSM:
     cogging_order: Periods n of the cogging per input revolution, in [1, 10000]; default 24.0
     current_offset: Amplitude I_o that the current sensors add [A], in [0, inf); default 0.0
     resistance_rise: Relative rise of the resistance per kelvin [1/K], in [0, inf); default 0.0
+    phase_resistance_excess: Resistance DR that one phase has more than the others [Ohm], in [0, inf); default 0.0
+    dead_time_voltage: Voltage V that a phase loses by the dead time of the inverter [V], in [0, inf); default 0.0
+    dead_time_current: Phase current i_c below which the dead time takes less [A], in (0, inf); default 0.1
 
     Raises
     ------
@@ -244,12 +291,12 @@ class PMSM:
 
     Source
     ------
-    PillayKrishnan1989, eqs. (1)-(7), in amplitudes; limits of the inverter and their order of precedence are ours
+    PillayKrishnan1989, eqs. (1)-(7), in amplitudes; dead time: JeongPark1991; the uneven phase is the same equations with three resistances; limits of the inverter and their order of precedence are ours
     """
 
-    def __init__(self, *, resistance: float = ..., direct_inductance: float = ..., quadrature_inductance: float = ..., flux_linkage: float = ..., pole_pairs: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., direct_current: float = ..., cogging_torque: float = ..., cogging_order: float = ..., current_offset: float = ..., resistance_rise: float = ...) -> None: ...
+    def __init__(self, *, resistance: float = ..., direct_inductance: float = ..., quadrature_inductance: float = ..., flux_linkage: float = ..., pole_pairs: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., direct_current: float = ..., cogging_torque: float = ..., cogging_order: float = ..., current_offset: float = ..., resistance_rise: float = ..., phase_resistance_excess: float = ..., dead_time_voltage: float = ..., dead_time_current: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., direct_inductance: float = ..., quadrature_inductance: float = ..., flux_linkage: float = ..., pole_pairs: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., direct_current: float = ..., cogging_torque: float = ..., cogging_order: float = ..., current_offset: float = ..., resistance_rise: float = ...) -> PMSM:
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., direct_inductance: float = ..., quadrature_inductance: float = ..., flux_linkage: float = ..., pole_pairs: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., direct_current: float = ..., cogging_torque: float = ..., cogging_order: float = ..., current_offset: float = ..., resistance_rise: float = ..., phase_resistance_excess: float = ..., dead_time_voltage: float = ..., dead_time_current: float = ...) -> PMSM:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -307,6 +354,18 @@ class PMSM:
     @property
     def resistance_rise(self) -> float:
         """Relative rise of the resistance per kelvin [1/K]"""
+
+    @property
+    def phase_resistance_excess(self) -> float:
+        """Resistance DR that one phase has more than the others [Ohm]"""
+
+    @property
+    def dead_time_voltage(self) -> float:
+        """Voltage V that a phase loses by the dead time of the inverter [V]"""
+
+    @property
+    def dead_time_current(self) -> float:
+        """Phase current i_c below which the dead time takes less [A]"""
 
     def __repr__(self) -> str: ...
 

@@ -47,7 +47,7 @@ DRIVES = {
     "stribeck at the input": BRISTLE.replace(gear=BRISTLE.gear.replace(friction_input=STRIBECK)),
     "coulomb at the output": BRISTLE.replace(gear=BRISTLE.gear.replace(friction_output=COULOMB)),
     "both": BRISTLE.replace(gear=BRISTLE.gear.replace(friction_input=STRIBECK, friction_output=COULOMB)),
-    "brushes": BRISTLE.replace(motor=BRISTLE.motor.replace(inductance=0.0, brush_drop=0.3)),
+    "brushes": BRISTLE.replace(motor=BRISTLE.motor.replace(inductance=0.0, brush_drop=0.3, cogging_torque=2e-3)),
 }
 SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for a set-valued side to stick at its turns
 

@@ -18,6 +18,10 @@
 ///
 ///     limits(state, rotor)                 -> Limits
 ///
+/// and, where its currents change faster by themselves than the relaxation rate says,
+///
+///     fastest()                            -> rad/s, which fixed steps must follow
+///
 /// and, where it prescribes the motion of the input shaft, its torque being a result,
 ///
 ///     acceleration(actuation)              -> rad/s2

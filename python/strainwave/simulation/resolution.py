@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
 FASTEST_ON_BRISTLES = 2.0  # step times angular frequency of a shaft on its bristles, beyond which fixed steps are in doubt
+MOTOR_FAULTS = ("phase_resistance_excess", "dead_time_voltage")
 LARGEST: float = _core.largest  # of all that is recorded
 
 
@@ -58,9 +60,15 @@ def fastest_part(drive: Drive, twist: float, temperature: float, fastest: float)
         "a body within its gear": drive.replace(gear=drive.gear.replace(structure=plain.gear.structure)),
         "a sensor": drive.replace(sensors=plain.sensors),
         "what its controller filters": drive.replace(control=plain.control),
+        "a fault of its motor (an uneven phase, dead time)": drive.replace(motor=_healthy(drive.motor)),
     }
     slower = (words for words, rest in without.items() if _core.max_rate(rest, twist, temperature) < fastest)
     return next(slower, "its own motion")
+
+
+def _healthy(motor: Any) -> Any:
+    """Return the motor without the faults that let its currents decay faster."""
+    return motor.replace(**{name: 0.0 for name in MOTOR_FAULTS if hasattr(motor, name)})
 
 
 def too_coarse(dt: float, twist: float, fastest: float, part: str) -> str:
