@@ -79,8 +79,8 @@ const char* signature(const std::string& head, const std::string& result, bool m
 }
 
 /// What is known of each member besides its value: name, unit, doc, limits (None: no limit) and whether the lower one is open, its
-/// kind, and what it may be chosen from; whether it is required, the member it follows if it is not given, and its value by
-/// default: an order of magnitude where that is not used.
+/// kind, and what it may be chosen from; whether it is required, whether a file may leave it out, the member it follows if it is
+/// not given, and its value by default: an order of magnitude where that is not used.
 nb::tuple schema(const Description& description) {
     nb::list list;
     for (const Member& member : description.members) {
@@ -95,6 +95,7 @@ nb::tuple schema(const Description& description) {
         entry["open"] = field.min == smallest;
         entry["options"] = member.type->options();
         entry["required"] = field.required;
+        entry["optional"] = field.optional;
         entry["follows"] = field.follows ? nb::object(nb::str(field.follows)) : nb::none();
         entry["default"] = member.value(description.defaults);
         list.append(entry);

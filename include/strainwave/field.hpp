@@ -28,11 +28,17 @@ struct Field {
     double max = unbounded;
     bool whole = false;             ///< Only whole numbers
     bool required = false;          ///< Whoever makes the model must give it: no number of its kind suits most gears
+    bool optional = false;          ///< A file may leave it out: with its default it has no effect, or only with another number
     const char* follows = nullptr;  ///< The member, listed before, whose value it takes where it is not given
 
     constexpr Field needed() const {
         Field field = *this;
         field.required = true;
+        return field;
+    }
+    constexpr Field without_effect() const {
+        Field field = *this;
+        field.optional = true;
         return field;
     }
     constexpr Field following(const char* leader) const {
@@ -47,6 +53,8 @@ struct Field {
     (self).member, ::strainwave::Field { #member, __VA_ARGS__ }
 /// The same for one that whoever makes the model must give. The value in the struct is then an order of magnitude.
 #define SW_REQUIRED(self, member, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.needed()
+/// The same for one that has no effect by default, which a file may leave out.
+#define SW_OPTIONAL(self, member, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.without_effect()
 /// The same for one that is as large as another, listed before, unless it is given: SW_FOLLOWS(m, member, leader, unit, doc, ...).
 #define SW_FOLLOWS(self, member, leader, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.following(#leader)
 /// Describes a member that is itself described: SW_PART(m, member, doc).

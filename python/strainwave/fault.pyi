@@ -410,3 +410,373 @@ class LubricationLoss:
         """
         Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what the fault needs.
         """
+
+class PhaseResistance:
+    """
+    A winding whose resistance has risen in all phases, or in one by a bad contact.
+
+    .. math:: R \\leftarrow (1 + s\\, r)\\, R, \\qquad \\Delta R \\leftarrow \\Delta R + s\\, \\Delta
+
+    with s = severity, R the resistance of the motor, r = rise, Delta = excess, Delta R the phase_resistance_excess of a PMSM.
+    An excess needs a PMSM: the other motors have no phases. p is the number of its pole pairs. Leaves out shorted turns.
+
+    >>> from strainwave.fault import Facts, PhaseResistance
+    >>> PhaseResistance(severity=0.5).changes(Facts())[0][:4]
+    ('motor', 'resistance', 'scale', 1.1)
+
+    Parameters
+    ----------
+    severity: Share s of the changes below, in [0, 1]; default 1.0
+    rise: Rise r of the resistance of all phases at severity 1, relative to the healthy motor, in [0, inf); default 0.2
+    excess: Resistance Delta that one phase of a PMSM gains at severity 1 [Ohm], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Kirchhoff's laws of three phases; the numbers at severity 1 are assumed
+    """
+
+    def __init__(self, *, severity: float = ..., rise: float = ..., excess: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, severity: float = ..., rise: float = ..., excess: float = ...) -> PhaseResistance:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def severity(self) -> float:
+        """Share s of the changes below"""
+
+    @property
+    def rise(self) -> float:
+        """
+        Rise r of the resistance of all phases at severity 1, relative to the healthy motor
+        """
+
+    @property
+    def excess(self) -> float:
+        """Resistance Delta that one phase of a PMSM gains at severity 1 [Ohm]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'phase_resistance'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    mode: str = 'Resistance of the winding or of a contact'
+
+    effect: str = ...
+
+    signal: str = ...
+
+    def changes(self, facts: Facts) -> tuple[tuple[str, str, str, float, str, str, float, float], ...]:
+        """
+        Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what the fault needs.
+        """
+
+class OpenPhase:
+    """
+    A phase of a PMSM that conducts hardly any current.
+
+    .. math:: \\Delta R \\leftarrow \\Delta R + s\\, R_o
+
+    with s = severity, R_o = resistance, Delta R the phase_resistance_excess of the motor, p the number of its pole pairs. A
+    resistance far above R and p omega L is an open phase; the current of the phase falls in inverse proportion to it. A
+    severity below 1 is a contact that opens. Fixed steps must follow the decay by 2/3 R_o / L: a larger resistance needs
+    shorter steps.
+
+    >>> from strainwave.fault import Facts, OpenPhase
+    >>> OpenPhase(severity=0.5).changes(Facts())[0][:4]
+    ('motor', 'phase_resistance_excess', 'add', 10.0)
+
+    Parameters
+    ----------
+    severity: Share s of the resistance, in [0, 1]; default 1.0
+    resistance: Resistance R_o that the phase gains at severity 1 [Ohm], in [0, inf); default 20.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Kirchhoff's laws of three phases; the resistance at severity 1 is assumed
+    """
+
+    def __init__(self, *, severity: float = ..., resistance: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, severity: float = ..., resistance: float = ...) -> OpenPhase:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def severity(self) -> float:
+        """Share s of the resistance"""
+
+    @property
+    def resistance(self) -> float:
+        """Resistance R_o that the phase gains at severity 1 [Ohm]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'open_phase'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    mode: str = 'Open phase of motor or inverter'
+
+    effect: str = ...
+
+    signal: str = ...
+
+    def changes(self, facts: Facts) -> tuple[tuple[str, str, str, float, str, str, float, float], ...]:
+        """
+        Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what the fault needs.
+        """
+
+class MagnetLoss:
+    """
+    Magnets that have lost a share of their flux, all alike.
+
+    .. math:: K_m \\leftarrow (1 - s\\, l)\\, K_m, \\qquad K_b \\leftarrow (1 - s\\, l)\\, K_b, \\qquad \\psi \\leftarrow (1 - s\\, l)\\, \\psi
+
+    with s = severity, l = loss, K_m = torque_constant, K_b = back_emf, psi = flux_linkage of the motor, as far as it has
+    them. The gains of its controller stay. Leaves out that one magnet may lose more than another.
+
+    >>> from strainwave.fault import Facts, MagnetLoss
+    >>> [change[1:4] for change in MagnetLoss(severity=0.5, loss=0.5).changes(Facts())][0]
+    ('torque_constant', 'scale', 0.75)
+
+    Parameters
+    ----------
+    severity: Share s of the loss, in [0, 1]; default 1.0
+    loss: Share l of the flux that is lost at severity 1, in [0, 1]; default 0.3
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition; the loss at severity 1 is assumed
+    """
+
+    def __init__(self, *, severity: float = ..., loss: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, severity: float = ..., loss: float = ...) -> MagnetLoss:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def severity(self) -> float:
+        """Share s of the loss"""
+
+    @property
+    def loss(self) -> float:
+        """Share l of the flux that is lost at severity 1"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'magnet_loss'
+
+    source: str = 'definition; the loss at severity 1 is assumed'
+
+    fields: tuple[dict[str, Any], ...]
+
+    mode: str = 'Demagnetisation of the rotor'
+
+    effect: str = ...
+
+    signal: str = ...
+
+    def changes(self, facts: Facts) -> tuple[tuple[str, str, str, float, str, str, float, float], ...]:
+        """
+        Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what the fault needs.
+        """
+
+class Cogging:
+    """
+    Cogging that has grown, as by a rotor off its axis or a displaced magnet.
+
+    .. math:: \\tau_c \\leftarrow \\tau_c + s\\, \\Delta\\tau
+
+    with s = severity, Delta tau = torque, tau_c the cogging_torque of the motor. The motor determines the order: set its
+    cogging_order, the least common multiple of its poles and its slots, or 1 for a rotor off its axis. Sources of torque or
+    motion have no cogging.
+
+    >>> from strainwave.fault import Cogging, Facts
+    >>> Cogging(severity=0.5).changes(Facts())[0][:4]
+    ('motor', 'cogging_torque', 'add', 0.0025)
+
+    Parameters
+    ----------
+    severity: Share s of the torque, in [0, 1]; default 1.0
+    torque: Amplitude Delta tau that the cogging gains at severity 1 [N.m], in [0, inf); default 0.005
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition; the torque at severity 1 is assumed
+    """
+
+    def __init__(self, *, severity: float = ..., torque: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, severity: float = ..., torque: float = ...) -> Cogging:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def severity(self) -> float:
+        """Share s of the torque"""
+
+    @property
+    def torque(self) -> float:
+        """Amplitude Delta tau that the cogging gains at severity 1 [N.m]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'cogging'
+
+    source: str = 'definition; the torque at severity 1 is assumed'
+
+    fields: tuple[dict[str, Any], ...]
+
+    mode: str = 'Cogging of the motor'
+
+    effect: str = ...
+
+    signal: str = ...
+
+    def changes(self, facts: Facts) -> tuple[tuple[str, str, str, float, str, str, float, float], ...]:
+        """
+        Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what the fault needs.
+        """
+
+class InverterDeadTime:
+    """
+    An inverter that waits longer between its switches, or whose compensation of this wait fails.
+
+    .. math:: V \\leftarrow V + s\\, \\Delta V
+
+    with s = severity, Delta V = voltage, V the dead_time_voltage of a PMSM, p the number of its pole pairs. The voltage is that
+    of the supply times dead time times switching frequency: 48 V, 1 us and 20 kHz give 0.96 V.
+
+    >>> from strainwave.fault import Facts, InverterDeadTime
+    >>> InverterDeadTime(severity=0.5).changes(Facts())[0][:4]
+    ('motor', 'dead_time_voltage', 'add', 0.5)
+
+    Parameters
+    ----------
+    severity: Share s of the voltage, in [0, 1]; default 1.0
+    voltage: Voltage Delta V that a phase loses at severity 1 [V], in [0, inf); default 1.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    JeongPark1991; the voltage at severity 1 is assumed
+    """
+
+    def __init__(self, *, severity: float = ..., voltage: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, severity: float = ..., voltage: float = ...) -> InverterDeadTime:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def severity(self) -> float:
+        """Share s of the voltage"""
+
+    @property
+    def voltage(self) -> float:
+        """Voltage Delta V that a phase loses at severity 1 [V]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'inverter_dead_time'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    mode: str = ...
+
+    effect: str = ...
+
+    signal: str = ...
+
+    def changes(self, facts: Facts) -> tuple[tuple[str, str, str, float, str, str, float, float], ...]:
+        """
+        Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what the fault needs.
+        """

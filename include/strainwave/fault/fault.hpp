@@ -51,6 +51,7 @@ constexpr Change<S> add_wave(const char* place, const char* law, const S& order,
 inline constexpr const char* error_place = "gear.kinematic_error";
 inline constexpr const char* spring_place = "gear.stiffness";
 inline constexpr const char* variation_place = "gear.stiffness_variation";
+inline constexpr const char* motor_place = "motor";
 
 /// The two splines of a gear.
 enum class Spline { flexspline, circular_spline };

@@ -50,8 +50,8 @@ struct BrushlessDC {
         visit(SW_FIELD(m, supply_voltage, "V", "Largest voltage U, of either sign", smallest));
         visit(SW_FIELD(m, current_limit, "A", "Largest current I, of either sign", smallest));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
-        visit(SW_FIELD(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
-        visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
+        visit(SW_OPTIONAL(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
+        visit(SW_OPTIONAL(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
     }
 
     struct State {

@@ -49,8 +49,8 @@ struct DC {
         visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
         visit(SW_FIELD(m, brush_drop, "V", "Voltage V_b that the brushes take from any current", 0));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise alpha of the resistance per kelvin", 0));
-        visit(SW_FIELD(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
-        visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
+        visit(SW_OPTIONAL(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
+        visit(SW_OPTIONAL(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
     }
 
     constexpr const char* problem() const {

@@ -36,6 +36,11 @@ def default_of(model: Any, name: str) -> Any:
     return next(field["default"] for field in model.fields if field["name"] == name)
 
 
+def optional(model: Any) -> frozenset[str]:
+    """Return the numbers of a model, or of a class of models, that a file may leave out: by default they have no effect."""
+    return frozenset(field["name"] for field in model.fields if field.get("optional"))
+
+
 def own_paths(path: str, model: Any) -> Iterator[str]:
     """Path of every number of a model, but for those of its parts."""
     for name, kind, _ in parameters(model):

@@ -16,7 +16,7 @@ from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
 from strainwave.files.budget import MAX_DEPTH, MAX_TEXT_BYTES, RefusedFile, read_regular
-from strainwave.files.described import ParameterField, PartField, all_paths, default_of, own_paths, parameters, parts
+from strainwave.files.described import ParameterField, PartField, all_paths, default_of, optional, own_paths, parameters, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
 from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
 from strainwave.files.identified_tables import (
@@ -82,8 +82,15 @@ def left_out(gear_set: Contents) -> frozenset[str]:
 
 
 def idle(gear_set: Contents) -> list[str]:
-    """Path of every number of the parts that do nothing, which a file may do without."""
-    return [path for table, model in _filled(gear_set) if _does_nothing(table, model) for path in own_paths(table.path, model)]
+    """Path of every number without effect, which a file may do without: those of the parts that do nothing, and some others."""
+    filled = list(_filled(gear_set))
+    of_parts = [path for table, model in filled if _does_nothing(table, model) for path in own_paths(table.path, model)]
+    return of_parts + [f"{table.path}.{name}" for table, model in filled for name in at_rest(model)]
+
+
+def at_rest(model: Any) -> list[str]:
+    """Return the numbers of a model that a file may leave out, and that have the value which they then have."""
+    return [name for name in sorted(optional(model)) if getattr(model, name) == default_of(model, name)]
 
 
 # The tables of a file, as the models describe themselves
@@ -194,7 +201,12 @@ def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, Sou
         model, content = _chosen(table, content)
         members = checked(_table_form(table.path, model), content)
         for parameter in parameters(model):
-            members[parameter.name], its_sources = _read_parameter(table.path, parameter, members[parameter.name])
+            content_of = members[parameter.name]
+            if content_of is None:
+                members[parameter.name] = default_of(model, parameter.name)
+                its_sources = {f"{table.path}.{parameter.name}": Entry(NOT_GIVEN)}
+            else:
+                members[parameter.name], its_sources = _read_parameter(table.path, parameter, content_of)
             sources |= its_sources
     for inner in _inner(table.path, model):
         members[inner.name], its_sources = _read_table(inner, members[inner.name])
@@ -273,6 +285,7 @@ def _head_form() -> Form:
 def _table_form(path: str, model: Any) -> Form:
     """The keys of a table with the parameters of this class of models."""
     keys: dict[str, Any] = {parameter.name: (_content(parameter), ...) for parameter in parameters(model)}
+    keys |= {name: (kind | None, None) for name, (kind, _) in keys.items() if name in optional(model)}
     examples = {
         parameter.name: f"{parameter.name} = {_example(parameter, default_of(model, parameter.name))}"
         for parameter in parameters(model)
@@ -353,6 +366,8 @@ def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:
         written.add("model", model.name)
     for name, kind, unit in parameters(model):
         value, place = getattr(model, name), f"{table.path}.{name}"
+        if name in at_rest(model) and sources[place].source == NOT_GIVEN:
+            continue
         if kind == "choice":
             written.add(name, value)
         elif kind == "sequence":

@@ -14,6 +14,7 @@ from strainwave.analysis.difference import Difference
 from strainwave.analysis.linear import Linearisation, linearise, modes
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
+from strainwave.files.gear_file import at_rest
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import RatingCheck, check_ratings
 from strainwave.files.recording import Recording
@@ -131,6 +132,8 @@ def _rows(gear_set: GearSet, path: str, model: object) -> Iterator[Row]:
         value = getattr(model, field.name)
         if field.kind == "choice":
             yield field.name, str(value), "", ""
+            continue
+        if field.name in at_rest(model) and gear_set.sources[f"{path}.{field.name}"].source == NOT_GIVEN:
             continue
         several = field.kind == "sequence"
         for i, number in enumerate(value if several else [value]):
