@@ -86,6 +86,31 @@ def test_a_file_without_motor_or_load_is_loaded_as_its_gear(tmp_path: Path) -> N
 
 # Where numbers come from
 
+COGGING = {"motor.cogging_torque": 0.0, "motor.cogging_order": 24.0}
+PHASES = {"motor.phase_resistance_excess": 0.0, "motor.dead_time_voltage": 0.0, "motor.dead_time_current": 0.1}
+# What a file may leave out of a motor, and what holds then.
+WITHOUT_EFFECT: dict[Any, dict[str, float]] = {sw.motor.DC: COGGING, sw.motor.BrushlessDC: COGGING, sw.motor.PMSM: PHASES}
+
+
+@pytest.mark.parametrize("name", ["tilt-actuator", "robot-joint"])
+def test_a_file_may_leave_out_numbers_of_faults_and_keeps_those_that_it_has(name: str, tmp_path: Path) -> None:
+    gear_set = GearSet.read(name)
+    path = tmp_path / "drive.toml"
+    motor = gear_set.motor
+    for number, value in WITHOUT_EFFECT[type(motor)].items():
+        assert getattr(motor, number.rpartition(".")[2]) == value
+        assert gear_set.sources[number] == Entry("not given")
+    gear_set.save(path)
+    assert not [number for number in WITHOUT_EFFECT[type(motor)] if number.rpartition(".")[2] in path.read_text()]
+    assert GearSet.read(path) == gear_set
+    number = next(iter(WITHOUT_EFFECT[type(motor)]))
+    short = number.rpartition(".")[2]
+    sources = dict(gear_set.sources) | {number: Entry("measured")}
+    gear_set.replace(motor=motor.replace(**{short: 0.3}), sources=sources).save(path)
+    assert f"{short} = {{value = 0.3" in path.read_text().replace("{ ", "{")
+    again = GearSet.read(path)
+    assert (getattr(again.motor, short), again.sources[number]) == (0.3, Entry("measured"))
+
 
 @settings(max_examples=sample(6, 20))  # each of them has a hundred numbers
 @given(drives)
@@ -93,13 +118,20 @@ def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none
     """No number that nobody gave has the source: it does nothing, or equals its default."""
     gear_set = GearSet.of(drive, name="x", source="measured")
     default = {path: value for path, value, *_ in _core.parameters(sw.Drive())}
+    paths = [path for path, *_ in _core.parameters(drive)]
     for path, value, *_ in _core.parameters(drive):
         source = gear_set.sources[path].source
+        if path in WITHOUT_EFFECT.get(type(drive.motor), {}) and value == WITHOUT_EFFECT[type(drive.motor)][path]:
+            assert source == "not given"
+            continue
         assert source in ("measured", "not given", "assumed: the default, unless given by: measured")
         if path.startswith("motor.") and type(drive.motor) is sw.motor.DC:
             assert (source == "measured") == (value != default[path])
     for path, entry in gear_set.sources.items():
-        assert (entry == Entry("not given")) == (path.rpartition(".")[0] in gear_set.left_out)
+        owner = path.rpartition(".")[0]
+        number = WITHOUT_EFFECT.get(type(drive.motor), {}).get(path)
+        at_rest = number is not None and _core.parameters(drive)[paths.index(path)][1] == number
+        assert (entry == Entry("not given")) == (owner in gear_set.left_out or at_rest)
 
 
 def test_an_element_of_a_sequence_is_a_default_only_where_the_default_has_it() -> None:
