@@ -51,9 +51,10 @@ def test_one_phase_of_more_resistance_ripples_twice_per_pair_of_poles() -> None:
 
 
 def test_an_open_phase_ripples_by_as_much_as_it_drives() -> None:
-    """At low speed i_1 = 0 leaves i_q ~ cos^2: the ripple of order 2 has the size of the mean."""
+    """At low speed i_q ~ cos^2 + sin^2 / (1 + k), k = 2/3 R_o / R: mean and ripple of order 2 are as k + 2 to k."""
     found = orders(faulty(PMSM, sw.fault.OpenPhase()), 3.0, 2.0, 9600)
-    assert found[2] / found[0] == pytest.approx(1.0, abs=0.05)
+    k = 2.0 / 3.0 * 20.0 / 0.4
+    assert found[2] / found[0] == pytest.approx(k / (k + 2.0), abs=2e-3)
 
 
 @EVERY
