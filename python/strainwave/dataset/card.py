@@ -76,7 +76,7 @@ def card(shards: Shards, schema: Any) -> str:
         f"{plan.members} members = {plan.condition_count} conditions x "
         f"{plan.units.number} units x {plan.life.stages} stages of life. No run was measured.",
         "",
-        f"- Each run takes {table.duration:g} s in steps of {table.dt:g} s, sampled each {table.sample:g} s. It starts at rest.",
+        f"- A run takes {table.duration:g} s in steps of {table.dt:g} s, sampled each {table.sample:g} s. It starts at rest.",
         f"- Features begin at {plan.features.start:g} s. Standard deviation of the white noise of each sample: {noise}.",
         f"- Noise of the sensors within the control loop: {'as in the gear set' if table.noise_in_loop else 'none'}.",
         f"- Licence: {plan.licence}.",

@@ -329,7 +329,7 @@ class Population:
         if frequency * table.sample > MAX_SIGNAL_FREQUENCY_SHARE:
             needed = MAX_SIGNAL_FREQUENCY_SHARE / frequency
             raise ValueError(
-                f"condition {condition.number} ({condition.profile}): order {highest:g} reaches {frequency:.4g} Hz, and samples "
+                f"condition {condition.number} ({condition.profile}): order {highest:g} reaches {frequency:.4g} Hz; samples "
                 f"{table.sample:g} s apart alias; take simulation.sample = {needed:.2g} s or less, or lower orders"
             )
 
@@ -349,7 +349,7 @@ def fault_kind(name: str) -> Any:
     """
     from strainwave import _core
 
-    kinds: Mapping[str, Any] = _core.families["fault"]
+    kinds: Mapping[str, Any] = _core.fault_families["fault"]
     if name not in kinds:
         raise ValueError(f"faults.kind = {quoted(name)} is not known; there are {listed(kinds)}")
     return kinds[name]
@@ -358,7 +358,7 @@ def fault_kind(name: str) -> Any:
 def _onset_shares(table: Any, usage: Array) -> Array:
     from strainwave import _core
 
-    kinds: Mapping[str, Any] = _core.families["onset"]
+    kinds: Mapping[str, Any] = _core.fault_families["onset"]
     if table.law not in kinds:
         raise ValueError(f"onset.law = {quoted(table.law)} is not known; there are {listed(kinds)}")
     law = kinds[table.law](**table.numbers)
