@@ -308,7 +308,7 @@ class Population:
         """The faults of a table of the plan, with the middle of each range where no number is given."""
         stated = self.plan.faults[table]
         middle = {name: 0.5 * (_range(number).low + _range(number).high) for name, number in stated.numbers.items()}
-        first = fault_kind(stated.kind)(**middle | dict(numbers), severity=severity)
+        first = _model(fault_kind(stated.kind), {**middle, **numbers, **stated.words, "severity": severity})
         return [first, *(fault_kind(kind)(severity=severity) for kind in stated.also)]
 
     @cached_property
@@ -361,9 +361,24 @@ def _onset_shares(table: Any, usage: Array) -> Array:
     kinds: Mapping[str, Any] = _core.fault_families["onset"]
     if table.law not in kinds:
         raise ValueError(f"onset.law = {quoted(table.law)} is not known; there are {listed(kinds)}")
-    law = kinds[table.law](**table.numbers)
-    stages, places = np.unique(usage, return_inverse=True)
-    return np.array([law.share(each) for each in stages.tolist()])[places]
+    law = _model(kinds[table.law], table.numbers | table.words)
+    shares: Array = np.asarray(law.share(usage))
+    return shares
+
+
+def _model(kind: Any, values: Mapping[str, Any]) -> Any:
+    """A model with numbers, of which some are counted.
+
+    Raises:
+        ValueError: it has none of a name, or does not take a value
+    """
+    kinds = {each["name"]: each["kind"] for each in kind.fields}
+    if wrong := [name for name in values if name not in kinds]:
+        raise ValueError(f"{kind.name} has no {quoted(wrong[0])}; there are {listed(kinds)}")
+    try:
+        return kind(**{name: round(each) if kinds[name] == "count" else each for name, each in values.items()})
+    except TypeError as error:
+        raise ValueError(one_line(str(error))) from None
 
 
 def _range(number: float | Range) -> Range:

@@ -138,6 +138,7 @@ class OnsetTable(Table):
 
     law: str
     numbers: dict[str, Finite] = {}
+    words: dict[str, str] = {}
 
 
 class FaultTable(Table):
@@ -148,6 +149,7 @@ class FaultTable(Table):
     severity: Number = 1.0
     onset: OnsetTable | None = None
     numbers: dict[str, Number] = {}
+    words: dict[str, str] = {}
     also: tuple[str, ...] = ()
 
     @field_validator("also", mode="before")
@@ -382,7 +384,8 @@ def _without_whole_numbers(value: Any, key: str = "") -> Any:
 
 
 def _in_words(error: ValidationError, content: dict[str, Any]) -> str:
-    first = error.errors(include_url=False)[0]
+    errors = error.errors(include_url=False)
+    first = next((each for each in errors if not (each["type"] == "float_type" and isinstance(each["input"], dict))), errors[0])
     kinds = {"float", "Range", "function-after[_ordered(), Range]"}
     place = ".".join(f"{each}" for each in first["loc"] if f"{each}" not in kinds)
     reason = first["msg"].removeprefix("Value error, ")
