@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.python.dataset.plans import SMALL, changed, population, write
 from strainwave.dataset.make import estimate
 from strainwave.dataset.plan import Plan
 from strainwave.dataset.shards import Shards
+
+from tests.python.dataset.plans import SMALL, changed, population, write
 
 CONDITION = SMALL["conditions"][0]
 
