@@ -98,6 +98,7 @@ class Population:
             check_resolution(self.drive, table.dt, 0.0, condition.temperature)
             self._check_aliasing(condition)
         self._check_samples()
+        self._check_faults()
 
     # The drive
 
@@ -138,7 +139,7 @@ class Population:
         known = outputs(self.drive)
         wanted = ["input_angle", "input_speed", "output_angle", *(each for each in FEATURE_SIGNALS if each in known)]
         kept = self.plan.samples.columns if self.plan.samples else ()
-        return list(dict.fromkeys([*wanted, *kept]))
+        return list(dict.fromkeys(name for name in (*wanted, *kept) if name != "tracking_error"))
 
     @cached_property
     def features(self) -> FeatureSet:
@@ -332,6 +333,13 @@ class Population:
                 f"condition {condition.number} ({condition.profile}): order {highest:g} reaches {frequency:.4g} Hz; samples "
                 f"{table.sample:g} s apart alias; take simulation.sample = {needed:.2g} s or less, or lower orders"
             )
+
+    def _check_faults(self) -> None:
+        """Make one fault and one onset of each table, which refuses names and numbers that they do not have."""
+        assert self.paths
+        for table in self.plan.faults:
+            if table.onset is not None:
+                _onset_shares(table.onset, np.zeros(1))
 
     def _check_samples(self) -> None:
         if self.plan.samples is None:
