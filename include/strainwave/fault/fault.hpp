@@ -52,6 +52,11 @@ inline constexpr const char* error_place = "gear.kinematic_error";
 inline constexpr const char* spring_place = "gear.stiffness";
 inline constexpr const char* variation_place = "gear.stiffness_variation";
 
+/// Shafts with an encoder.
+enum class Shaft { input, output };
+constexpr Array<const char*, 2> choices(Shaft) { return {{"input", "output"}}; }
+constexpr const char* encoder_place(Shaft shaft) { return shaft == Shaft::input ? "sensors.input_angle" : "sensors.output_angle"; }
+
 /// The two splines of a gear.
 enum class Spline { flexspline, circular_spline };
 constexpr Array<const char*, 2> choices(Spline) { return {{"flexspline", "circular_spline"}}; }

@@ -19,6 +19,11 @@ from strainwave.messages import listed
 SAME_ORDER = 1e-9  # relative difference of two orders that are one
 ERROR_PLACE = "gear.kinematic_error"
 WITHOUT_EFFECT = ("constant", "ideal")  # laws that another may replace
+REMEDIES = {
+    "fourier": "its harmonics(), in place of the law that is there, are one",
+    "encoder": "sensor.Encoder(counts=...) is one",
+    "gain": "sensor.Gain() and sensor.Encoder(counts=...) have an offset",
+}  # where the drive gets a law from that cannot be put in
 NEUTRAL: Mapping[str, Mapping[str, float]] = {"backlash": {"clearance": 0.0}}  # required numbers of a law without effect
 
 Fault = Any  # a model of `sw.fault`
@@ -193,8 +198,10 @@ def _with_law(drive: Drive, fault: Fault, change: Change) -> Drive:
     whole = _put_in(_options(_at(drive, owner) if owner else drive, name), present, change.law)
     if whole is None:
         raise ValueError(
-            f"{fault.name} needs {change.law} at {change.place}; it cannot be put in, because it neither holds nor may replace "
-            f"{present.name}, which is there; give the drive {change.law} there, or leave the fault out"
+            f"{fault.name} needs a law {change.law} at {change.place}, where {present.name} is; that can be neither held by it nor "
+            f"replaced without a change of the healthy drive; give the drive such a law"
+            + (f" ({REMEDIES[change.law]})" if change.law in REMEDIES else "")
+            + ", or leave the fault out"
         )
     return drive.replace({change.place: whole})
 
