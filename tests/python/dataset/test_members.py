@@ -1,0 +1,182 @@
+"""Members: each a function of plan and index, with units and conditions that stay on one side of each split."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.dataset.faults import with_faults
+from strainwave.dataset.members import HEALTHY
+from strainwave.dataset.plan import Plan
+from strainwave.dataset.shards import Shards
+from strainwave.dataset.splits import MIXED
+
+from tests.python.dataset.plans import SMALL, changed, population, shards
+
+FAULTY = changed(
+    units=SMALL["units"] | {"number": 20},
+    life={"stages": 3, "usage": 1e6},
+    faults=[
+        {
+            "kind": "lubrication_loss",
+            "share": 0.25,
+            "severity": {"low": 0.2, "high": 1.0},
+            "onset": {"law": "growing", "numbers": {"scale": 1e6}},
+        },
+        {"kind": "misalignment", "share": 0.5, "numbers": {"housing_eccentricity": {"low": 1e-5, "high": 5e-5}}},
+    ],
+)
+
+
+def rows(made: Shards) -> list[dict[str, Any]]:
+    return [row for number in range(made.plan.shards) for row in made.tables(*made.span(number))[0].to_pylist()]
+
+
+@pytest.fixture(scope="module")
+def faulty() -> tuple[Shards, list[dict[str, Any]]]:
+    made = shards(FAULTY)
+    return made, rows(made)
+
+
+def test_shards_have_every_member_once_and_none_spans_two_conditions() -> None:
+    made = shards(FAULTY)
+    spans = [made.span(number) for number in range(made.plan.shards)]
+    assert spans[0][0] == 0
+    assert spans[-1][1] == made.plan.members
+    assert all(early[1] == late[0] for early, late in pairwise(spans))
+    each = made.plan.members_per_condition
+    assert all(first // each == (last - 1) // each for first, last in spans)
+
+
+def test_a_member_made_alone_is_its_row_of_the_data_set(faulty: tuple[Shards, list[dict[str, Any]]]) -> None:
+    made, all_rows = faulty
+    for index in (0, 61, 130, len(all_rows) - 1):
+        (alone,) = made.member(index)[0].to_pylist()
+        for name, value in all_rows[index].items():
+            expected = pytest.approx(value, nan_ok=True, rel=1e-6, abs=1e-9) if isinstance(value, float) else value
+            assert alone[name] == expected, name
+
+
+def test_no_unit_and_no_condition_is_in_two_splits(faulty: tuple[Shards, list[dict[str, Any]]]) -> None:
+    _, all_rows = faulty
+    for what in ("unit", "condition"):
+        splits: dict[int, set[str]] = {}
+        for row in all_rows:
+            splits.setdefault(row[what], set()).add(row[f"split_{what}"])
+        assert all(len(names) == 1 for names in splits.values())
+        assert len(set.union(*splits.values())) > 1
+    train, test = ([row for row in all_rows if row["split"] == name] for name in ("train", "test"))
+    assert train
+    assert test
+    assert not {row["unit"] for row in train} & {row["unit"] for row in test}
+    assert not {row["condition"] for row in train} & {row["condition"] for row in test}
+    assert MIXED in {row["split"] for row in all_rows}
+
+
+def test_shares_of_faults_and_splits_are_met_to_one_unit() -> None:
+    units = np.arange(1000)
+    whole = population(FAULTY | {"units": {"number": 1000}})
+    assert [(whole.unit_faults(units) == name).sum() for name in ("lubrication_loss", "misalignment", HEALTHY)] == [
+        250,
+        500,
+        250,
+    ]
+    assert [(whole.unit_split(units) == name).sum() for name in ("train", "validation", "test")] == [700, 150, 150]
+
+
+def test_fault_and_split_are_independent() -> None:
+    units = np.arange(4000)
+    whole = population(FAULTY | {"units": {"number": 4000}})
+    share = (whole.unit_split(units)[whole.unit_faults(units) == HEALTHY] == "test").mean()
+    assert share == pytest.approx(0.15, abs=5.0 * np.sqrt(0.15 * 0.85 / 1000))
+
+
+def test_severity_grows_with_the_stages_of_a_unit(faulty: tuple[Shards, list[dict[str, Any]]]) -> None:
+    _, all_rows = faulty
+    units = {row["unit"] for row in all_rows if row["fault"] == "lubrication_loss"}
+    assert len(units) == 5
+    for unit in units:
+        life = [row["severity.lubrication_loss"] for row in all_rows if row["unit"] == unit and row["condition"] == 0]
+        assert life[0] == 0.0
+        assert life[1] == pytest.approx(0.5 * life[2])
+        assert 0.2 <= life[2] <= 1.0
+
+
+def test_numbers_of_a_member_are_those_of_its_drive_with_its_fault(faulty: tuple[Shards, list[dict[str, Any]]]) -> None:
+    made, all_rows = faulty
+    drive = sw.load("tilt-actuator-lumped")
+    found = 0
+    for row in all_rows[: made.plan.members_per_condition]:
+        own = drive.replace({path: row[path] for path in ("motor.resistance", "load.inertia")})
+        if row["fault"] == "lubrication_loss":
+            own = with_faults(own, [sw.fault.LubricationLoss(severity=row["severity.lubrication_loss"])])
+        elif row["fault"] == HEALTHY:
+            assert row["severity.misalignment"] == row["severity.lubrication_loss"] == 0.0
+        else:
+            continue
+        found += 1
+        for name in ("coulomb", "breakaway", "stribeck_speed", "viscous"):
+            assert row[f"gear.friction_output.{name}"] == pytest.approx(getattr(own.gear.friction_output, name), rel=1e-12)
+    assert found == 30
+
+
+def test_features_are_those_of_a_run_of_the_drive_with_these_numbers() -> None:
+    made = shards(changed(features={}))
+    (row,) = made.member(5)[0].to_pylist()
+    drive = sw.load("tilt-actuator-lumped")
+    sensors = drive.sensors
+    quiet = {name: getattr(sensors, name).law for name in ("input_speed", "output_angle", "current")}
+    own = drive.replace({path: row[path] for path in ("motor.resistance", "load.inertia")}, sensors=sensors.replace(**quiet))
+    run = sw.simulate(
+        own,
+        sw.scenario.ramp(row["condition.speed"], 0.1),
+        5e-4,
+        sample=2e-3,
+        temperature=row["condition.temperature"],
+    )
+    assert row["current_rms"] == pytest.approx(np.sqrt((run["current"] ** 2).mean()), rel=1e-6)
+    assert row["torque_peak"] == pytest.approx(np.abs(run["torque"]).max(), rel=1e-6)
+
+
+def test_a_member_that_cannot_run_has_the_reason_and_no_features() -> None:
+    """An inertia of almost nothing vibrates faster than the steps can follow."""
+    spread = {"load.inertia": {"low": 1e-7, "high": 0.6}}
+    table = shards(changed(units={"number": 12, "design": "grid", "spread": spread})).tables(0, 12)[0]
+    failures = table["failure"].to_pylist()
+    assert failures[0] is not None
+    assert "too coarse" in failures[0]
+    assert failures[-1] is None
+    assert np.isnan(table["current_rms"].to_numpy()[0])
+    assert np.isfinite(table["current_rms"].to_numpy()[-1])
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ({"kind": "no_such_fault", "share": 0.5}, 'faults.kind = "no_such_fault" is not known; there are misalignment'),
+        ({"kind": "misalignment", "share": 0.5, "numbers": {"colour": 1.0}}, 'misalignment has no "colour"'),
+        ({"kind": "lubrication_loss", "share": 0.5, "onset": {"law": "sudden"}}, 'onset.law = "sudden" is not known'),
+    ],
+)
+def test_a_fault_without_its_part_is_refused_before_the_first_run(fault: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        population(changed(faults=[fault])).check()
+
+
+def test_samples_are_decimated_series() -> None:
+    kept = shards(changed(samples={"columns": ["current", "tracking_error"], "every": 5}))
+    table = kept.tables(0, 4)[1]
+    assert table is not None
+    assert table.column_names == ["member", "current", "tracking_error"]
+    whole = kept.member(2)[1]
+    assert whole is not None
+    assert table["current"].to_pylist()[2] == pytest.approx(whole["current"].to_pylist()[0][::5], rel=1e-6)
+
+
+def test_the_plan_of_a_population_is_untouched_by_one_member() -> None:
+    made = shards(SMALL)
+    made.member(1)
+    assert made.plan == Plan.of(SMALL)
