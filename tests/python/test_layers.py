@@ -11,7 +11,7 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "orders", "identification", "rig", "studies"}
+ANALYSES = {"dataset", "analysis", "orders", "identification", "rig", "studies"}
 BELOW = {"files", "native", "simulation"}
 LAYERS = {
     "files": {"files"},
@@ -20,6 +20,7 @@ LAYERS = {
     "analysis": {*BELOW, "analysis"},
     "orders": {*BELOW, "analysis", "orders"},
     "identification": {*BELOW, "analysis", "orders", "identification"},
+    "dataset": {*BELOW, "dataset"},
     "export": {*BELOW, "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
     "studies": {*BELOW, "analysis", "orders", "studies"},

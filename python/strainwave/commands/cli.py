@@ -15,6 +15,7 @@ from strainwave.commands.cache import cache
 from strainwave.commands.compare import compare
 from strainwave.commands.compensate import compensate
 from strainwave.commands.compile import compile
+from strainwave.commands.dataset import dataset
 from strainwave.commands.demo import demo
 from strainwave.commands.drives import drives
 from strainwave.commands.gears import gears
@@ -40,6 +41,7 @@ VERBS = (
     compensate,
     demo,
     simulate,
+    dataset,
     compare,
     show,
     gears,

@@ -1,0 +1,1 @@
+"""Labelled data sets of simulated drives: faults, plans, shards that any number of processes write, features and splits."""

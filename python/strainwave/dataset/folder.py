@@ -1,0 +1,134 @@
+"""The folder of a data set, which is also the queue of its shards: what is there is done, what is locked is in work."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from pathlib import Path
+
+from strainwave.dataset.plan import Plan
+from strainwave.files.writing import making, remove_drafts, replacing
+from strainwave.messages import one_line
+
+PLAN, MANIFEST, CARD, SUMS, LOCKS = "plan.toml", "manifest.json", "card.md", "SHA256SUMS", ".work.lock"
+READ_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class DatasetFolder:
+    """The files of a data set."""
+
+    path: Path
+
+    @cached_property
+    def plan(self) -> Plan:
+        if not (self.path / PLAN).exists():
+            raise ValueError(one_line(f"{self.path} is no data set: it has no {PLAN}"))
+        return Plan.read(self.path / PLAN)
+
+    def shard(self, number: int, kind: str = "shards") -> Path:
+        return self.path / kind / f"shard-{number:06d}.parquet"
+
+    def has(self, number: int) -> bool:
+        """True if a shard is complete: it is renamed into place, after its samples."""
+        return self.shard(number).exists()
+
+    def done(self) -> int:
+        """Return how many shards are complete."""
+        with suppress(FileNotFoundError):
+            return sum(entry.name.startswith("shard-") for entry in os.scandir(self.path / "shards"))
+        return 0
+
+    @property
+    def is_finished(self) -> bool:
+        return (self.path / SUMS).exists()
+
+    def begin(self, plan: Plan, text: bytes, manifest: str, card: str) -> None:
+        """Write what describes the data set, or check that the folder has the same plan.
+
+        Raises:
+            FileExistsError: the folder has another plan, or other files
+        """
+        with making(self.path):
+            if (self.path / PLAN).exists():
+                if self.plan.digest != plan.digest:
+                    raise FileExistsError(
+                        one_line(f"{self.path} has the data set of another plan ({self.plan.name}); take another folder")
+                    )
+                if (self.path / MANIFEST).exists() and (self.path / MANIFEST).read_text() != manifest:
+                    raise FileExistsError(
+                        one_line(
+                            f"{self.path / MANIFEST} is of another version of strainwave, or of another gear set; "
+                            "take another folder, so that all shards are made alike"
+                        )
+                    )
+            elif any(each.name != LOCKS for each in self.path.iterdir()):
+                raise FileExistsError(one_line(f"{self.path} is not empty; take another folder, or move what is there"))
+            for folder in ("shards", *(["samples"] if plan.samples else [])):
+                (self.path / folder).mkdir(exist_ok=True)
+            for name, content in ((CARD, card.encode()), (MANIFEST, manifest.encode()), (PLAN, text)):
+                with replacing(self.path / name) as file:
+                    file.write(content)
+
+    # Locks are of bytes of one file: that of a shard's number. They end with the process, however it ends.
+
+    @contextmanager
+    def lock(self, number: int) -> Iterator[bool]:
+        """Lock a shard; yields False if another process works on it."""
+        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
+        try:
+            yield _locked(descriptor, 1, number)
+        finally:
+            os.close(descriptor)
+
+    def remove_drafts(self) -> None:
+        """Remove what killed workers left, unless a worker is at work."""
+        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
+        try:
+            if _locked(descriptor, 0, 0):
+                for folder in (self.path, self.path / "shards", self.path / "samples"):
+                    remove_drafts(folder)
+        finally:
+            os.close(descriptor)
+
+    def finish(self) -> bool:
+        """Write the hashes of all files and remove what is temporary; True if all shards are there and nobody is at work."""
+        if self.done() < self.plan.shards:
+            return False
+        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
+        try:
+            if not _locked(descriptor, 0, 0):
+                return False
+            for folder in (self.path, self.path / "shards", self.path / "samples"):
+                remove_drafts(folder)
+            names = [PLAN, MANIFEST, CARD]
+            names += [f"{path.relative_to(self.path)}" for path in sorted(self.path.glob("s*/shard-*.parquet"))]
+            with replacing(self.path / SUMS) as file:
+                for name in names:
+                    file.write(f"{_hash(self.path / name)}  {name}\n".encode())
+            (self.path / LOCKS).unlink(missing_ok=True)
+        finally:
+            os.close(descriptor)
+        return True
+
+
+def _locked(descriptor: int, length: int, start: int) -> bool:
+    """Lock bytes of a file, of length 0 all; False if another process has locked some of them."""
+    try:
+        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, length, start)
+    except OSError:
+        return False
+    return True
+
+
+def _hash(path: Path) -> str:
+    digest = sha256()
+    with path.open("rb") as file:
+        while block := file.read(READ_BYTES):
+            digest.update(block)
+    return digest.hexdigest()

@@ -1,0 +1,387 @@
+"""Members of a data set: unit, condition, stage, fault and all numbers of each, as a function of plan and index."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, kinematics, sensor
+from strainwave.dataset.features import FeatureSet
+from strainwave.dataset.plan import Plan, Range, check_unit_grid
+from strainwave.dataset.profiles import command_of, peak_speed
+from strainwave.dataset.sampling import Indices, hashed, points
+from strainwave.dataset.splits import share_of
+from strainwave.files.gear_set import GearSet
+from strainwave.messages import listed, one_line, quoted
+from strainwave.parameters import every, unknown
+from strainwave.simulation.resolution import check_resolution
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import command_unit, outputs
+
+Array = NDArray[np.float64]
+
+HEALTHY = "healthy"
+MAX_SIGNAL_FREQUENCY_SHARE = 0.4  # of the sample rate: the highest order at the highest speed
+SPEED_OVERSHOOT = 1.2  # of the actual over the commanded speed
+UNIT_DESIGN, CONDITION_DESIGN, PROFILE_SEED, NOISE_SEED = 0x11, 0x12, 0x13, 0x14  # columns of the hash of the plan's seed
+FEATURE_SIGNALS = {"current": "A", "torque": "N.m", "input_speed": "rad/s", "tracking_error": "rad"}
+
+
+class Condition(NamedTuple):
+    """A condition: what all its members have in common."""
+
+    number: int
+    profile: str
+    numbers: Mapping[str, float]
+    temperature: float
+    load_torque: float
+    command: Scenario
+
+
+@dataclass(frozen=True, eq=False)
+class MemberTable:
+    """Members of one condition, each array of shape (members,).
+
+    Args:
+        index, unit, stage, usage: of each
+        fault: label of each unit
+        severity: by the kind of fault, at this stage
+        parameters: value of every varying number of the drive, by its path
+        refusals: why a member cannot be run, by its place here
+    """
+
+    condition: Condition
+    index: Indices
+    unit: Indices
+    stage: Indices
+    usage: Array
+    fault: NDArray[np.str_]
+    severity: Mapping[str, Array]
+    parameters: Mapping[str, Array]
+    refusals: Mapping[int, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """The members of a plan.
+
+    Raises:
+        ValueError: the gear set does not exist, the plan names what it does not have, steps are too coarse or samples too rare
+    """
+
+    plan: Plan
+
+    def __post_init__(self) -> None:
+        if command_unit(self.drive) != "rad":
+            raise ValueError(
+                one_line(
+                    f"drive = {quoted(self.plan.drive)} is commanded in {command_unit(self.drive)}; the profiles are motions "
+                    "of the output, so take a drive with a position controller"
+                )
+            )
+        check_unit_grid(self.plan.units.design, self.plan.units.number, list(self.unit_ranges.values()))
+
+    def check(self) -> None:
+        """Refuse steps that are too coarse and samples that alias, in any condition.
+
+        Raises:
+            ValueError, FloatingPointError: says which condition, and what to do
+        """
+        table = self.plan.simulation
+        for number in range(self.plan.condition_count):
+            condition = self.condition(number)
+            check_resolution(self.drive, table.dt, 0.0, condition.temperature)
+            self._check_aliasing(condition)
+        self._check_samples()
+
+    # The drive
+
+    @cached_property
+    def gear_set(self) -> GearSet:
+        return GearSet.read(self.plan.drive)
+
+    @cached_property
+    def drive(self) -> Drive:
+        """The drive of every member, but for numbers; faults are numbers of its parts."""
+        drive = self.gear_set.drive
+        if not self.plan.simulation.noise_in_loop:
+            drive = drive.replace(sensors=_without_noise(drive.sensors))
+        if not self.plan.faults:
+            return drive
+        from strainwave.dataset.faults import prepared
+
+        return prepared(drive, [each for table in range(len(self.plan.faults)) for each in self._fault_models(table, {}, 1.0)])
+
+    @cached_property
+    def nominal(self) -> dict[str, float]:
+        return {path: parameter.value for path, parameter in every(self.drive).items()}
+
+    @cached_property
+    def parameter_units(self) -> dict[str, str]:
+        """Unit of each number that varies, by its path."""
+        return {path: every(self.drive)[path].unit for path in self.paths}
+
+    @cached_property
+    def paths(self) -> list[str]:
+        """Numbers that vary between members, in the order of the drive."""
+        varying = {*self.spread, *self._fault_paths}
+        return [path for path in self.nominal if path in varying] or [next(iter(self.nominal))]
+
+    @cached_property
+    def recorded(self) -> list[str]:
+        """Outputs that features and samples need."""
+        known = outputs(self.drive)
+        wanted = ["input_angle", "input_speed", "output_angle", *(each for each in FEATURE_SIGNALS if each in known)]
+        kept = self.plan.samples.columns if self.plan.samples else ()
+        return list(dict.fromkeys([*wanted, *kept]))
+
+    @cached_property
+    def features(self) -> FeatureSet:
+        known = {*outputs(self.drive), "tracking_error"}
+        signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in known}
+        gear = self.drive.gear.kinematics
+        tooth = None
+        if self.plan.features.tooth_orders and isinstance(gear, kinematics.StrainWave):
+            tooth = round(2.0 * gear.circular_spline_teeth / gear.flexspline_teeth, 6)
+        return FeatureSet(signals, self.plan.features.orders, tooth)
+
+    # Units
+
+    @cached_property
+    def spread(self) -> dict[str, Range]:
+        """Range of each number with a spread over the units, by its path in the drive."""
+        stated = dict(self.plan.units.spread)
+        for path in stated:
+            if path not in self.nominal:
+                raise unknown(path, self.nominal)
+        ranges = {path: spread.around(self.nominal[path]) for path, spread in stated.items()}
+        if self.plan.units.catalogue_spread:
+            entries = self.gear_set.sources.items()
+            known = {path: entry.spread for path, entry in entries if entry.spread and path in self.nominal}
+            if not known:
+                raise ValueError(
+                    f"units.catalogue_spread: the gear set {quoted(self.plan.drive)} states no spread of a number; "
+                    "give units.spread instead"
+                )
+            ends = {
+                path: sorted(self.nominal[path] * (1.0 + sign * share) for sign in (-1, 1)) for path, share in known.items()
+            }
+            ranges = {path: Range(low=low, high=high) for path, (low, high) in ends.items()} | ranges
+        limits = every(self.drive)
+        for path, both in ranges.items():
+            low, high = limits[path].low, limits[path].high
+            if both.low < low or both.high > high:
+                raise ValueError(
+                    f"units.spread: {path} in [{both.low:g}, {both.high:g}] {limits[path].unit} must lie in [{low:g}, {high:g}]"
+                )
+        return {path: ranges[path] for path in self.nominal if path in ranges}
+
+    @cached_property
+    def unit_ranges(self) -> dict[tuple[str, str], Range]:
+        """All that can vary between units: numbers of the drive, and severity and numbers of each fault."""
+        ranges = {("spread", path): both for path, both in self.spread.items()}
+        for table in self.plan.faults:
+            ranges["severity", table.label] = _range(table.severity)
+            ranges |= {(table.label, name): _range(number) for name, number in sorted(table.numbers.items())}
+        return ranges
+
+    def unit_values(self, first: int, last: int) -> dict[tuple[str, str], Array]:
+        """Values of all unit quantities for units `first` up to `last`, not included."""
+        plan = self.plan
+        return _drawn(plan.units.design, self._seed(UNIT_DESIGN), plan.units.number, self.unit_ranges, first, last)
+
+    def unit_faults(self, units: Indices) -> NDArray[np.str_]:
+        """Label of the fault of each unit; the shares are met to within one unit."""
+        shares = {table.label: table.share for table in self.plan.faults}
+        return share_of(self.plan.seed, "fault", units, self.plan.units.number, shares, HEALTHY)
+
+    def unit_split(self, units: Indices) -> NDArray[np.str_]:
+        return share_of(self.plan.seed, "unit", units, self.plan.units.number, self.plan.splits.shares, "test")
+
+    def condition_split(self, conditions: Indices) -> NDArray[np.str_]:
+        count = self.plan.condition_count
+        return share_of(self.plan.seed, "condition", conditions, count, self.plan.splits.shares, "test")
+
+    # Conditions
+
+    def condition(self, number: int) -> Condition:
+        local = number
+        place = 0
+        while local >= self.plan.conditions[place].number:
+            local -= self.plan.conditions[place].number
+            place += 1
+        table = self.plan.conditions[place]
+        seed = self._seed(CONDITION_DESIGN + 0x100 * place)
+        values = _drawn(table.design, seed, table.number, table.ranges, local, local + 1)
+        numbers = {name: float(value[0]) for name, value in values.items()}
+        temperature, load_torque = numbers.pop("temperature"), numbers.pop("load_torque")
+        profile_seed = int(hashed(self.plan.seed, PROFILE_SEED, np.array([number]))[0] >> np.uint64(1))
+        command = command_of(table.profile, numbers, self.plan.simulation.duration, profile_seed)
+        return Condition(number, table.profile, numbers, temperature, load_torque, command)
+
+    @cached_property
+    def condition_units(self) -> dict[str, str]:
+        """Unit of each number of a condition, by its name."""
+        from strainwave.dataset.profiles import PROFILES
+
+        found: dict[str, str] = {}
+        for table in self.plan.conditions:
+            found |= PROFILES[table.profile].units
+        return found
+
+    # Members
+
+    def members(self, first: int, last: int) -> MemberTable:
+        """Members `first` up to `last`, not included, all of one condition."""
+        plan = self.plan
+        index = np.arange(first, last)
+        within = index % plan.members_per_condition
+        unit, stage = within // plan.life.stages, within % plan.life.stages
+        condition = self.condition(first // plan.members_per_condition)
+        own = self.unit_values(int(unit[0]), int(unit[-1]) + 1)
+        place = unit - unit[0]
+        values = {name: column[place] for name, column in own.items()}
+        share_of_life = stage / (plan.life.stages - 1.0) if plan.life.stages > 1 else np.ones(len(index))
+        usage = plan.life.usage * share_of_life
+        fault = self.unit_faults(unit)
+        parameters = {path: np.full(len(index), self.nominal[path]) for path in self.paths}
+        parameters |= {path: values["spread", path] for path in self.spread}
+        severity = self._severities(values, fault, usage)
+        refusals = self._put_faults(parameters, values, fault, severity)
+        return MemberTable(condition, index, unit, stage, usage, fault, severity, parameters, refusals)
+
+    @property
+    def noise_seed(self) -> int:
+        return self._seed(NOISE_SEED)
+
+    def _seed(self, column: int) -> int:
+        return int(hashed(self.plan.seed, column, np.zeros(1, dtype=np.int64))[0] >> np.uint64(33))
+
+    # Faults
+
+    @property
+    def fault_kinds(self) -> list[str]:
+        return list(dict.fromkeys(kind for table in self.plan.faults for kind in table.kinds))
+
+    def _severities(self, values: Mapping[tuple[str, str], Array], fault: NDArray[np.str_], usage: Array) -> dict[str, Array]:
+        severity = {kind: np.zeros(len(usage)) for kind in self.fault_kinds}
+        for table in self.plan.faults:
+            rows = fault == table.label
+            onset = np.ones(len(usage)) if table.onset is None else _onset_shares(table.onset, usage)
+            for kind in table.kinds:
+                severity[kind][rows] = (values["severity", table.label] * onset)[rows]
+        return severity
+
+    def _put_faults(
+        self,
+        parameters: dict[str, Array],
+        values: Mapping[tuple[str, str], Array],
+        fault: NDArray[np.str_],
+        severity: Mapping[str, Array],
+    ) -> dict[int, str]:
+        refusals: dict[int, str] = {}
+        for place, table in enumerate(self.plan.faults):
+            for row in np.flatnonzero(fault == table.label).tolist():
+                numbers = {name: float(values[table.label, name][row]) for name in table.numbers}
+                own = {path: float(parameters[path][row]) for path in self.spread}
+                try:
+                    changes = self._changes(place, own, numbers, float(severity[table.kind][row]))
+                except ValueError as error:
+                    refusals[row] = one_line(str(error))
+                    continue
+                for path, value in changes.items():
+                    parameters[path][row] = value
+        return refusals
+
+    def _changes(self, table: int, own: Mapping[str, float], numbers: Mapping[str, float], severity: float) -> dict[str, float]:
+        from strainwave.dataset.faults import changes
+
+        drive = self.drive.replace(dict(own)) if own else self.drive
+        return changes(drive, self._fault_models(table, numbers, severity))
+
+    def _fault_models(self, table: int, numbers: Mapping[str, float], severity: float) -> list[Any]:
+        """The faults of a table of the plan, with the middle of each range where no number is given."""
+        stated = self.plan.faults[table]
+        middle = {name: 0.5 * (_range(number).low + _range(number).high) for name, number in stated.numbers.items()}
+        first = fault_kind(stated.kind)(**middle | dict(numbers), severity=severity)
+        return [first, *(fault_kind(kind)(severity=severity) for kind in stated.also)]
+
+    @cached_property
+    def _fault_paths(self) -> set[str]:
+        found: set[str] = set()
+        for table in range(len(self.plan.faults)):
+            for severity in (0.5, 1.0):
+                found |= {*self._changes(table, {}, {}, severity)}
+        return found
+
+    # Checks
+
+    def _check_aliasing(self, condition: Condition) -> None:
+        table = self.plan.simulation
+        speed = SPEED_OVERSHOOT * abs(self.drive.gear.kinematics.ratio) * peak_speed(condition.command, table.sample)
+        highest = max(self.features.orders, default=0.0)
+        frequency = highest * speed / (2.0 * np.pi)
+        if frequency * table.sample > MAX_SIGNAL_FREQUENCY_SHARE:
+            needed = MAX_SIGNAL_FREQUENCY_SHARE / frequency
+            raise ValueError(
+                f"condition {condition.number} ({condition.profile}): order {highest:g} reaches {frequency:.4g} Hz; samples "
+                f"{table.sample:g} s apart alias; take simulation.sample = {needed:.2g} s or less, or lower orders"
+            )
+
+    def _check_samples(self) -> None:
+        if self.plan.samples is None:
+            return
+        known = {*outputs(self.drive), "tracking_error"}
+        if wrong := [name for name in self.plan.samples.columns if name not in known]:
+            raise ValueError(f"samples.columns: the drive has no output {quoted(wrong[0])}; there are {listed(known)}")
+
+
+def fault_kind(name: str) -> Any:
+    """Return the class of a fault by its name, as lubrication_loss.
+
+    Raises:
+        ValueError: there is none of this name
+    """
+    from strainwave import _core
+
+    kinds: Mapping[str, Any] = _core.fault_families["fault"]
+    if name not in kinds:
+        raise ValueError(f"faults.kind = {quoted(name)} is not known; there are {listed(kinds)}")
+    return kinds[name]
+
+
+def _onset_shares(table: Any, usage: Array) -> Array:
+    from strainwave import _core
+
+    kinds: Mapping[str, Any] = _core.fault_families["onset"]
+    if table.law not in kinds:
+        raise ValueError(f"onset.law = {quoted(table.law)} is not known; there are {listed(kinds)}")
+    law = kinds[table.law](**table.numbers)
+    stages, places = np.unique(usage, return_inverse=True)
+    return np.array([law.share(each) for each in stages.tolist()])[places]
+
+
+def _range(number: float | Range) -> Range:
+    return number if isinstance(number, Range) else Range(low=number, high=number)
+
+
+def _drawn(design: str, seed: int, count: int, ranges: Mapping[Any, Range], first: int, last: int) -> dict[Any, Array]:
+    """Values of quantities at points of a design; those that do not vary take no dimension of it."""
+    varying = [name for name, both in ranges.items() if both.varies]
+    cube = points(design, seed, count, len(varying), first, last)
+    place = {name: column for column, name in enumerate(varying)}
+    return {
+        name: both.low + (both.high - both.low) * cube[:, place[name]] if both.varies else np.full(last - first, both.low)
+        for name, both in ranges.items()
+    }
+
+
+def _without_noise(sensors: Any) -> Any:
+    """Sensors with their laws alone: their noise is added to the features instead."""
+    laws = {each["name"]: getattr(sensors, each["name"]) for each in type(sensors).fields}
+    return sensors.replace(**{name: law.law for name, law in laws.items() if isinstance(law, sensor.Noisy)})
