@@ -6,7 +6,7 @@ the accuracy that such a split pretends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +57,7 @@ class Benchmark:
         chance: labels shuffled between units, units held out
         detector: the physics-based detector on the same held-out units: faulty or not; None without its alarms
         classifier_detects: the classifier on the same question, units held out; None likewise
+        false_alarms: share of held-out healthy runs for which the detector alarms; None without it
         confusion: counts of label (rows) and answer (columns), units held out, shape (labels, labels)
         labels: in the order of `confusion`
     """
@@ -68,6 +69,7 @@ class Benchmark:
     chance: Score
     detector: Score | None
     classifier_detects: Score | None
+    false_alarms: float | None
     confusion: NDArray[np.int64]
     labels: tuple[str, ...]
 
@@ -77,10 +79,9 @@ class LabelledRuns:
     """Features of runs, with their label, unit and condition.
 
     Args:
-        features: by name, each of shape (runs,)
+        features: by name, each of shape (runs,); not-a-number where a run does not determine one
         label: of each run, shape (runs,)
         unit, condition: number of each run, shape (runs,)
-        alarm: of the physics-based detector, shape (runs,); None if there is none
         healthy: the label of runs without a fault
     """
 
@@ -88,15 +89,12 @@ class LabelledRuns:
     label: Labels
     unit: NDArray[np.int64]
     condition: NDArray[np.int64]
-    alarm: NDArray[np.bool_] | None = None
     healthy: str = "healthy"
 
     def __post_init__(self) -> None:
         runs = len(self.label)
         shapes = {name: np.shape(values) for name, values in self.features.items()}
         shapes |= {"unit": np.shape(self.unit), "condition": np.shape(self.condition)}
-        if self.alarm is not None:
-            shapes["alarm"] = np.shape(self.alarm)
         if wrong := [f"{name} {shape}" for name, shape in shapes.items() if shape != (runs,)]:
             raise ValueError(f"all columns must have the shape ({runs},) of label: {listed(wrong)}")
         if not self.features:
@@ -108,8 +106,8 @@ class LabelledRuns:
         if len(np.unique(self.condition)) < 2:
             raise ValueError("condition must have two values or more: conditions are held out as a whole")
         for name, values in self.features.items():
-            if not np.isfinite(values).all():
-                raise ValueError(f"{name} has values that are not finite; leave out the runs that failed")
+            if np.isinf(values).any():
+                raise ValueError(f"{name} has infinite values; leave out the runs that failed")
 
     @property
     def matrix(self) -> Array:
@@ -117,11 +115,15 @@ class LabelledRuns:
         return np.column_stack(list(self.features.values()))
 
 
-def benchmark(runs: LabelledRuns, seed: int = 0) -> Benchmark:
+Detector = Callable[[NDArray[np.bool_]], NDArray[np.bool_]]
+
+
+def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 0) -> Benchmark:
     """Return how well a random forest recognises the labels of units and conditions that it was not trained on.
 
     Args:
         runs: with their features
+        detector: returns the runs that alarm, shape (runs,), after a calibration on those that are True in its argument
         seed: of the choice of units and conditions, and of the forest
 
     Raises:
@@ -142,15 +144,17 @@ def benchmark(runs: LabelledRuns, seed: int = 0) -> Benchmark:
     def score(train: NDArray[np.bool_], test: NDArray[np.bool_]) -> Score:
         return _score(runs.label[test], _answers(runs, runs.label, train, test, seed), runs.unit[test], seed)
 
-    detector = None if runs.alarm is None else _detects(truth, runs.alarm[held_unit], runs, units, seed)
+    alarms = None if detector is None else detector(~held_unit)[held_unit]
+    sound = truth == runs.healthy
     return Benchmark(
         by_unit=_score(truth, answers, units, seed),
         by_condition=score(~held_condition, held_condition),
         by_both=score(~held_unit & ~held_condition, held_unit & held_condition),
         leaky=score(~held_run, held_run),
         chance=_score(truth, _answers(runs, shuffled, ~held_unit, held_unit, seed), units, seed),
-        detector=detector,
-        classifier_detects=None if detector is None else _detects(truth, answers != runs.healthy, runs, units, seed),
+        detector=None if alarms is None else _detects(truth, alarms, runs, units, seed),
+        classifier_detects=None if alarms is None else _detects(truth, answers != runs.healthy, runs, units, seed),
+        false_alarms=None if alarms is None or not sound.any() else float(alarms[sound].mean()),
         confusion=_confusion(truth, answers, labels),
         labels=labels,
     )
@@ -180,9 +184,7 @@ def _shuffled(runs: LabelledRuns, chance: np.random.Generator) -> Labels:
     return np.asarray(drawn[inverse])
 
 
-def _answers(
-    runs: LabelledRuns, label: Labels, train: NDArray[np.bool_], test: NDArray[np.bool_], seed: int
-) -> Labels:
+def _answers(runs: LabelledRuns, label: Labels, train: NDArray[np.bool_], test: NDArray[np.bool_], seed: int) -> Labels:
     """Labels that a forest trained on some runs gives to others."""
     try:
         from sklearn.ensemble import RandomForestClassifier
