@@ -22,6 +22,7 @@ TREES = 200  # of the forest
 MIN_LEAF = 2  # runs in a leaf
 CONFIDENCE = 0.95
 RESAMPLES = 400  # of units, for an interval
+SHUFFLES = 5  # of labels between units, for chance
 HELD_OUT_SHARE = 0.3  # of the units, and of the conditions
 MIN_UNITS = 8
 EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
@@ -54,7 +55,7 @@ class Benchmark:
         by_condition: conditions held out, units known
         by_both: units and conditions held out
         leaky: runs held out at random, so that units and conditions are known; not a figure to rely on
-        chance: labels shuffled between units, units held out
+        chance: labels shuffled between units, several times, units held out
         detector: the physics-based detector on the same held-out units: faulty or not; None without its alarms
         classifier_detects: the classifier on the same question, units held out; None likewise
         false_alarms: share of held-out healthy runs for which the detector alarms; None without it
@@ -136,7 +137,7 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
     held_unit = _held_out(runs.unit, chance)
     held_condition = _held_out(runs.condition, chance)
     held_run = chance.random(len(runs.label)) < HELD_OUT_SHARE
-    shuffled = _shuffled(runs, chance)
+    shuffled = [_answers(runs, _shuffled(runs, chance), ~held_unit, held_unit, seed) for _ in range(SHUFFLES)]
     answers = _answers(runs, runs.label, ~held_unit, held_unit, seed)
     truth, units = runs.label[held_unit], runs.unit[held_unit]
     labels = tuple(np.unique(runs.label).tolist())
@@ -151,7 +152,7 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
         by_condition=score(~held_condition, held_condition),
         by_both=score(~held_unit & ~held_condition, held_unit & held_condition),
         leaky=score(~held_run, held_run),
-        chance=_score(truth, _answers(runs, shuffled, ~held_unit, held_unit, seed), units, seed),
+        chance=_score(np.tile(truth, SHUFFLES), np.concatenate(shuffled), np.tile(units, SHUFFLES), seed),
         detector=None if alarms is None else _detects(truth, alarms, runs, units, seed),
         classifier_detects=None if alarms is None else _detects(truth, answers != runs.healthy, runs, units, seed),
         false_alarms=None if alarms is None or not sound.any() else float(alarms[sound].mean()),
