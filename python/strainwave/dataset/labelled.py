@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,7 +105,7 @@ def labelled_runs(folder: str | Path) -> tuple[LabelledRuns, LabelledRuns, Detec
     )
 
 
-def _columns(paths: list[Path]) -> tuple[list[str], dict[str, NDArray[np.generic]]]:
+def _columns(paths: list[Path]) -> tuple[list[str], dict[str, NDArray[Any]]]:
     """Names of the features, and the columns of all shards that are used."""
     tables = [read_columns(path) for path in paths]
     roles = {field.name: (field.metadata or {}).get(b"role", b"").decode() for field in tables[0].schema}
