@@ -12,6 +12,7 @@ from typing import Annotated, Any, TextIO
 import typer
 
 from strainwave.commands.cache import cache
+from strainwave.commands.classify import classify
 from strainwave.commands.compare import compare
 from strainwave.commands.compensate import compensate
 from strainwave.commands.compile import compile
@@ -42,6 +43,7 @@ VERBS = (
     demo,
     simulate,
     dataset,
+    classify,
     compare,
     show,
     gears,

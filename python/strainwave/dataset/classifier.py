@@ -1,0 +1,218 @@
+"""A classifier of features, judged on units and conditions that it was not trained on, beside a detector and beside chance.
+
+A split by run puts runs of one unit into both halves. The classifier then recognises the unit and not its fault: `leaky` is
+the accuracy that such a split pretends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.messages import listed
+
+Array = NDArray[np.float64]
+Labels = NDArray[np.str_]
+
+TREES = 200  # of the forest
+MIN_LEAF = 2  # runs in a leaf
+CONFIDENCE = 0.95
+RESAMPLES = 400  # of units, for an interval
+SHUFFLES = 5  # of labels between units, for chance
+HELD_OUT_SHARE = 0.3  # of the units, and of the conditions
+MIN_UNITS = 8
+EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
+
+
+@dataclass(frozen=True)
+class Score:
+    """Balanced accuracy on runs that were held out: the mean over the labels of the share that is recognised.
+
+    Attributes:
+        accuracy: [1]
+        low, high: 95 % interval, by drawing whole units anew (bootstrap over units) [1]
+        runs: that were judged
+        units: that these runs belong to
+    """
+
+    accuracy: float
+    low: float
+    high: float
+    runs: int
+    units: int
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """Scores of the classifier, of a detector, and of chance.
+
+    Attributes:
+        by_unit: units held out, conditions known
+        by_condition: conditions held out, units known
+        by_both: units and conditions held out
+        leaky: runs held out at random, so that units and conditions are known; not a figure to rely on
+        chance: labels shuffled between units, several times, units held out
+        detector: the physics-based detector on the same held-out units: faulty or not; None without its alarms
+        classifier_detects: the classifier on the same question, units held out; None likewise
+        false_alarms: share of held-out healthy runs for which the detector alarms; None without it
+        confusion: counts of label (rows) and answer (columns), units held out, shape (labels, labels)
+        labels: in the order of `confusion`
+    """
+
+    by_unit: Score
+    by_condition: Score
+    by_both: Score
+    leaky: Score
+    chance: Score
+    detector: Score | None
+    classifier_detects: Score | None
+    false_alarms: float | None
+    confusion: NDArray[np.int64]
+    labels: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class LabelledRuns:
+    """Features of runs, with their label, unit and condition.
+
+    Args:
+        features: by name, each of shape (runs,); not-a-number where a run does not determine one
+        label: of each run, shape (runs,)
+        unit, condition: number of each run, shape (runs,)
+        healthy: the label of runs without a fault
+    """
+
+    features: Mapping[str, Array]
+    label: Labels
+    unit: NDArray[np.int64]
+    condition: NDArray[np.int64]
+    healthy: str = "healthy"
+
+    def __post_init__(self) -> None:
+        runs = len(self.label)
+        shapes = {name: np.shape(values) for name, values in self.features.items()}
+        shapes |= {"unit": np.shape(self.unit), "condition": np.shape(self.condition)}
+        if wrong := [f"{name} {shape}" for name, shape in shapes.items() if shape != (runs,)]:
+            raise ValueError(f"all columns must have the shape ({runs},) of label: {listed(wrong)}")
+        if not self.features:
+            raise ValueError("features must name one column or more")
+        if len(np.unique(self.label)) < 2:
+            raise ValueError(f"label must have two values or more, not {listed(np.unique(self.label).tolist())} alone")
+        if (units := len(np.unique(self.unit))) < MIN_UNITS:
+            raise ValueError(f"unit must have {MIN_UNITS} values or more, not {units}: units are held out as a whole")
+        if len(np.unique(self.condition)) < 2:
+            raise ValueError("condition must have two values or more: conditions are held out as a whole")
+        for name, values in self.features.items():
+            if np.isinf(values).any():
+                raise ValueError(f"{name} has infinite values; leave out the runs that failed")
+
+    @property
+    def matrix(self) -> Array:
+        """Features, shape (runs, features)."""
+        return np.column_stack(list(self.features.values()))
+
+
+Detector = Callable[[NDArray[np.bool_]], NDArray[np.bool_]]
+
+
+def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 0) -> Benchmark:
+    """Return how well a random forest recognises the labels of units and conditions that it was not trained on.
+
+    Args:
+        runs: with their features
+        detector: returns the runs that alarm, shape (runs,), after a calibration on those that are True in its argument
+        seed: of the choice of units and conditions, and of the forest
+
+    Raises:
+        ImportError: scikit-learn is not installed; says how to install it
+
+    Source: Breiman2001 for the forest; the interval draws units and not runs, because runs of one unit are alike.
+    """
+    seed = arguments.whole("seed", seed, 0)
+    chance = np.random.default_rng(seed)
+    held_unit = _held_out(runs.unit, chance)
+    held_condition = _held_out(runs.condition, chance)
+    held_run = chance.random(len(runs.label)) < HELD_OUT_SHARE
+    shuffled = [_answers(runs, _shuffled(runs, chance), ~held_unit, held_unit, seed) for _ in range(SHUFFLES)]
+    answers = _answers(runs, runs.label, ~held_unit, held_unit, seed)
+    truth, units = runs.label[held_unit], runs.unit[held_unit]
+    labels = tuple(np.unique(runs.label).tolist())
+
+    def score(train: NDArray[np.bool_], test: NDArray[np.bool_]) -> Score:
+        return _score(runs.label[test], _answers(runs, runs.label, train, test, seed), runs.unit[test], seed)
+
+    alarms = None if detector is None else detector(~held_unit)[held_unit]
+    sound = truth == runs.healthy
+    return Benchmark(
+        by_unit=_score(truth, answers, units, seed),
+        by_condition=score(~held_condition, held_condition),
+        by_both=score(~held_unit & ~held_condition, held_unit & held_condition),
+        leaky=score(~held_run, held_run),
+        chance=_score(np.tile(truth, SHUFFLES), np.concatenate(shuffled), np.tile(units, SHUFFLES), seed),
+        detector=None if alarms is None else _detects(truth, alarms, runs, units, seed),
+        classifier_detects=None if alarms is None else _detects(truth, answers != runs.healthy, runs, units, seed),
+        false_alarms=None if alarms is None or not sound.any() else float(alarms[sound].mean()),
+        confusion=_confusion(truth, answers, labels),
+        labels=labels,
+    )
+
+
+def balanced_accuracy(truth: Labels, answers: Labels) -> float:
+    """Return the mean over the labels of the share of their runs that is recognised.
+
+    >>> balanced_accuracy(np.array(["a", "a", "a", "b"]), np.array(["a", "a", "b", "b"]))
+    0.8333333333333333
+    """
+    return float(np.mean([np.mean(answers[truth == label] == label) for label in np.unique(truth)]))
+
+
+def _held_out(group: NDArray[np.int64], chance: np.random.Generator) -> NDArray[np.bool_]:
+    """True for the runs of a share of the groups, one group at the least."""
+    groups = np.unique(group)
+    held = chance.permutation(groups)[: max(1, round(HELD_OUT_SHARE * len(groups)))]
+    return np.isin(group, held)
+
+
+def _shuffled(runs: LabelledRuns, chance: np.random.Generator) -> Labels:
+    """Labels of other units: each run has the label of the same run of another unit, drawn once for a unit."""
+    units, inverse = np.unique(runs.unit, return_inverse=True)
+    first = np.array([np.flatnonzero(inverse == place)[0] for place in range(len(units))])
+    drawn = chance.permutation(runs.label[first])
+    return np.asarray(drawn[inverse])
+
+
+def _answers(runs: LabelledRuns, label: Labels, train: NDArray[np.bool_], test: NDArray[np.bool_], seed: int) -> Labels:
+    """Labels that a forest trained on some runs gives to others."""
+    try:
+        from sklearn.ensemble import RandomForestClassifier
+    except ImportError:
+        raise ImportError(EXTRA) from None
+    forest = RandomForestClassifier(TREES, min_samples_leaf=MIN_LEAF, class_weight="balanced", random_state=seed, n_jobs=-1)
+    forest.fit(runs.matrix[train], label[train])
+    return np.asarray(forest.predict(runs.matrix[test]))
+
+
+def _detects(truth: Labels, alarm: NDArray[np.bool_], runs: LabelledRuns, units: NDArray[np.int64], seed: int) -> Score:
+    """Score of the question whether a run is faulty."""
+    words = np.array(["healthy", "faulty"])
+    return _score(words[(truth != runs.healthy).astype(int)], words[alarm.astype(int)], units, seed)
+
+
+def _score(truth: Labels, answers: Labels, units: NDArray[np.int64], seed: int) -> Score:
+    chance = np.random.default_rng(seed)
+    members = [np.flatnonzero(units == unit) for unit in np.unique(units)]
+    drawn = []
+    for _ in range(RESAMPLES):
+        rows = np.concatenate([members[place] for place in chance.integers(len(members), size=len(members))])
+        drawn.append(balanced_accuracy(truth[rows], answers[rows]))
+    low, high = np.quantile(drawn, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE])
+    return Score(balanced_accuracy(truth, answers), float(low), float(high), len(truth), len(members))
+
+
+def _confusion(truth: Labels, answers: Labels, labels: tuple[str, ...]) -> NDArray[np.int64]:
+    counts = [[int(np.sum((truth == row) & (answers == column))) for column in labels] for row in labels]
+    return np.array(counts, dtype=np.int64)
