@@ -226,9 +226,9 @@ def change_from(
 ) -> Change:
     """Return how far an order is from its healthy baseline.
 
-    The difference of waves over their spread follows F(2, 2 (runs - 1)) for a healthy gear. That of magnitudes follows Student's
-    t with runs - 1 degrees of freedom; the test is two-sided, as a fault may lessen an order. If the new recording is noisier
-    than the healthy ones, its own standard deviation counts.
+    For a healthy gear the difference of waves over their spread follows F(2, 2 (runs - 1)). That of magnitudes follows
+    Student's t with runs - 1 degrees of freedom. The test is two-sided, as a fault may lessen an order. If the new recording
+    is noisier than the healthy ones, its own standard deviation counts.
 
     Args:
         wave: amplitude times exp(j phase) of the order in the new recording [unit]

@@ -81,7 +81,8 @@ def motion_of(
     """Return the shaft with the column, prepared for orders up to the highest.
 
     A motion of one sense is cut to its last whole revolutions: of the output if it makes one and its angle or the ratio is
-    known, else of the shaft. So no whole order leaks into its neighbours. Samples are averaged as far as the highest order allows.
+    known, else of the shaft. So no whole order leaks into its neighbours. Samples are averaged as far as the highest order
+    allows.
 
     Args:
         recording: with the column, the angle, and `time` if it is known
@@ -94,7 +95,7 @@ def motion_of(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: a column is missing or constant, or the shaft rests, or turns less than a revolution
+        ValueError: a column is missing, or the shaft rests, or turns less than a revolution
     """
     check_recording("recording", recording)
     arguments.text("column", column)
@@ -106,8 +107,6 @@ def motion_of(
     load = record.columns[load_column][kept] if load_column else None
     measured = record.measured[kept]
     _check_turns(turned, angle)
-    if float(np.ptp(series)) == 0.0:
-        raise ValueError(f"{quoted(column)} does not change; orders need a column that was measured: check its name")
     size = _ratio(recording, turned, angle, ratio)
     moves = _senses(turned)
     cut, remarks = _whole(turned, size) if moves == 1 else (slice(None), [])

@@ -23,7 +23,7 @@ from strainwave.diagnose.detection import false_alarm_of
 from strainwave.diagnose.motion import Motion, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
-from strainwave.messages import listed
+from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def order_lines(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: a column is missing, an order is not positive or occurs twice, the shaft rests, or turns less than a
+        ValueError: a column is missing or constant, an order is not positive or occurs twice, the shaft rests, or turns less than a
             revolution
 
     >>> import strainwave as sw
@@ -128,6 +128,8 @@ def order_lines(
     false_alarm = arguments.probability("false_alarm", false_alarm)
     motion = motion_of(recording, column, max(wanted), load_column=load_column, angle=angle, ratio=ratio, rate=rate)
     chosen, left_out = _chosen(wanted, motion)
+    if float(np.ptp(motion.series)) == 0.0:
+        raise ValueError(f"{quoted(column)} does not change; orders need a column that was measured: check its name")
     fitted = dict(zip(chosen, regressions(motion, chosen), strict=True)) if chosen else {}
     near = _near_remarks(chosen, motion)
     return tuple(
