@@ -325,9 +325,7 @@ def _remarks(found: DetectionLimit, noise: float, own: float) -> tuple[str, ...]
             f"without any error the drive has {1e3 * own:.3g} mA around the order, more than the noise of {1e3 * noise:.3g} mA"
         )
     if found.offset > found.current:
-        remarks.append(
-            f"order {found.order:g} has {1e3 * found.offset:.3g} mA in the current without any error; compare it with healthy runs"
-        )
+        remarks.append(f"order {found.order:g} has {1e3 * found.offset:.3g} mA without any error; compare it with healthy runs")
     return tuple(remarks)
 
 

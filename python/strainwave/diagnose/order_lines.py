@@ -110,7 +110,7 @@ def order_lines(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: a column is missing or constant, an order is not positive or occurs twice, the shaft rests, or turns less than a
+        ValueError: a column is missing or constant, an order is not positive or occurs twice, or the shaft turns less than a
             revolution
 
     >>> import strainwave as sw

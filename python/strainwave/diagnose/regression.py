@@ -14,6 +14,7 @@ from strainwave.diagnose.motion import Motion
 Array = NDArray[np.float64]
 
 NEIGHBOURS = 16  # on each side of an order at most, from which the level of the noise is estimated
+GUARD_LINES = 2  # next to an order on each side, into which it leaks where load or speed vary
 MIN_NEIGHBOURS = 6  # on each side at least, if the orders leave room
 NEIGHBOUR_REACH = 0.15  # of an order [1]: within it noise is taken to have one level
 TREND_PERIODS = 4  # half periods in the slow trend
@@ -147,14 +148,14 @@ def regressions(motion: Motion, orders: Sequence[float]) -> list[OrderRegression
 
 
 def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> list[float]:
-    """Return the orders around one, a line apart each, that have noise alone.
+    """Return the orders around one, a line apart each, that have noise alone, without the nearest ones.
 
     >>> neighbours_of(2.0, [2.0, 2.2], 10.0)[:4]
-    [1.9, 2.1, 1.8, 1.7]
+    [1.7, 2.3, 1.6, 2.4]
     """
     reach = max(MIN_NEIGHBOURS, min(NEIGHBOURS, int(NEIGHBOUR_REACH * order * revolutions)))
     found = []
-    for k in range(1, reach + 1):
+    for k in range(GUARD_LINES + 1, GUARD_LINES + reach + 1):
         for place in (order - k / revolutions, order + k / revolutions):
             near = min((abs(place - other) for other in orders if other != order), default=inf)
             if place > 0.25 * order and near * revolutions > 0.75:
