@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from strainwave.analysis.sensitivity import Derivatives, derivatives
     from strainwave.analysis.settling import settling_time
     from strainwave.analysis.steady import equilibrium
+    from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
+    from strainwave.diagnose.order_lines import OrderLine, order_lines
     from strainwave.files.entries import Entry, Quantity
     from strainwave.files.gear_set import GearSet, catalogue, load, save
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
@@ -91,6 +93,7 @@ _LAZY = {
     "Bootstrap": "identification.fitting.bootstrap",
     "Compilation": "native.compile",
     "Combination": "identification.fitting.combinations",
+    "DetectionLimit": "diagnose.detection_limit",
     "Difference": "analysis.difference",
     "Derivatives": "analysis.sensitivity",
     "Ensemble": "simulation.ensemble",
@@ -106,6 +109,7 @@ _LAZY = {
     "Linearisation": "analysis.linear",
     "LostMotion": "tuning.approach",
     "Minima": "identification.fitting.minima",
+    "OrderLine": "diagnose.order_lines",
     "Orders": "orders.order_spectrum",
     "PositioningPath": "tuning.approach",
     "Prediction": "identification.results.prediction",
@@ -136,6 +140,7 @@ _LAZY = {
     "Compensated": "tuning.compensate",
     "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
+    "detection_limit": "diagnose.detection_limit",
     "equilibrium": "analysis.steady",
     "export": "export",
     "fit": "identification.fitting.fit",
@@ -147,6 +152,7 @@ _LAZY = {
     "lost_motion": "tuning.approach",
     "minima": "identification.fitting.minima",
     "modes": "analysis.linear",
+    "order_lines": "diagnose.order_lines",
     "order_spectrum": "orders.order_spectrum",
     "order_amplitudes": "orders.order_spectrum",
     "plan_experiments": "identification.excitation.plan",
@@ -183,6 +189,7 @@ __all__ = [
     "Compensation",
     "Compilation",
     "Derivatives",
+    "DetectionLimit",
     "Difference",
     "Drive",
     "Ensemble",
@@ -200,6 +207,7 @@ __all__ = [
     "LoopMargins",
     "LostMotion",
     "Minima",
+    "OrderLine",
     "Orders",
     "PassivityWarning",
     "PositioningPath",
@@ -232,6 +240,7 @@ __all__ = [
     "compile",
     "control",
     "derivatives",
+    "detection_limit",
     "drives",
     "equilibrium",
     "export",
@@ -252,6 +261,7 @@ __all__ = [
     "modes",
     "motor",
     "order_amplitudes",
+    "order_lines",
     "order_spectrum",
     "plan_experiments",
     "plan_pulses",

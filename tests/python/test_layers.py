@@ -11,7 +11,7 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "orders", "identification", "rig", "studies"}
+ANALYSES = {"analysis", "orders", "identification", "rig", "studies", "diagnose"}
 BELOW = {"files", "native", "simulation"}
 LAYERS = {
     "files": {"files"},
@@ -23,6 +23,7 @@ LAYERS = {
     "export": {*BELOW, "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
     "studies": {*BELOW, "analysis", "orders", "studies"},
+    "diagnose": {*BELOW, "analysis", "orders", "identification", "studies", "diagnose"},
     "report": {*BELOW, *ANALYSES, "report"},
     "commands": {*BELOW, *ANALYSES, "report", "commands", "demo"},
 }

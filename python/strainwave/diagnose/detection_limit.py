@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, kinematic_error
 from strainwave.diagnose.detection import needed_signal_to_noise
-from strainwave.diagnose.motion import motion_of
+from strainwave.diagnose.motion import MAX_SAMPLES, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
 from strainwave.parameters import every
@@ -39,6 +39,7 @@ RUN_IN_TURNS = 2.0  # revolutions of the input before the record
 MIN_RUN_IN = 1.0  # s
 MAX_STEP = 2e-4  # s
 STEP_MARGIN = 0.7  # a twisted gear may be stiffer than one at rest
+MAX_DURATION = 3600.0  # s, of the record
 MIN_TURNS = 3.0  # of the input, in the record
 MIN_SPEED_SHARE = 0.9  # of the speed asked for [1], that a drive must reach
 COLUMN = "current"
@@ -198,7 +199,8 @@ def detection_limit(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an argument is out of range, the drive has no current, does not reach the speed, or the record is too short
+        ValueError: an argument is out of range, the drive has no current, does not reach the speed, or the record is too short or long
+        FloatingPointError: the drive is not stable
 
     Valid for the drive as it is modelled: hysteresis and friction answer a small error otherwise than a large one, so the gain
     is taken at the limit itself. It does not see a line of the same order that has another cause; `offset` is its size in the
@@ -294,8 +296,8 @@ class RecordedOrder:
 def _run(drive: Drive, speed: float, load_torque: float, duration: float, sample_rate: float, order: float) -> Run:
     speed = arguments.number("speed", speed, "rad/s", low=0.0)
     load_torque = arguments.number("load_torque", load_torque, "N.m")
-    duration = arguments.number("duration", duration, "s", low=0.0)
-    sample_rate = arguments.number("sample_rate", sample_rate, "Hz", low=0.0)
+    duration = arguments.number("duration", duration, "s", "(]", 0.0, MAX_DURATION)
+    sample_rate = arguments.number("sample_rate", sample_rate, "Hz", "(]", 0.0, MAX_SAMPLES / duration)
     order = arguments.number("order", order, low=0.0)
     if (turns := speed * duration / tau) * min(order, 1.0) < MIN_TURNS:
         needed = MIN_TURNS / min(order, 1.0) * tau / speed

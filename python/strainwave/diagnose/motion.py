@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 MIN_REVOLUTIONS = 1.0  # of the shaft, below which no order is determined
 MIN_SPEED_SHARE = 0.1  # of a fast speed [1]: slower samples are left out, since friction turns over there
 MAX_SAMPLES = 2**18  # that are used, the last ones
-MAX_PHASE_STEP = 0.25 * pi  # rad of the highest order between two averaged samples
+MAX_PHASE_STEP = 0.125 * pi  # rad of the highest order between two averaged samples: an amplitude loses 0.7 %
 MAX_AVERAGED = 64  # samples in one mean
 MAX_ROUNDING = 1e-6  # revolutions, by which a whole number may be missed
 

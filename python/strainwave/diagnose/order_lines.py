@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.detection import false_alarm_of
+from strainwave.diagnose.detection import amplitude_interval, false_alarm_of
 from strainwave.diagnose.motion import Motion, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
@@ -73,6 +73,11 @@ class OrderLine:
         return complex(self.amplitude * np.exp(1j * self.phase)) if np.isfinite(self.amplitude) else complex(nan, nan)
 
     @property
+    def interval(self) -> tuple[float, float]:
+        """Confidence interval of 95 % of the amplitude of a steady order [unit]; from zero on if noise may give as much."""
+        return amplitude_interval(self.amplitude, self.sigma, self.freedom) if self.determined else (0.0, inf)
+
+    @property
     def determined(self) -> bool:
         """True if the record determines the order."""
         return bool(np.isfinite(self.amplitude))
@@ -121,8 +126,8 @@ def order_lines(
     >>> units = {"time": "s", "input_angle": "rad", "current": "A"}
     >>> recording = sw.Recording({"time": time, "input_angle": theta, "current": current}, units)
     >>> two, four = order_lines(recording, "current", [2.0, 4.0])
-    >>> two.detected, round(two.amplitude, 3), round(two.sigma, 4), four.detected
-    (True, 0.01, 0.0005, False)
+    >>> two.detected, round(two.amplitude, 3), round(two.sigma, 4), four.detected, four.interval[0]
+    (True, 0.01, 0.0005, False, 0.0)
     """
     wanted = _wanted(orders)
     false_alarm = arguments.probability("false_alarm", false_alarm)
