@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     from strainwave.analysis.settling import settling_time
     from strainwave.analysis.steady import equilibrium
     from strainwave.dataset.faults import with_faults
+    from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
+    from strainwave.diagnose.order_lines import OrderLine, order_lines
     from strainwave.files.entries import Entry, Quantity
     from strainwave.files.gear_set import GearSet, catalogue, load, save
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
@@ -94,6 +96,7 @@ _LAZY = {
     "Bootstrap": "identification.fitting.bootstrap",
     "Compilation": "native.compile",
     "Combination": "identification.fitting.combinations",
+    "DetectionLimit": "diagnose.detection_limit",
     "Difference": "analysis.difference",
     "Derivatives": "analysis.sensitivity",
     "Ensemble": "simulation.ensemble",
@@ -109,6 +112,7 @@ _LAZY = {
     "Linearisation": "analysis.linear",
     "LostMotion": "tuning.approach",
     "Minima": "identification.fitting.minima",
+    "OrderLine": "diagnose.order_lines",
     "Orders": "orders.order_spectrum",
     "PositioningPath": "tuning.approach",
     "Prediction": "identification.results.prediction",
@@ -139,6 +143,7 @@ _LAZY = {
     "Compensated": "tuning.compensate",
     "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
+    "detection_limit": "diagnose.detection_limit",
     "equilibrium": "analysis.steady",
     "export": "export",
     "fit": "identification.fitting.fit",
@@ -150,6 +155,7 @@ _LAZY = {
     "lost_motion": "tuning.approach",
     "minima": "identification.fitting.minima",
     "modes": "analysis.linear",
+    "order_lines": "diagnose.order_lines",
     "order_spectrum": "orders.order_spectrum",
     "order_amplitudes": "orders.order_spectrum",
     "plan_experiments": "identification.excitation.plan",
@@ -187,6 +193,7 @@ __all__ = [
     "Compensation",
     "Compilation",
     "Derivatives",
+    "DetectionLimit",
     "Difference",
     "Drive",
     "Ensemble",
@@ -204,6 +211,7 @@ __all__ = [
     "LoopMargins",
     "LostMotion",
     "Minima",
+    "OrderLine",
     "Orders",
     "PassivityWarning",
     "PositioningPath",
@@ -236,6 +244,7 @@ __all__ = [
     "compile",
     "control",
     "derivatives",
+    "detection_limit",
     "drives",
     "equilibrium",
     "export",
@@ -258,6 +267,7 @@ __all__ = [
     "motor",
     "onset",
     "order_amplitudes",
+    "order_lines",
     "order_spectrum",
     "plan_experiments",
     "plan_pulses",

@@ -40,6 +40,7 @@ RESULTS = (
     "Bootstrap",
     "Combination",
     "Derivatives",
+    "DetectionLimit",
     "Difference",
     "Ensemble",
     "ExperimentPlan",
@@ -47,6 +48,7 @@ RESULTS = (
     "FrequencyResponse",
     "Identified",
     "Linearisation",
+    "OrderLine",
     "Orders",
     "Profile",
     "RatingCheck",
@@ -155,6 +157,8 @@ def valid() -> Mapping[str, Any]:
         "pitch_diameter": 10.0, "contact_angle": 0.1, "outer_speed": 0.0, "found": fitted(), "confidence": 0.95, "draws": 20,
         "seed": 0, "max_relative_sigma": 0.1, "profile.path": "friction_input.viscous",
         "interval.path": "friction_input.viscous", "files": ["nothing.csv"], "ripple.recording": turning(), "ratio": 50.0,
+        "order_lines.recording": turning(), "orders": [2.0], "load_column": None, "false_alarm": 1e-3,
+        "detection_limit.order": 2.0, "detection_limit.speed": 20.0, "sample_rate": 500.0, "noise": 0.1,
     }  # fmt: skip
 
 

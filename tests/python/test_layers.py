@@ -11,7 +11,7 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"dataset", "analysis", "orders", "identification", "rig", "studies"}
+ANALYSES = {"analysis", "orders", "identification", "rig", "studies", "dataset", "diagnose"}
 BELOW = {"files", "native", "simulation"}
 LAYERS = {
     "files": {"files"},
@@ -24,6 +24,7 @@ LAYERS = {
     "export": {*BELOW, "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
     "studies": {*BELOW, "analysis", "orders", "studies"},
+    "diagnose": {*BELOW, "analysis", "orders", "identification", "studies", "diagnose"},
     "report": {*BELOW, *ANALYSES, "report"},
     "commands": {*BELOW, *ANALYSES, "report", "commands", "demo"},
 }
