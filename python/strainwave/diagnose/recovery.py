@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
+from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
-from strainwave.studies.actuator_ramp import ERROR, ActuatorRamp
-from strainwave.studies.pure_error import COMBINE, MICRON, placed
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+COMBINE = ("single", "mean", "max")
+MICRON = 1e-6
 ORDERS = (1.0, 2.0, 3.0, 4.0)
 SEEN = ("input_angle", "transmission_error", "current")
 NEIGHBOURS = 8  # lines on each side of an order, whose size tells the noise; but for the next, which has half of the order
@@ -216,6 +217,17 @@ def look(recording: Recording, column: str) -> Seen:
     noise = np.sqrt(np.array([np.mean(lines**2) for lines in near]) / (2.0 * HANN))
     degrees = round(2.0 * len(near[0]) / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)))
     return Seen(_sines(there.amplitude, there.phase), np.maximum(noise, np.finfo(float).tiny), degrees)
+
+
+def placed(law: Any, m: tuple[float, float], c_x: float = 0.0) -> Any:
+    """The law with the shaft at m [m] in the housing and the generator c_x [m] off the shaft along its major axis."""
+    x, y = m
+    return law.replace(
+        housing_eccentricity=float(np.hypot(x, y)),
+        housing_direction=float(np.arctan2(y, x)),
+        generator_eccentricity=abs(c_x),
+        generator_direction=0.0 if c_x >= 0.0 else np.pi,
+    )
 
 
 def harmonics(law: Any) -> Complex:
