@@ -35,18 +35,23 @@ class Unit:
     @property
     def error(self) -> tuple[float, float]:
         """Estimate less truth in size [m] and in direction [rad]; m and -m are the same unless one lobe carries."""
-        estimate = self.result.estimate
+        estimate = self.end
         size = estimate.size - float(np.hypot(*self.m))
         turn = estimate.direction - float(np.arctan2(self.m[1], self.m[0]))
         period = 2.0 * np.pi if estimate.combine == "single" else np.pi
         return size, (turn + 0.5 * period) % period - 0.5 * period
 
     @property
+    def end(self) -> Recovered:
+        """Estimate of the member of the class that the unit has: as a tilt, if it has nothing else."""
+        return self.result.ends[self.kind == "tilt"]
+
+    @property
     def inside(self) -> tuple[bool, bool, bool]:
-        """True where truth is in the interval of the size, of the direction, and in the ellipse."""
-        halves = self.result.estimate.half_widths
-        within = [abs(error) <= half for error, half in zip(self.error, halves, strict=True)]
-        return within[0], within[1], self.result.estimate.contains(self.m)
+        """True where truth is in the interval of the size, of the direction, and in the region of m."""
+        low, high = self.result.size_interval
+        size = float(np.hypot(*self.m))
+        return low <= size <= high, abs(self.error[1]) <= self.end.half_widths[1], self.result.contains(self.m)
 
     @property
     def inside_by_noise(self) -> bool:
@@ -107,9 +112,8 @@ def table(found: list[Unit]) -> str:
             f" {error:>10.2f} um"
         )
     right = np.mean([unit.result.estimate.combine == "max" for unit in found])
-    lines.append(
-        f"way of sharing right: {100.0 * right:.0f} %; detected: {np.mean([unit.result.detected for unit in found]):.0%}"
-    )
+    detected = np.mean([unit.result.detected for unit in found])
+    lines.append(f"way of sharing right: {right:.0%}; detected: {detected:.0%}")
     return "\n".join(lines)
 
 

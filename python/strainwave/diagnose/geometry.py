@@ -1,8 +1,8 @@
 """Misalignment of the wave generator from the motor current of a ramp: one vector m = e1 + h beta, its interval, and its class.
 
 The order lines of the current over the current that the drive makes per error are the orders of the kinematic error. These
-determine m. A set of numbers describes the drive, each with a spread. Drives drawn by these spreads, moved along their regression
-to the mean and the trend of the recorded current, give the uncertainty of the model. Noise of the record adds to it.
+determine m. A set of numbers describes the drive, each with a spread. Drives drawn by these spreads, moved along their
+regression to the mean and the trend of the recorded current, give the uncertainty of the model. Noise of the record adds to it.
 """
 
 from __future__ import annotations
@@ -55,8 +55,9 @@ LOBES = {
     "mean": "both lobes share the load",
     "max": "the lobe further out carries",
 }
+MAX_MISFIT = 5.0  # mean square of the residual of the orders over that of noise and model, by chance in 1 of 10^4 records
 SMALL_TILT = 1e-5  # rad: by which the eccentricity per tilt is taken
-SILENT = "e2 and alpha change no harmonic of the current and are not identifiable from this record"
+SILENT = "e2 and alpha alone change no harmonic and are not identifiable from this record"
 
 
 @dataclass(frozen=True)
@@ -182,8 +183,8 @@ def in_words(eccentricity: Recovered, tilt: Recovered, height: float) -> str:
         way += f" (or {(direction + 180.0) % 360.0:.0f} deg, which makes the same)"
     angles = (float(np.degrees(np.arctan2(value, height))) for value in (tilt.size, tilt.half_widths[0]))
     return (
-        f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of the housing of "
-        f"{_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta "
+        f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of "
+        f"the housing of {_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta "
         f"(95 %, if {LOBES[eccentricity.combine]})"
     )
 
@@ -296,10 +297,11 @@ def trend(recording: Recording) -> tuple[Array, Array]:
     """Return the polynomial of the current over the angle, in Legendre's terms [A], and its standard deviations by noise."""
     angle, current = recording.values("input_angle", "rad"), recording.values("current", "A")
     span = np.polynomial.legendre.legvander(2.0 * (angle - angle.min()) / np.ptp(angle) - 1.0, TREND_DEGREES)
-    found, *_ = np.linalg.lstsq(span, current, rcond=None)
-    white = np.std(np.diff(current - span @ found)) / np.sqrt(2.0)
-    covariance = np.linalg.inv(span.T @ span)
-    return found, white * np.sqrt(np.diag(covariance))
+    found: Array = np.linalg.lstsq(span, current, rcond=None)[0]
+    white = float(np.std(np.diff(current - span @ found)) / np.sqrt(2.0))
+    covariance: Array = np.linalg.inv(span.T @ span)
+    deviations: Array = white * np.sqrt(np.diag(covariance))
+    return found, deviations
 
 
 def ramp_of(recording: Recording, drive: Drive) -> ActuatorRamp:
@@ -367,7 +369,7 @@ def misalignment_from_current(
         _sensitivity(masked, gains, known.parts, reference_error),
         known.parts,
         float(known.law.offset),
-        tuple(_doubts(off)),
+        (*_doubts(off), *_doubts_of_fit(found[best].estimate)),
     )
 
 
@@ -456,6 +458,15 @@ def _doubts(off: Array) -> list[str]:
     return [
         f"The current contradicts the drives of this set: {listed(far)} standard deviations from theirs. The interval does not "
         "count; check load, friction and torque constant first"
+    ]
+
+
+def _doubts_of_fit(estimate: Recovered) -> list[str]:
+    if estimate.misfit < MAX_MISFIT:
+        return []
+    return [
+        f"The orders 1 to 4 do not have the ratios of a misalignment: the mean square of their residual is {estimate.misfit:.3g} times "
+        "that of noise and model. Errors of teeth, a ripple of friction or of the motor, or an e2 beside m explain such orders"
     ]
 
 

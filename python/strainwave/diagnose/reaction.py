@@ -1,13 +1,13 @@
 r"""Current that a kinematic error makes, separated into the part from the reaction of the error and the part from inertia.
 
-A kinematic error e acts on the motor in two ways. The output must follow e, which takes torque for its inertia, and the loops of
-the controller answer to the motion. Besides, the torque T through the gear acts back on the wave generator with T e'. At order n,
-with the input at the speed omega held by the controller and linear parts,
+A kinematic error e acts on the motor in two ways. The output must follow e, which takes torque for its inertia, and the loops
+of the controller answer to the motion. The torque T through the gear also acts back on the wave generator with T e'. At order
+n, with linear parts and the input held at the speed omega by the controller,
 
 .. math:: i_n = T_c(\mathrm{j} n \omega) \left(\frac{H(n \omega)}{N} + \mathrm{j}\, n\, T\right) \frac{e_n}{K_t}
 
-The first part does not depend on the load, the second is proportional to it. A regression over the load separates them, in a model
-and in records. Both are phasors: their sizes do not add up to that of the current.
+The first part does not depend on the load, the second is proportional to it. A regression over the load separates them, in a
+model and in records. Both are phasors: their sizes do not add up to that of the current.
 """
 
 from __future__ import annotations
@@ -142,7 +142,8 @@ def current_per_error(ramp: ActuatorRamp) -> CurrentPerError:
     Args:
         ramp: of the drive; its kinematic error is not used
     """
-    inertia = float(ramp.drive.load.inertia)
+    load: Any = ramp.drive.load
+    inertia = float(load.inertia)
     own = _gain_and_torque(ramp)
     unit = max(abs(own[1]), inertia * (2.0 * ramp.turning) ** 2 / abs(float(ramp.drive.gear.kinematics.ratio)))
     runs = [own] + [_gain_and_torque(ramp.loaded(ramp.load_torque + share * unit)) for share in ADDED_LOADS[1:]]
