@@ -11,7 +11,7 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "orders", "identification", "rig", "studies", "dataset", "diagnose"}
+ANALYSES = {"analysis", "orders", "identification", "dataset", "diagnose", "rig", "studies"}
 BELOW = {"files", "native", "simulation"}
 LAYERS = {
     "files": {"files"},
@@ -21,10 +21,10 @@ LAYERS = {
     "orders": {*BELOW, "analysis", "orders"},
     "identification": {*BELOW, "analysis", "orders", "identification"},
     "dataset": {*BELOW, "dataset"},
+    "diagnose": {*BELOW, "analysis", "orders", "identification", "diagnose"},
     "export": {*BELOW, "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
-    "studies": {*BELOW, "analysis", "orders", "studies"},
-    "diagnose": {*BELOW, "analysis", "orders", "identification", "studies", "diagnose"},
+    "studies": {*BELOW, "analysis", "orders", "diagnose", "studies"},
     "report": {*BELOW, *ANALYSES, "report"},
     "commands": {*BELOW, *ANALYSES, "report", "commands", "demo"},
 }
