@@ -16,6 +16,7 @@ from strainwave.commands.compare import compare
 from strainwave.commands.compensate import compensate
 from strainwave.commands.compile import compile
 from strainwave.commands.demo import demo
+from strainwave.commands.diagnose import diagnose
 from strainwave.commands.drives import drives
 from strainwave.commands.gears import gears
 from strainwave.commands.identify import identify
@@ -36,6 +37,7 @@ VERBS = (
     predict,
     rank,
     orders,
+    diagnose,
     plan_experiments,
     compensate,
     demo,
@@ -48,7 +50,7 @@ VERBS = (
     cache,
     compile,
 )
-WITH_COLUMNS = {"identify", "predict", "rank", "orders"}  # verbs with the options --column and --unit
+WITH_COLUMNS = {"identify", "predict", "rank", "orders", "diagnose"}  # verbs with the options --column and --unit
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 

@@ -1,8 +1,8 @@
 """Comparison of a recording with a baseline of the same joint: the change of each order, its interval and its probability.
 
 Blocks of the baseline are replicates. Their spread contains noise and what varies in a healthy joint: load, temperature and
-place. One recording counts as one replicate however long it is, since its blocks share the temperature and the day. So a drift
-that the baseline shows from its beginning to its end is no alarm afterwards.
+place. Noise is independent from block to block and averages. The rest of the spread does not: all blocks of a recording share
+the temperature and the day. So a drift that the baseline shows from its beginning to its end is no alarm afterwards.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ MAX_BLOCKS = 24  # of a baseline: shorter blocks contain no more of the drift
 MIN_BLOCKS = 6  # of a baseline, by which a spread is estimated
 BLOCK_RESOLUTIONS = 1.5  # resolutions of a block, by which two orders differ at least
 CONFIDENCE = 0.95  # of intervals
+SPREAD_MARGIN = 1.0  # standard deviations of the variance of replicates, added to what noise does not explain of it
 MAX_SPEED_RATIO = 1.25  # by which a block may be faster or slower than all blocks of the baseline
 MAX_LOAD_SHARE = 0.25  # of the spread or size of the baseline's load, by which a block may lie outside of it
 MAX_PLACE_SHARE = 0.1  # of the baseline's range of the angle, by which a block may lie outside of it
@@ -124,8 +125,8 @@ def baseline_of(motions: Sequence[Motion], orders: Sequence[float]) -> Baseline:
     count = min(MAX_BLOCKS, int(whole / tau * lowest / MIN_BLOCK_PERIODS))
     if count < MIN_BLOCKS:
         raise ValueError(
-            f"the baseline is too short: its motion has {whole / tau * lowest:.3g} periods of order {lowest:.4g}; a spread needs "
-            f"{MIN_BLOCKS * MIN_BLOCK_PERIODS:g} ({MIN_BLOCKS} blocks of {MIN_BLOCK_PERIODS:g}); record longer"
+            f"the baseline is too short: its motion has {whole / tau * lowest:.3g} periods of order {lowest:.4g}; a spread "
+            f"needs {MIN_BLOCKS * MIN_BLOCK_PERIODS:g} ({MIN_BLOCKS} blocks of {MIN_BLOCK_PERIODS:g}); record longer"
         )
     travel = whole / count
     blocks = [blocks_of(motion, travel) for motion in motions]
@@ -179,8 +180,8 @@ def compared(
     remarks = [f"{key}; not compared" for key in outside]
     if sparse:
         remarks.append(
-            f"{listed(sorted(sparse))}: the baseline has fewer than {MIN_BLOCKS} blocks in this direction; not compared; record "
-            "both directions"
+            f"{listed(sorted(sparse))}: the baseline has fewer than {MIN_BLOCKS} blocks in this direction; not compared; "
+            "record both directions"
         )
     ranked = tuple(sorted(changes, key=lambda each: (each.false_alarm, -abs(each.change) / each.sigma)))
     return Comparison(ranked, float(planned), tuple(remarks))
@@ -225,10 +226,10 @@ def _change(
     values = np.concatenate(groups)
     spread, freedom = _spread(groups)
     noise = float(np.mean([cell.sigma**2 for one in healthy for cell in one]))
-    spread = max(spread, float(np.sqrt(noise)))
-    own_noise = float(np.mean([cell.sigma**2 for cell in own])) / len(own)
+    own_noise = float(np.mean([cell.sigma**2 for cell in own]))
     mean, amplitude = float(values.mean()), float(np.mean([cell.amplitude for cell in own]))
-    sigma = float(np.sqrt(max(spread**2, own_noise) + spread**2 / len(values)))
+    shared = max(spread**2 - noise, 0.0) + SPREAD_MARGIN * spread**2 * float(np.sqrt(2.0 / freedom))
+    sigma = float(np.sqrt(min(shared, spread**2) + own_noise / len(own) + max(spread**2, noise) / len(values)))
     change = amplitude - mean
     reach = sigma * float(student.isf(0.5 * (1.0 - CONFIDENCE), freedom))
     probability = min(1.0, tests * 2.0 * float(student.sf(abs(change) / sigma, freedom)))

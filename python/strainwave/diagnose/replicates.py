@@ -94,13 +94,13 @@ def motion_of(run: Run) -> Motion:
 
 
 def blocks_of(motion: Motion, travel: float) -> NDArray[np.int_]:
-    """Return for each sample the number of its block of so much motion [rad]; -1 in a rest that is less than a block.
+    """Return the number of the block of each sample, for blocks of so much motion [rad], shape (n,).
 
     A recording of less than one block is one block.
     """
     path = np.cumsum(np.abs(motion.shaft.own.speed) * (motion.shaft.weight > 0.5))
     count = max(int(path[-1] / travel + 1e-9), 1)
-    block = np.minimum((path / (path[-1] / count)).astype(int), count - 1)
+    block: NDArray[np.int_] = np.minimum((path / max(path[-1] / count, 1e-300)).astype(int), count - 1)
     return block
 
 
@@ -137,7 +137,12 @@ def cells_of(
 
 
 def _block_cells(
-    motion: Motion, orders: Sequence[float], masks: Sequence[NDArray[np.bool_]], inside: NDArray[np.bool_], columns: Array, white: Array
+    motion: Motion,
+    orders: Sequence[float],
+    masks: Sequence[NDArray[np.bool_]],
+    inside: NDArray[np.bool_],
+    columns: Array,
+    white: Array,
 ) -> list[list[Cell | None]]:
     """Return the cells of one block."""
     shaft = motion.shaft
