@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,17 +15,47 @@ from strainwave.commands.progress import progress
 
 if TYPE_CHECKING:
     from strainwave.diagnose.diagnosis import Diagnosis, Question
-    from strainwave.diagnose.refusals import Run
+    from strainwave.diagnose.refusals import JointRecording
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
+PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
 ALARM = 3  # exit code if a recording changed
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """Options of a planned recording."""
+
+    plan: Annotated[bool, typer.Option("--plan", help="Compute what a recording of the drive --gear would show.")] = False
+    speed: Annotated[float | None, numeric("With --plan: speed of the input, in rad/s.")] = None
+    load: Annotated[float | None, numeric("With --plan: torque at the output against the motion, in N.m; usually none.")] = None
+    duration: Annotated[float | None, numeric("With --plan: length of the record, in s.")] = None
+    noise: Annotated[float | None, numeric("With --plan: standard deviation of a sample of the current, in A.")] = None
+    sample_rate: Annotated[float | None, numeric("With --plan: samples of the current per second, in Hz; usually 1000.")] = None
+    probability: Annotated[float | None, numeric("With --plan: that such an error is found; usually 0.9.")] = None
+
+    def check_unused(self) -> None:
+        """Raise ValueError for an option of a plan without --plan."""
+        names = ("speed", "load", "duration", "noise", "sample_rate", "probability")
+        if given := [f"--{name.replace('_', '-')}" for name in names if getattr(self, name) is not None]:
+            raise ValueError(f"{given[0]} belongs to a planned recording: add --plan, or leave it out")
+
+    def needed(self, name: str) -> float:
+        """Return an option that a plan cannot do without."""
+        value = getattr(self, name)
+        if value is None:
+            raise ValueError(f"--plan needs --{name.replace('_', '-')}: add it")
+        return float(value)
 
 
 @with_groups
 def diagnose(
-    paths: Annotated[list[Path], typer.Argument(metavar="RECORDING…", help="Recordings of a joint, in the order of time.")],
     given: FileOptions,
+    planned: PlanOptions,
+    paths: Annotated[
+        list[Path] | None, typer.Argument(metavar="RECORDING…", help="Recordings of a joint, in the order of time.")
+    ] = None,
     gear: Annotated[str | None, typer.Option(help="Gear of the joint: a set by name, or a gear file.")] = None,
     baseline: Annotated[
         list[Path] | None, typer.Option(help="Recording of the healthy joint, or a folder of them; repeat as needed.")
@@ -46,8 +76,15 @@ def diagnose(
 
     Without a baseline lines are compared with noise and with the expected values of the gear alone. A recording without an
     alarm is no proof of health: the report contains the smallest change that would be one. The exit code is 3 if a recording
-    differs from the baseline.
+    differs from the baseline. With --plan no recording is needed: the drive is simulated, and the smallest error that a record
+    would show is printed.
     """
+    if planned.plan:
+        _plan(gear, planned, order or [], false_alarm, out)
+        return
+    planned.check_unused()
+    if not paths:
+        raise ValueError("no recording is given: name one or more files, or add --plan for what a recording would show")
     from strainwave.files.writing import write_folder
     from strainwave.identification.joints import ALL
     from strainwave.identification.reading.source import measurement_files
@@ -71,6 +108,51 @@ def diagnose(
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(written)[:-1])}")
     if any(each.alarms for each in found):
         raise typer.Exit(ALARM)
+
+
+def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:
+    """Write and print the detection limits of a drive."""
+    from strainwave.commands.options import number_option
+    from strainwave.diagnose.detection_limit import detection_limit
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import write_folder
+    from strainwave.report.diagnose_plan import PlannedRecord, plan_files, plan_summary
+    from strainwave.report.provenance import Provenance
+
+    if gear is None:
+        raise ValueError("--plan needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
+    model = GearSet.read(gear)
+    record = PlannedRecord(
+        model.name,
+        planned.needed("speed"),
+        0.0 if planned.load is None else planned.load,
+        planned.needed("duration"),
+        1000.0 if planned.sample_rate is None else planned.sample_rate,
+        planned.needed("noise"),
+    )
+    wanted = [number_option(each) for each in orders] or list(PLANNED_ORDERS)
+    drive, limits = model.drive, []
+    with progress(len(wanted)) as turn:
+        for order in wanted:
+            turn(f"order {order:g}")
+            limits.append(
+                detection_limit(
+                    drive,
+                    speed=record.speed,
+                    load_torque=record.load_torque,
+                    duration=record.duration,
+                    sample_rate=record.sample_rate,
+                    noise=record.noise,
+                    order=order,
+                    probability=0.9 if planned.probability is None else planned.probability,
+                    false_alarm=false_alarm,
+                    tests=len(wanted),
+                )
+            )
+    files = plan_files(record, limits, Provenance.of_this_command([]))
+    write_folder(out, files)
+    print(plan_summary(record, limits))
+    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
 
 
 def _question(
@@ -148,7 +230,7 @@ def _of_joint(
 
 def _run_of(
     file: MeasurementFile, joint: str | None, mapping: Callable[[Path], FileMapping], question: Question, rate: float | None
-) -> Run:
+) -> JointRecording:
     from strainwave.diagnose.refusals import usable
     from strainwave.identification.reading.recognise import recognise
 

@@ -1,1 +1,1 @@
-"""Diagnosis of a gear from recordings: orders against noise and against a baseline, condition and remaining life."""
+"""Diagnosis of a gear from what its actuator measures: orders against noise and a baseline, what is detectable, and life."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.replicates import SENSES, Cell, Motion, apart, blocks_of, cells_of
+from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
 
 Array = NDArray[np.float64]
@@ -108,7 +108,7 @@ class Baseline:
         return [[cell for block in one if (cell := block[direction][order]) is not None] for one in self.cells]
 
 
-def baseline_of(motions: Sequence[Motion], orders: Sequence[float]) -> Baseline:
+def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Baseline:
     """Return the replicates of recordings of a healthy joint.
 
     Args:
@@ -140,7 +140,7 @@ def baseline_of(motions: Sequence[Motion], orders: Sequence[float]) -> Baseline:
 
 
 def compared(
-    baseline: Baseline, motion: Motion, *, false_alarm: float = 1e-3, new: Sequence[float] = (), searched: float = 1.0
+    baseline: Baseline, motion: JointMotion, *, false_alarm: float = 1e-3, new: Sequence[float] = (), searched: float = 1.0
 ) -> Comparison:
     """Return the change of each order of a recording against a baseline.
 

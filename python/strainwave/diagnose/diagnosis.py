@@ -12,8 +12,8 @@ import numpy as np
 from strainwave import arguments
 from strainwave.diagnose.baseline import Comparison, baseline_of, compared
 from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogue_life, condition, trend
-from strainwave.diagnose.refusals import WAVE_ORDER, Run
-from strainwave.diagnose.replicates import SENSES, Cell, Motion, apart, cells_of, gear_lines, motion_of
+from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
+from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.files.gear_set import GearSet
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import Ripple, ripple
@@ -116,7 +116,7 @@ class RunDiagnosis:
     """
 
     name: str
-    run: Run
+    run: JointRecording
     ripple: Ripple
     wave: WaveRipple | None
     orders: tuple[OrderAgainstNoise, ...]
@@ -185,10 +185,10 @@ class Question:
 
 
 def diagnosed(
-    runs: Sequence[Run],
+    runs: Sequence[JointRecording],
     question: Question,
     *,
-    baseline: Sequence[Run] = (),
+    baseline: Sequence[JointRecording] = (),
     joint: str = "",
     refused: Mapping[str, str] | None = None,
 ) -> Diagnosis:
@@ -211,7 +211,7 @@ def diagnosed(
         why = "; ".join(refused.values())
         raise ValueError(why or "there is no recording to diagnose; give one or more")
     _check_alike([*runs, *baseline])
-    healthy = [motion_of(run) for run in baseline]
+    healthy = [joint_motion(run) for run in baseline]
     known = [line for run in baseline for line in gear_lines(_blind(run, question))]
     done = [_run(run, question, healthy, known) for run in runs]
     remarks: list[str] = []
@@ -235,7 +235,7 @@ def diagnosed(
     )
 
 
-def named_orders(run: Run, question: Question) -> tuple[NamedOrder, ...]:
+def named_orders(run: JointRecording, question: Question) -> tuple[NamedOrder, ...]:
     """Return the orders that a strain wave gear may have over the angle of a shaft; empty if its ratio is not known."""
     per_input = run.per_input
     if not np.isfinite(per_input):
@@ -254,13 +254,13 @@ def named_orders(run: Run, question: Question) -> tuple[NamedOrder, ...]:
     return tuple(orders)
 
 
-def _blind(run: Run, question: Question) -> Ripple:
+def _blind(run: JointRecording, question: Question) -> Ripple:
     return ripple(
         run.recording, run.column, angle=run.angle, side=run.side, ratio=run.ratio, rate=run.rate, other_angles=run.others
     )
 
 
-def _check_alike(runs: Sequence[Run]) -> None:
+def _check_alike(runs: Sequence[JointRecording]) -> None:
     """Raise ValueError for recordings that cannot be compared."""
     first = runs[0]
     for run in runs[1:]:
@@ -272,9 +272,9 @@ def _check_alike(runs: Sequence[Run]) -> None:
                 )
 
 
-def _run(run: Run, question: Question, healthy: Sequence[Motion], known: Sequence[float]) -> RunDiagnosis:
+def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]) -> RunDiagnosis:
     found = _blind(run, question)
-    motion = motion_of(run)
+    motion = joint_motion(run)
     orders = _against_noise(motion, named_orders(run, question), found, question)
     comparison, remarks = _compared(motion, found, question, healthy, known)
     verdict, reason = _verdict(orders, comparison, found, question, bool(healthy), remarks)
@@ -295,7 +295,7 @@ def _run(run: Run, question: Question, healthy: Sequence[Motion], known: Sequenc
 
 
 def _compared(
-    motion: Motion, found: Ripple, question: Question, healthy: Sequence[Motion], known: Sequence[float]
+    motion: JointMotion, found: Ripple, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]
 ) -> tuple[Comparison | None, list[str]]:
     """Return the comparison with the baseline, or why there is none."""
     if not healthy:
@@ -314,7 +314,7 @@ def _compared(
 
 
 def _against_noise(
-    motion: Motion, named: Sequence[NamedOrder], found: Ripple, question: Question
+    motion: JointMotion, named: Sequence[NamedOrder], found: Ripple, question: Question
 ) -> tuple[OrderAgainstNoise, ...]:
     """Return the named orders that the samples follow and the record separates, each with its threshold."""
     seen = [each for each in named if each.order <= found.highest]
@@ -381,7 +381,7 @@ def _verdict(
     return "no line found", "no line stands out of the noise, which is no proof of health"
 
 
-def _wave(motion: Motion, found: Ripple) -> WaveRipple | None:
+def _wave(motion: JointMotion, found: Ripple) -> WaveRipple | None:
     """Return the ripple of the wave generator: of the lines of a blind search the one that is order 2 of the ratio."""
     own = [line for line in found.lines if line.kind in ("order", "either") and not line.joint]
     line = _wave_line(own, motion, found)
@@ -392,7 +392,7 @@ def _wave(motion: Motion, found: Ripple) -> WaveRipple | None:
     return WaveRipple(line.order, line.order_sigma, found.concluded, line.false_alarm, _by_load(motion, orders))
 
 
-def _wave_line(own: Sequence[Line], motion: Motion, found: Ripple) -> Line | None:
+def _wave_line(own: Sequence[Line], motion: JointMotion, found: Ripple) -> Line | None:
     reach = WAVE_RESOLUTIONS / motion.span
     per_input = motion.run.per_input
     if motion.run.side == "input":
@@ -405,7 +405,7 @@ def _wave_line(own: Sequence[Line], motion: Motion, found: Ripple) -> Line | Non
     return max(near, key=lambda line: line.evidence, default=None)
 
 
-def _by_load(motion: Motion, orders: Sequence[float]) -> tuple[LoadCell, ...]:
+def _by_load(motion: JointMotion, orders: Sequence[float]) -> tuple[LoadCell, ...]:
     """Return the amplitude of the first order in each direction at each level of the load."""
     shaft = motion.shaft
     size, moving = np.abs(shaft.load), shaft.weight > 0.5
@@ -440,7 +440,7 @@ def _trend(done: Sequence[RunDiagnosis], question: Question, remarks: list[str])
         return None
 
 
-def _life(runs: Sequence[Run], question: Question, remarks: list[str]) -> CatalogueLife | None:
+def _life(runs: Sequence[JointRecording], question: Question, remarks: list[str]) -> CatalogueLife | None:
     """Return the life by the maker's formula, with torque and speed of all recordings."""
     if question.gear_set is None or question.ratio is None:
         return None
@@ -467,7 +467,7 @@ def _life(runs: Sequence[Run], question: Question, remarks: list[str]) -> Catalo
         return None
 
 
-def _output_torque(run: Run, question: Question) -> np.ndarray | None:
+def _output_torque(run: JointRecording, question: Question) -> np.ndarray | None:
     """Return the torque at the output [N.m]; of a motor's torque or current it contains the friction of the input."""
     ratio = question.ratio
     if ratio is None or question.gear_set is None:

@@ -27,7 +27,7 @@ SPEED_QUANTILE = 0.5  # of the moving samples: half of them must be slow enough 
 
 
 @dataclass(frozen=True)
-class Run:
+class JointRecording:
     """A recording of one joint that a diagnosis can use.
 
     Attributes:
@@ -71,7 +71,7 @@ def usable(
     side: Side | None = None,
     rate: float | None = None,
     other_angles: Mapping[str, str] | None = None,
-) -> Run:
+) -> JointRecording:
     """Return a recording as a diagnosis uses it.
 
     Args:
@@ -106,14 +106,14 @@ def usable(
         )
     turning, angle, known, remarks = with_angle(recording, side, rate)
     try:
-        run = Run(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
+        run = JointRecording(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
         _check_motion(run)
     except ValueError as error:
         raise ValueError(str(error) if str(error).startswith(f"{name}:") else f"{name}: {error}") from None
     return run
 
 
-def _check_motion(run: Run) -> None:
+def _check_motion(run: JointRecording) -> None:
     """Raise ValueError for a shaft that rests, turns too little or too fast for the samples."""
     raw = run.recording.values(run.angle, "rad")
     if (travel := float(np.ptp(raw))) < MIN_TRAVEL:

@@ -9,7 +9,7 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.diagnose.refusals import Run
+from strainwave.diagnose.refusals import JointRecording
 from strainwave.files.units import convert
 from strainwave.orders.floor import Floor, floor_under
 from strainwave.orders.ripple import Ripple
@@ -25,7 +25,7 @@ SENSES = (("forward", 1.0), ("backward", -1.0))
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class JointMotion:
     """A run evenly in time, with its smooth part taken out.
 
     Attributes:
@@ -36,7 +36,7 @@ class Motion:
         timed: True if the time is known
     """
 
-    run: Run
+    run: JointRecording
     shaft: Moving
     floor: Floor
     step: float
@@ -44,7 +44,7 @@ class Motion:
 
     @property
     def travel(self) -> float:
-        """Motion to and fro that counts [rad]."""
+        """JointMotion to and fro that counts [rad]."""
         return float(np.sum(np.abs(self.shaft.own.speed) * (self.shaft.weight > 0.5)))
 
     @property
@@ -77,7 +77,7 @@ class Cell:
     place: float
 
 
-def motion_of(run: Run) -> Motion:
+def joint_motion(run: JointRecording) -> JointMotion:
     """Return a run with friction over speed, inertia and gravity taken out of its torque or current.
 
     Raises:
@@ -90,10 +90,12 @@ def motion_of(run: Run) -> Motion:
     shaft = moving(angles[run.angle], record.columns[run.column], others)
     weight = np.where(record.measured, shaft.weight, 0.0)
     shaft = Moving(shaft.shafts, shaft.series, shaft.smooth, shaft.load, weight, shaft.outliers)
-    return Motion(run, shaft, floor_under(shaft.series * weight, weight), record.step if record.timed else 1.0, record.timed)
+    return JointMotion(
+        run, shaft, floor_under(shaft.series * weight, weight), record.step if record.timed else 1.0, record.timed
+    )
 
 
-def blocks_of(motion: Motion, travel: float) -> NDArray[np.int_]:
+def blocks_of(motion: JointMotion, travel: float) -> NDArray[np.int_]:
     """Return the number of the block of each sample, for blocks of so much motion [rad], shape (n,).
 
     A recording of less than one block is one block.
@@ -105,7 +107,7 @@ def blocks_of(motion: Motion, travel: float) -> NDArray[np.int_]:
 
 
 def cells_of(
-    motion: Motion, orders: Sequence[float], block: NDArray[np.int_], parts: Sequence[NDArray[np.bool_]] | None = None
+    motion: JointMotion, orders: Sequence[float], block: NDArray[np.int_], parts: Sequence[NDArray[np.bool_]] | None = None
 ) -> list[list[list[Cell | None]]]:
     """Return the amplitude of each order in each part of each block, by least squares over all of them together.
 
@@ -137,7 +139,7 @@ def cells_of(
 
 
 def _block_cells(
-    motion: Motion,
+    motion: JointMotion,
     orders: Sequence[float],
     masks: Sequence[NDArray[np.bool_]],
     inside: NDArray[np.bool_],

@@ -146,8 +146,8 @@ def _life_lines(found: Diagnosis) -> Iterator[str]:
         early, median, late = (number(each, 3) for each in life.remaining)
         yield (
             f"remaining life by the maker's formula: {median} h, 80 % interval {early} to {late} h (L10 {number(life.l10, 3)} "
-            f"h at {number(life.average_torque, 3)} N·m and {number(life.average_speed, 3)} rpm, {number(life.hours, 4)} h used); "
-            "it assumes that the gear always works as in these recordings, and knows nothing of its condition"
+            f"h at {number(life.average_torque, 3)} N·m and {number(life.average_speed, 3)} rpm, {number(life.hours, 4)} h "
+            "used); it assumes that the gear always works as in these recordings, and knows nothing of its condition"
         )
     if found.trend is not None:
         trend = found.trend

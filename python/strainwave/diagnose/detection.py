@@ -1,0 +1,265 @@
+r"""Statistics of detection: is there a line in noise of unknown level, how large is it, and how large must it be.
+
+The amplitudes of the sine and the cosine of an order are found by least squares under Gaussian noise. The generalised
+likelihood ratio test for a line compares their size with that of the noise around the order (Kay1998, linear model of unknown
+variance):
+
+.. math:: F = \frac{|a|^2}{p \, \sigma^2}
+
+with a the p = 2 amplitudes, each of standard deviation :math:`\sigma`, estimated with :math:`\nu` degrees of freedom. Noise
+alone makes it follow :math:`F(p, \nu)`; a line of amplitude A the non-central F with :math:`\lambda = A^2 / \sigma^2`.
+Several orders tested together share the stated rate of false alarms (Bonferroni's bound).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, nan, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MAX_SIGNAL_TO_NOISE = 1e6  # amplitude over standard deviation: beyond it noise does not matter
+CONFIDENCE = 0.95
+MIN_BASELINE_RUNS = 3  # healthy recordings, whose spread is an estimate
+
+
+def false_alarm_of(evidence: float, parts: int, freedom: float, tests: int = 1) -> float:
+    """Return the probability that noise alone gives as much in any of some tests.
+
+    Args:
+        evidence: F of a test [1]
+        parts: amplitudes in it, two for each line [1]
+        freedom: degrees of freedom of the level of the noise [1]; inf if the level is known
+        tests: number of tests that share the rate
+
+    >>> round(false_alarm_of(6.9078, 2, inf), 6)  # exp(-F) for a known level
+    0.001
+    """
+    from scipy.stats import chi2, f
+
+    single = f.sf(evidence, parts, freedom) if isfinite(freedom) else chi2.sf(parts * evidence, parts)
+    return min(1.0, tests * float(single))
+
+
+def threshold_of(false_alarm: float, parts: int, freedom: float, tests: int = 1) -> float:
+    """Return the F that noise alone exceeds with this probability in any of some tests.
+
+    >>> round(threshold_of(1e-3, 2, inf), 4)
+    6.9078
+    """
+    from scipy.stats import chi2, f
+
+    single = false_alarm / tests
+    return float(f.isf(single, parts, freedom)) if isfinite(freedom) else float(chi2.isf(single, parts)) / parts
+
+
+def power_of(signal_to_noise: float, false_alarm: float, freedom: float, tests: int = 1) -> float:
+    """Return the probability that a line is detected.
+
+    Args:
+        signal_to_noise: amplitude over the standard deviation of an amplitude's part [1]
+        false_alarm: allowed probability of a false alarm, over all tests
+        freedom: degrees of freedom of the level of the noise
+        tests: number of tests that share the rate
+
+    >>> round(power_of(0.0, 1e-3, 60.0), 6), round(power_of(5.0, 1e-3, inf), 3)
+    (0.001, 0.919)
+    """
+    from scipy.stats import ncf, ncx2
+
+    if signal_to_noise == 0.0:
+        return false_alarm / tests
+    threshold, shift = threshold_of(false_alarm, 2, freedom, tests), signal_to_noise**2
+    tail = ncf.sf(threshold, 2, freedom, shift) if isfinite(freedom) else ncx2.sf(2.0 * threshold, 2, shift)
+    return float(tail)
+
+
+def needed_signal_to_noise(probability: float, false_alarm: float, freedom: float, tests: int = 1) -> float:
+    """Return the amplitude over its standard deviation that is detected with a probability.
+
+    >>> round(needed_signal_to_noise(0.9, 1e-3, inf), 3)
+    4.88
+    """
+    from scipy.optimize import brentq
+
+    if probability <= false_alarm / tests:
+        return 0.0
+    high = 1.0
+    while power_of(high, false_alarm, freedom, tests) < probability and high < MAX_SIGNAL_TO_NOISE:
+        high *= 2.0
+    return float(brentq(lambda size: power_of(size, false_alarm, freedom, tests) - probability, 0.0, high, xtol=1e-9))
+
+
+def amplitude_interval(
+    amplitude: float, sigma: float, freedom: float = inf, confidence: float = CONFIDENCE
+) -> tuple[float, float]:
+    """Return the confidence interval of the amplitude of a line.
+
+    It inverts the distribution of the amplitude found, that of Rice for a known level of the noise. So it covers the true
+    amplitude with the stated confidence at every amplitude. A symmetric interval does not do so near zero. Its lower end is
+    zero if noise alone may give as much.
+
+    Args:
+        amplitude: found, any unit
+        sigma: standard deviation of each of its two parts, in that unit
+        freedom: degrees of freedom of the level of the noise
+        confidence: of the interval
+
+    >>> low, high = amplitude_interval(1.0, 0.1)
+    >>> round(low, 3), round(high, 3)
+    (0.798, 1.191)
+    >>> amplitude_interval(0.1, 0.1)[0]
+    0.0
+    """
+    from scipy.optimize import brentq
+
+    confidence = arguments.probability("confidence", confidence)
+    if not sigma > 0.0:
+        return amplitude, amplitude
+    outside = 0.5 * (1.0 - confidence)
+    size = amplitude / sigma
+    if size > MAX_SIGNAL_TO_NOISE:
+        return amplitude, amplitude
+    margin = 4.0 * sqrt(max(1.0, size)) + 0.5 * size * (8.0 / sqrt(freedom) if isfinite(freedom) else 0.0) + 8.0
+
+    def bound(tail: float) -> float:
+        """Return the true amplitude of which one as small as that found is seen with the probability of the tail."""
+        if _below(size, 0.0, freedom) <= tail:
+            return 0.0
+        return float(brentq(lambda true: _below(size, true, freedom) - tail, 0.0, size + margin, xtol=1e-9))
+
+    return sigma * bound(1.0 - outside), sigma * bound(outside)
+
+
+def _below(size: float, true: float, freedom: float) -> float:
+    """Return the probability of an amplitude below that found, over sigma, for a true one."""
+    from scipy.stats import chi2, f, ncf, ncx2
+
+    if isfinite(freedom):
+        law = f.cdf(0.5 * size**2, 2, freedom) if true == 0.0 else ncf.cdf(0.5 * size**2, 2, freedom, true**2)
+    else:
+        law = chi2.cdf(size**2, 2) if true == 0.0 else ncx2.cdf(size**2, 2, true**2)
+    return float(law)
+
+
+@dataclass(frozen=True)
+class OrderBaseline:
+    """Amplitude of an order in healthy recordings, and its spread from run to run.
+
+    Attributes:
+        order: periods per revolution [1]
+        wave: mean of amplitude and phase as a complex number, at one reference angle [unit]; the magnitude alone is its real
+            part if the recordings have no common angle
+        spread: standard deviation of one run, of each part of the wave, or of the magnitude [unit]
+        runs: number of healthy recordings
+        same_reference: True if phases are comparable
+    """
+
+    order: float
+    wave: complex
+    spread: float
+    runs: int
+    same_reference: bool
+
+    @classmethod
+    def of(cls, order: float, waves: Sequence[complex], *, same_reference: bool) -> OrderBaseline:
+        """Return the baseline of an order from its waves in healthy recordings, at least three.
+
+        Args:
+            order: periods per revolution [1]
+            waves: amplitude times exp(j phase) of each recording [unit], shape (runs,)
+            same_reference: True if angle 0 of all recordings is the same position of the shaft
+
+        Raises:
+            ValueError: there are fewer than three recordings, or a wave is not finite
+        """
+        values: Complex = np.asarray(waves, dtype=np.complex128)
+        if len(values) < MIN_BASELINE_RUNS:
+            raise ValueError(
+                f"a baseline has {len(values)} healthy recordings; the spread between runs needs {MIN_BASELINE_RUNS} or more"
+            )
+        if not np.isfinite(values).all():
+            raise ValueError(
+                f"a wave of order {order:g} in the baseline is not finite; leave out recordings without that order"
+            )
+        if same_reference:
+            mean = complex(values.mean())
+            spread = sqrt(float(np.sum(np.abs(values - mean) ** 2)) / (2.0 * (len(values) - 1)))
+        else:
+            sizes = np.abs(values)
+            mean, spread = complex(float(sizes.mean())), float(sizes.std(ddof=1))
+        return cls(order, mean, spread, len(values), same_reference)
+
+
+@dataclass(frozen=True)
+class Change:
+    """Difference of an order from its healthy baseline.
+
+    Attributes:
+        amplitude: size of the difference [unit], of the waves if phases are comparable, else of the magnitudes
+        interval: of 95 % confidence of the true difference [unit]
+        false_alarm: probability that a healthy gear differs as much
+        detected: True if that is less than allowed
+    """
+
+    amplitude: float
+    interval: tuple[float, float]
+    false_alarm: float
+    detected: bool
+
+
+def change_from(
+    wave: complex,
+    sigma: float,
+    baseline: OrderBaseline,
+    *,
+    allowed: float = 1e-3,
+    tests: int = 1,
+    confidence: float = CONFIDENCE,
+) -> Change:
+    """Return how far an order is from its healthy baseline.
+
+    For a healthy gear the difference of waves over their spread follows F(2, 2 (runs - 1)). That of magnitudes follows
+    Student's t with runs - 1 degrees of freedom. The test is two-sided, as a fault may lessen an order. If the new recording
+    is noisier than the healthy ones, its own standard deviation counts.
+
+    Args:
+        wave: amplitude times exp(j phase) of the order in the new recording [unit]
+        sigma: standard deviation of each of its parts [unit]
+        baseline: of the order
+        allowed: probability of a false alarm, over all tests
+        tests: number of orders tested together
+        confidence: of the interval
+
+    Valid where the spread between healthy runs is the same in both parts of the wave.
+
+    >>> healthy = [1.0 + 0.01j, 1.02 + 0.0j, 0.99 - 0.01j, 1.01 + 0.02j, 0.98 + 0.0j]
+    >>> baseline = OrderBaseline.of(2.0, healthy, same_reference=True)
+    >>> change_from(1.01 + 0.0j, 0.01, baseline).detected, change_from(1.3 + 0.2j, 0.01, baseline).detected
+    (False, True)
+    """
+    from scipy.stats import t
+
+    own = max(sigma, baseline.spread)
+    spread = max(sqrt(own**2 + baseline.spread**2 / baseline.runs), 1e-300)
+    if not np.isfinite(wave):
+        return Change(nan, (0.0, inf), 1.0, False)
+    if baseline.same_reference:
+        freedom = 2.0 * (baseline.runs - 1)
+        difference = abs(wave - baseline.wave)
+        alarm = false_alarm_of(0.5 * (difference / spread) ** 2, 2, freedom, tests)
+        interval = amplitude_interval(difference, spread, freedom, confidence)
+    else:
+        freedom = baseline.runs - 1.0
+        difference = abs(abs(wave) - baseline.wave.real)
+        alarm = min(1.0, tests * 2.0 * float(t.sf(difference / spread, freedom)))
+        half = float(t.isf(0.5 * (1.0 - confidence), freedom)) * spread
+        interval = (max(0.0, difference - half), difference + half)
+    return Change(difference, interval, alarm, alarm < allowed)

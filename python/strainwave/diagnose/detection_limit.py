@@ -1,0 +1,340 @@
+r"""Detection limit: the smallest kinematic error that the motor current of a drive shows, computed before anything is recorded.
+
+The drive is simulated twice in its own closed loop, with noise-free sensors: without error, and with an error of the order. The
+difference of the waves of the current over the error is the gain G [A/rad]. Noise of standard deviation :math:`\sigma_i` in M
+samples leaves :math:`\sigma = \sigma_i \sqrt{2 / M}` (RifeBoorstyn1974). The smallest signal to noise :math:`\sqrt{\lambda}`
+that the test of `order_lines` detects follows from the non-central F distribution (Kay1998):
+
+.. math:: A_{\min} = \frac{\sigma \sqrt{\lambda}}{|G|}
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import degrees, hypot, inf, pi, radians, sqrt, tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments, kinematic_error
+from strainwave.diagnose.detection import needed_signal_to_noise
+from strainwave.diagnose.motion import motion_of
+from strainwave.diagnose.regression import OrderRegression, regressions
+from strainwave.files.recording import Recording
+from strainwave.parameters import every
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
+from strainwave.simulation.resolution import COARSEST
+from strainwave.simulation.run import simulate
+from strainwave.simulation.scenario import Scenario, constant, ramp
+
+Array = NDArray[np.float64]
+
+ARCMINUTE = radians(1.0 / 60.0)  # rad
+ACCURACY = ARCMINUTE  # rad: amplitude that makers allow for the accuracy of positioning of usual gears
+PROBE = ARCMINUTE  # rad: error of the first run; later ones have the limit itself
+PROBES = 3  # runs with an error
+MAX_PROBE = 60.0 * ARCMINUTE  # rad: error of any run
+MIN_PROBE = 1e-3 * ARCMINUTE  # rad
+RUN_IN_TURNS = 2.0  # revolutions of the input before the record
+MIN_RUN_IN = 1.0  # s
+MAX_STEP = 2e-4  # s
+STEP_MARGIN = 0.7  # a twisted gear may be stiffer than one at rest
+MIN_TURNS = 3.0  # of the input, in the record
+MIN_SPEED_SHARE = 0.9  # of the speed asked for [1], that a drive must reach
+COLUMN = "current"
+ERROR = "gear.kinematic_error"
+
+
+@dataclass(frozen=True)
+class Run:
+    """Motion at one speed under one load, from which a detection limit is computed.
+
+    Attributes:
+        drive: with noise-free sensors, its own kinematic error replaced
+        speed: of the input [rad/s], as a size
+        load_torque: at the output [N.m]
+        duration: of the record, after the run-in [s]
+        sample_rate: of the current [Hz]
+        order: of the error, periods per revolution of the input [1]
+    """
+
+    drive: Drive
+    speed: float
+    load_torque: float
+    duration: float
+    sample_rate: float
+    order: float
+
+    @property
+    def run_in(self) -> float:
+        """Time before the record, whole samples [s]."""
+        wanted = max(MIN_RUN_IN, RUN_IN_TURNS * tau / self.speed)
+        return float(np.ceil(wanted * self.sample_rate)) / self.sample_rate
+
+    def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
+        """Return the record of a run with an error of the order, after the run-in.
+
+        Args:
+            amplitude: of the error at the output [rad]
+            phase: of it [rad], as of a sine
+
+        Raises:
+            ValueError: the drive does not reach the speed
+        """
+        law = kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase])
+        drive = self.drive.replace({ERROR: law})
+        ratio = float(drive.gear.kinematics.ratio)
+        output = self.speed / abs(ratio)
+        length = self.run_in + self.duration
+        start = {"output_speed": output, "input_speed": output * ratio}
+        fastest = _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
+        run = simulate(
+            drive,
+            self._command(output, length),
+            min(MAX_STEP, STEP_MARGIN * COARSEST / fastest, 1.0 / self.sample_rate),
+            sample=1.0 / self.sample_rate,
+            load_torque=self.load_torque,
+            initial=start,
+            record=["input_angle", "output_angle", COLUMN],
+        )
+        record = run.between(self.run_in, length)
+        self._check_speed(record)
+        return record
+
+    def _command(self, output: float, length: float) -> Scenario:
+        """Return the command at which the output turns with the speed: a speed of a speed loop, else an angle."""
+        held = getattr(self.drive.control, "law", self.drive.control)
+        return constant(output, length) if held.name == "pi" else ramp(output, length)
+
+    def _check_speed(self, record: Recording) -> None:
+        turned = float(np.ptp(record["input_angle"]))
+        if turned < MIN_SPEED_SHARE * self.speed * self.duration:
+            raise ValueError(
+                f"the drive turns its input by {turned:.4g} rad in {self.duration:g} s; speed = {self.speed:g} rad/s makes "
+                f"{self.speed * self.duration:.4g} rad. Take a lower speed or load, or a drive with a controller"
+            )
+
+
+@dataclass(frozen=True)
+class DetectionLimit:
+    """Smallest kinematic error of an order that the motor current shows.
+
+    Attributes:
+        order: periods per revolution of the input [1]
+        amplitude: of the error at the output [rad]; inf if the current does not answer
+        current: amplitude of the current that it makes [A]
+        gain: amplitude and phase of the current over the error [A/rad]
+        sigma: standard deviation of an amplitude of the current by the noise [A]
+        signal_to_noise: amplitude over standard deviation that is needed [1]
+        freedom: degrees of freedom of the level of the noise around the order
+        samples: M of the record
+        revolutions: of the input in the record that is used
+        probability: with which such an error is detected
+        false_alarm: probability of an alarm without error
+        accuracy: error that is allowed for this gear [rad]
+        offset: amplitude that the order has in the current without any error [A]
+        remarks: what limits the limit, in words
+    """
+
+    order: float
+    amplitude: float
+    current: float
+    gain: complex
+    sigma: float
+    signal_to_noise: float
+    freedom: int
+    samples: int
+    revolutions: float
+    probability: float
+    false_alarm: float
+    accuracy: float
+    offset: float
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def arcminutes(self) -> float:
+        """Amplitude of the error at the output [arcmin]."""
+        return self.amplitude / ARCMINUTE
+
+    @property
+    def insensitive(self) -> bool:
+        """True if an error as large as the gear may have is not detected: no alarm then means nothing."""
+        return self.amplitude > self.accuracy
+
+
+def detection_limit(
+    drive: Drive,
+    *,
+    speed: float,
+    load_torque: float,
+    duration: float,
+    sample_rate: float,
+    noise: float,
+    order: float,
+    probability: float = 0.9,
+    false_alarm: float = 1e-3,
+    accuracy: float = ACCURACY,
+    tests: int = 1,
+) -> DetectionLimit:
+    """Return the smallest kinematic error of an order that the motor current shows, for this drive and this record.
+
+    Args:
+        drive: with a controller that holds a speed or follows an angle, and a motor whose current is recorded. Noise of its
+            sensors is left out, and its kinematic error is replaced
+        speed: of the input [rad/s], positive
+        load_torque: that holds the output back, besides the load's own [N.m]
+        duration: of the record [s]
+        sample_rate: of the current [Hz]
+        noise: standard deviation of a sample of the recorded current [A], white up to half the rate. Noise of a bandwidth b
+            below that counts more: noise times the root of sample_rate / (2 b)
+        order: periods per revolution of the input [1]
+        probability: with which the error is to be detected
+        false_alarm: probability of an alarm without error, over all tests
+        accuracy: amplitude of the error that this gear may have [rad]; beyond it the run is insensitive
+        tests: number of orders that are looked for together
+
+    Returns:
+        The limit and what it follows from.
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an argument is out of range, the drive has no current, does not reach the speed, or the record is too short
+
+    Valid for the drive as it is modelled: hysteresis and friction answer a small error otherwise than a large one, so the gain
+    is taken at the limit itself. It does not see a line of the same order that has another cause; `offset` is its size in the
+    model.
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(
+    ...     gear=sw.Gear(kinematics=sw.kinematics.StrainWave(), stiffness=sw.stiffness.Linear(k=8000.0), damping=2.0),
+    ...     motor=sw.motor.CurrentSource(torque_constant=0.05, inertia=1.5e-4),
+    ...     control=sw.control.PI(proportional=4.0, integral=100.0, limit=50.0),
+    ...     load=sw.loads.Inertia(inertia=0.05),
+    ... )
+    >>> record = {"speed": 10.0, "duration": 20.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}
+    >>> loaded, unloaded = (detection_limit(drive, load_torque=load, **record) for load in (20.0, 0.0))
+    >>> loaded.insensitive, unloaded.insensitive
+    (False, True)
+    """
+    run = _run(arguments.drive(drive), speed, load_torque, duration, sample_rate, order)
+    noise = arguments.number("noise", noise, "A", "[)", 0.0)
+    probability = arguments.probability("probability", probability)
+    false_alarm = arguments.probability("false_alarm", false_alarm)
+    accuracy = arguments.number("accuracy", accuracy, "rad", low=0.0)
+    tests = arguments.whole("tests", tests, 1)
+    healthy = RecordedOrder.of(run.with_error(0.0), order)
+    sigma = healthy.sigma(hypot(noise, healthy.own_noise))
+    needed = needed_signal_to_noise(probability, false_alarm, healthy.regression.freedom, tests)
+    gain, limit = 0.0j, PROBE
+    for _ in range(PROBES):
+        probe = min(max(limit, MIN_PROBE), MAX_PROBE)
+        gain = (RecordedOrder.of(run.with_error(probe), order).wave - healthy.wave) / probe
+        limit = sigma * needed / abs(gain) if abs(gain) > 0.0 else inf
+    found = DetectionLimit(
+        order=order,
+        amplitude=limit,
+        current=sigma * needed,
+        gain=gain,
+        sigma=sigma,
+        signal_to_noise=needed,
+        freedom=healthy.regression.freedom,
+        samples=healthy.samples,
+        revolutions=healthy.revolutions,
+        probability=probability,
+        false_alarm=false_alarm,
+        accuracy=accuracy,
+        offset=abs(healthy.wave),
+    )
+    return replace(found, remarks=_remarks(found, noise, healthy.own_noise))
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedOrder:
+    """Regression of an order on the motion of a record, with the current of the record.
+
+    Attributes:
+        regression: of the order
+        series: current in averaged rows [A], shape (n,)
+        every: samples averaged in one row
+        revolutions: of the input in the rows
+    """
+
+    regression: OrderRegression
+    series: Array
+    every: int
+    revolutions: float
+
+    @classmethod
+    def of(cls, record: Recording, order: float) -> RecordedOrder:
+        """Return the regression of an order on a record."""
+        motion = motion_of(record, COLUMN, order)
+        return cls(regressions(motion, [order])[0], motion.series, motion.every, motion.revolutions)
+
+    @property
+    def samples(self) -> int:
+        """M, samples of the record that are used."""
+        return len(self.series) * self.every
+
+    @property
+    def wave(self) -> complex:
+        """Amplitude times exp(j phase) of the order [A], as of a sine."""
+        sine, cosine = (self.regression.mean_estimator @ self.series).tolist()
+        return complex(sine, cosine)
+
+    @property
+    def own_noise(self) -> float:
+        """Standard deviation of a sample of white noise with the level that the current itself has around the order [A]."""
+        return sqrt(self.every * float(self.regression.variance(self.series[:, None])[0]))
+
+    def sigma(self, noise: float) -> float:
+        """Return the standard deviation of an amplitude [A] under white noise of a sample [A]."""
+        return noise * sqrt(0.5 * float(np.trace(self.regression.mean_factor)) / self.every)
+
+
+def _run(drive: Drive, speed: float, load_torque: float, duration: float, sample_rate: float, order: float) -> Run:
+    speed = arguments.number("speed", speed, "rad/s", low=0.0)
+    load_torque = arguments.number("load_torque", load_torque, "N.m")
+    duration = arguments.number("duration", duration, "s", low=0.0)
+    sample_rate = arguments.number("sample_rate", sample_rate, "Hz", low=0.0)
+    order = arguments.number("order", order, low=0.0)
+    if (turns := speed * duration / tau) * min(order, 1.0) < MIN_TURNS:
+        needed = MIN_TURNS / min(order, 1.0) * tau / speed
+        raise ValueError(
+            f"duration = {duration:g} s is {turns:.3g} revolutions of the input; order {order:g} needs "
+            f"{needed:.4g} s at this speed"
+        )
+    if order * speed / pi > 0.4 * sample_rate:
+        raise ValueError(
+            f"sample_rate = {sample_rate:g} Hz has less than 5 samples in a period of order {order:g}; take "
+            f"{2.5 * order * speed / pi:.4g} Hz or more"
+        )
+    quiet = {path: 0.0 for path in every(drive) if path.startswith("sensors.") and path.endswith(".amplitude")}
+    return Run(drive.replace(quiet), speed, load_torque, duration, sample_rate, order)
+
+
+def _remarks(found: DetectionLimit, noise: float, own: float) -> tuple[str, ...]:
+    remarks = []
+    if found.insensitive:
+        remarks.append(
+            f"insensitive: an error of {arcminutes(found.accuracy):.3g} arcmin, which this gear may have, makes "
+            f"{1e3 * abs(found.gain) * found.accuracy:.3g} mA, and {1e3 * found.current:.3g} mA are needed. No alarm means "
+            "nothing: take more load, a longer record, or a sensor with less noise"
+        )
+    if own > noise:
+        remarks.append(
+            f"without any error the drive has {1e3 * own:.3g} mA around the order, more than the noise of {1e3 * noise:.3g} mA"
+        )
+    if found.offset > found.current:
+        remarks.append(
+            f"order {found.order:g} has {1e3 * found.offset:.3g} mA in the current without any error; compare it with healthy runs"
+        )
+    return tuple(remarks)
+
+
+def arcminutes(angle: float) -> float:
+    """Return an angle [rad] in arc minutes.
+
+    >>> round(arcminutes(3e-4), 4)
+    1.0313
+    """
+    return 60.0 * degrees(angle)

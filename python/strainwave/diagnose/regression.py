@@ -1,0 +1,187 @@
+"""Least squares of orders over the angle, and the level of the noise around each order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.diagnose.motion import Motion
+
+Array = NDArray[np.float64]
+
+NEIGHBOURS = 16  # on each side of an order at most, from which the level of the noise is estimated
+MIN_NEIGHBOURS = 6  # on each side at least, if the orders leave room
+NEIGHBOUR_REACH = 0.15  # of an order [1]: within it noise is taken to have one level
+TREND_PERIODS = 4  # half periods in the slow trend
+MIN_TREND_RATIO = 4.0  # periods of the slowest order in the fastest half period of the trend
+MIN_SPREAD = 0.1  # relative spread of load or squared speed [1], from which parts are separated by it
+SPEED_SPREAD = 0.01  # relative spread of the speed [1], from which friction over speed is determined
+MIN_SENSE_SHARE = 0.02  # of the samples [1]: with fewer of a direction it has no part of its own
+MIN_GRAVITY_SPAN = 0.5  # rad of the output: sine and cosine of a smaller motion are the trend
+MAX_CONDITION = 1e10  # of the squared columns, beyond which a direction does not count
+
+
+@dataclass(frozen=True, eq=False)
+class OrderRegression:
+    """Least squares of one order, prepared for any series on the same motion.
+
+    Attributes:
+        order: periods per revolution [1]
+        names: of its parts
+        estimator: coefficients of all sines and cosines of the parts from the series, shape (2 parts, n)
+        factor: covariance of the coefficients over the variance of a sample, shape (2 parts, 2 parts)
+        mean_estimator: sine and cosine of the whole order alike, shape (2, n)
+        mean_factor: covariance of those over the variance, shape (2, 2)
+        shape: columns of the parts, shape (n, 2 parts)
+        noise: orthonormal columns of the neighbours, free of all that is fitted, shape (n, freedom)
+    """
+
+    order: float
+    names: tuple[str, ...]
+    estimator: Array
+    factor: Array
+    mean_estimator: Array
+    mean_factor: Array
+    shape: Array
+    noise: Array
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of the level of the noise."""
+        return int(self.noise.shape[1])
+
+    def variance(self, series: Array) -> Array:
+        """Return the variance of a sample of white noise that has the level around the order, of each column of the series."""
+        level: Array = np.sum((self.noise.T @ series) ** 2, axis=0) / self.freedom
+        return level
+
+    def evidence(self, series: Array) -> Array:
+        """Return F of all parts of the order together, of each column of the series, shape (k,)."""
+        found = self.estimator @ series
+        square = np.sum(found * np.linalg.solve(self.factor, found), axis=0)
+        explained: Array = square / len(found) / np.maximum(self.variance(series), 1e-300)
+        return explained
+
+
+def smooth_columns(motion: Motion, lowest: float) -> Array:
+    """Return columns of what is no order: friction over speed, inertia, load, gravity and a slow trend, shape (n, k).
+
+    Args:
+        motion: of the shaft
+        lowest: order that the trend must not contain
+    """
+    count = len(motion.angle)
+    place = np.linspace(0.0, np.pi, count)
+    trends = int(min(TREND_PERIODS, 2.0 * lowest * motion.revolutions / MIN_TREND_RATIO))
+    columns = [np.cos(k * place) for k in range(trends + 1)]
+    sense = motion.sense if motion.reverses else None
+    if sense is not None:
+        columns.append(sense)
+    swift = np.abs(motion.speed)
+    if float(np.std(swift)) > SPEED_SPREAD * float(np.mean(swift)):
+        scaled = swift / float(swift.max())
+        columns += [scaled, scaled**2, np.gradient(motion.speed)]
+        columns += [sense * scaled, sense * scaled**2] if sense is not None else []
+    if motion.load is not None and float(np.std(motion.load)) > 0.0:
+        columns.append(motion.load)
+        columns += [sense * np.abs(motion.load)] if sense is not None else []
+    if motion.ratio == motion.ratio and 2.0 * np.pi * motion.output_turns > MIN_GRAVITY_SPAN and motion.ratio * lowest > 2.0:
+        columns += [np.sin(motion.angle / motion.ratio), np.cos(motion.angle / motion.ratio)]
+    return np.stack(columns, axis=1)
+
+
+def growths(motion: Motion) -> dict[str, Array]:
+    """Return what the parts of an order grow with, as far as the motion separates them; first what does not change.
+
+    Friction ripple turns over with the direction, the kinematic part grows with the load, the inertial part with the square of
+    the speed, in (rad/s)².
+    """
+    found = {"constant": np.ones_like(motion.angle)}
+    backward = float(np.mean(motion.sense < 0.0))
+    if MIN_SENSE_SHARE < backward < 1.0 - MIN_SENSE_SHARE:
+        found["friction"] = motion.sense
+    if motion.load is not None and float(np.std(motion.load)) > MIN_SPREAD * float(np.sqrt(np.mean(motion.load**2))):
+        found["kinematic"] = motion.load
+    squared = motion.speed**2
+    if float(np.std(squared)) > MIN_SPREAD * float(np.mean(squared)):
+        found["inertial"] = squared
+    return found
+
+
+def regressions(motion: Motion, orders: Sequence[float]) -> list[OrderRegression]:
+    """Return the regression of each order, all fitted together with the smooth part.
+
+    Args:
+        motion: of the shaft
+        orders: that the record separates, increasing or not
+
+    Raises:
+        ValueError: an order leaves no room for the noise around it
+    """
+    smooth = smooth_columns(motion, min(orders))
+    grows = growths(motion)
+    waves = [np.stack([wave * each for each in grows.values() for wave in motion.wave(order)], axis=1) for order in orders]
+    single = [np.stack(motion.wave(order), axis=1) for order in orders]
+    inverse, factor, basis = _solved(np.concatenate([*waves, smooth], axis=1))
+    mean_inverse, mean_factor, _ = _solved(np.concatenate([*single, smooth], axis=1))
+    width, found = 2 * len(grows), []
+    for k, order in enumerate(orders):
+        own, two = slice(k * width, (k + 1) * width), slice(2 * k, 2 * k + 2)
+        found.append(
+            OrderRegression(
+                order=order,
+                names=tuple(grows),
+                estimator=inverse[own],
+                factor=factor[own, own],
+                mean_estimator=mean_inverse[two],
+                mean_factor=mean_factor[two, two],
+                shape=waves[k],
+                noise=_noise_basis(motion, order, orders, basis),
+            )
+        )
+    return found
+
+
+def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> list[float]:
+    """Return the orders around one, a line apart each, that have noise alone.
+
+    >>> neighbours_of(2.0, [2.0, 2.2], 10.0)[:4]
+    [1.9, 2.1, 1.8, 1.7]
+    """
+    reach = max(MIN_NEIGHBOURS, min(NEIGHBOURS, int(NEIGHBOUR_REACH * order * revolutions)))
+    found = []
+    for k in range(1, reach + 1):
+        for place in (order - k / revolutions, order + k / revolutions):
+            near = min((abs(place - other) for other in orders if other != order), default=inf)
+            if place > 0.25 * order and near * revolutions > 0.75:
+                found.append(round(place, 12))
+    return found
+
+
+def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: Array) -> Array:
+    """Return orthonormal columns of the neighbours of an order that are orthogonal to all that is fitted."""
+    around = neighbours_of(order, orders, motion.revolutions)
+    if not around:
+        raise ValueError(f"order {order:g} leaves no room for the noise around it: look for fewer orders, or record longer")
+    columns = np.stack([wave for place in around for wave in motion.wave(place)], axis=1)
+    columns -= basis @ (basis.T @ columns)
+    values, vectors = np.linalg.eigh(columns.T @ columns)
+    kept = values > values.max() * 1e-6
+    orthonormal: Array = columns @ (vectors[:, kept] / np.sqrt(values[kept]))
+    return orthonormal
+
+
+def _solved(columns: Array) -> tuple[Array, Array, Array]:
+    """Return the pseudo-inverse, the inverse of the squared columns, and an orthonormal basis of the columns."""
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    values, vectors = np.linalg.eigh((columns / size).T @ (columns / size))
+    kept = values > values.max() / MAX_CONDITION
+    root = vectors[:, kept] / np.sqrt(values[kept])
+    basis = (columns / size) @ root
+    back = root / size[:, None]
+    return back @ basis.T, back @ back.T, basis
