@@ -8,6 +8,7 @@ namespace strainwave::host {
 void bind_gear_laws(nb::module_& core);
 void bind_gear(nb::module_& core);
 void bind_drive_parts(nb::module_& core);
+void bind_faults(nb::module_& core);
 void bind_inputs(nb::module_& core);
 void bind_drives(nb::module_& core);
 void bind_runs(nb::module_& core);
@@ -30,6 +31,7 @@ NB_MODULE(_core, core) {
     strainwave::host::bind_gear_laws(core);
     strainwave::host::bind_gear(core);
     strainwave::host::bind_drive_parts(core);
+    strainwave::host::bind_faults(core);
     strainwave::host::bind_inputs(core);
     strainwave::host::bind_drives(core);
     strainwave::host::bind_runs(core);

@@ -192,14 +192,14 @@ const char* python_name() {
 /// A family of models as a module of the package.
 nb::module_ family_module(nb::module_& core, const char* name, const char* doc);
 
-/// The models of a list, and the list by their names in files.
+/// The models of a list, and the list by their names in files, in a table of such lists.
 template <class Verbs, template <class...> class... Law>
-void bind_list(nb::module_& core, nb::module_ family, const char* name, List<Law...>) {
+void bind_list(nb::module_& core, nb::module_ family, const char* name, List<Law...>, const char* table = "families") {
     nb::dict models;
     int law = 0;
     (bind_model<Verbs, AtRunTime<Law, double>>(family, python_name<Law<double>>(), law++), ...);
     ((models[Law<double>::name] = nb::type<AtRunTime<Law, double>>()), ...);
-    core.attr("families")[name] = models;
+    core.attr(table)[name] = models;
 }
 
 template <class Verbs, class L>

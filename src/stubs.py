@@ -19,12 +19,14 @@ ATTRIBUTES = {
     r"\.fields$": "fields: tuple[dict[str, Any], ...]",
     r"\.quantities$": "quantities: tuple[tuple[str, str, str], ...]",
     r"\.families$": "families: dict[str, dict[str, type[Any]]]",
+    r"\.fault_families$": "fault_families: dict[str, dict[str, type[Any]]]",
 }
 
 
 def stubs() -> dict[Path, str]:
     """The text of each stub, by its place in the package."""
-    of_models = {model.__module__ for family in _core.families.values() for model in family.values()}
+    every = (*_core.families.values(), *_core.fault_families.values())
+    of_models = {model.__module__ for family in every for model in family.values()}
     modules = ("strainwave._core", *sorted(of_models))
     return {PACKAGE / f"{module.rpartition('.')[2]}.pyi": stub(module) for module in modules}
 

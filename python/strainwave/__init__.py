@@ -20,6 +20,7 @@ from strainwave._core import (
     Sensors,
     compensation,
     control,
+    fault,
     friction,
     hysteresis,
     kinematic_error,
@@ -27,6 +28,7 @@ from strainwave._core import (
     loads,
     meter,
     motor,
+    onset,
     sensor,
     softening,
     stiffness,
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
     from strainwave.analysis.sensitivity import Derivatives, derivatives
     from strainwave.analysis.settling import settling_time
     from strainwave.analysis.steady import equilibrium
+    from strainwave.dataset.faults import with_faults
     from strainwave.files.entries import Entry, Quantity
     from strainwave.files.gear_set import GearSet, catalogue, load, save
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
@@ -172,6 +175,7 @@ _LAZY = {
     "simulate_to": "simulation.ensemble",
     "slot": "tuning.slots",
     "transmission_error": "orders.two_encoders",
+    "with_faults": "dataset.faults",
 }
 
 __all__ = [
@@ -235,6 +239,7 @@ __all__ = [
     "drives",
     "equilibrium",
     "export",
+    "fault",
     "fit",
     "frequency_response",
     "friction",
@@ -251,6 +256,7 @@ __all__ = [
     "minima",
     "modes",
     "motor",
+    "onset",
     "order_amplitudes",
     "order_spectrum",
     "plan_experiments",
@@ -282,6 +288,7 @@ __all__ = [
     "thermal",
     "transmission_error",
     "variation",
+    "with_faults",
 ]
 
 

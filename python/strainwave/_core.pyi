@@ -11,6 +11,7 @@ import numpy.typing
 from strainwave import (
     compensation as compensation,
     control as control,
+    fault as fault,
     friction as friction,
     hysteresis as hysteresis,
     kinematic_error as kinematic_error,
@@ -18,6 +19,7 @@ from strainwave import (
     loads as loads,
     meter as meter,
     motor as motor,
+    onset as onset,
     sensor as sensor,
     softening as softening,
     stiffness as stiffness,
@@ -287,6 +289,8 @@ class Compensation:
     @property
     def active(self) -> bool:
         """Whether it makes any difference."""
+
+fault_families: dict[str, dict[str, type[Any]]]
 
 class Signal:
     """

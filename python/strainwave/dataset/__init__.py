@@ -1,0 +1,1 @@
+"""Labelled data of drives with faults."""
