@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from strainwave.diagnose.actuator_ramp import INPUT, LOOPS, OUTPUT
+from strainwave.diagnose.recovery import COMBINE
 from strainwave.report import misalignment_drawings as drawings
 from strainwave.report import misalignment_figures as plots
 from strainwave.report.misalignment_claims import ARCMIN, Claim, arcmin, claims, frequency, microns, percent, silence
@@ -17,9 +19,7 @@ from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
 from strainwave.report.typeset import fixed, number, quantity, uncertain
 from strainwave.studies import misalignment as study
-from strainwave.studies.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.studies.misalignment import Levels, MisalignmentStudy, Recovery
-from strainwave.studies.pure_error import COMBINE
 
 LINE = 110  # letters of a line on a terminal
 LEAST = 1e-3  # of a table, in its units

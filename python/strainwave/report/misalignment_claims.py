@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from strainwave.diagnose.actuator_ramp import INPUT, OUTPUT
 from strainwave.files.recording import Recording
 from strainwave.report.typeset import fixed, number, quantity, uncertain
 from strainwave.studies import misalignment as study
-from strainwave.studies.actuator_ramp import INPUT, OUTPUT
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
 
 ARCMIN = 180.0 * 60.0 / np.pi

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.diagnose.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.files.recording import Recording
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT
 from strainwave.report.typeset import number
 from strainwave.report.typeset import unit as typeset_unit
 from strainwave.studies import misalignment as study
-from strainwave.studies.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
 from strainwave.studies.pure_error import PureError
 

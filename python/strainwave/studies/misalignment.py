@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.diagnose.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp, geometry, in_series, noises
+from strainwave.diagnose.recovery import COMBINE, Model, Recovered, corrected, recover, refined
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -23,9 +25,7 @@ from strainwave.native import kernels
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 from strainwave.simulation.ensemble import Ensemble
 from strainwave.simulation.signals import outputs
-from strainwave.studies.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp, geometry, in_series, noises
-from strainwave.studies.pure_error import COMBINE, PureError, pure_error
-from strainwave.studies.recovery import Model, Recovered, corrected, recover, refined
+from strainwave.studies.pure_error import PureError, pure_error
 
 Array = NDArray[np.float64]
 

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
+from strainwave.diagnose.recovery import COMBINE, MICRON, placed
 from strainwave.files.recording import Recording
 
 Array = NDArray[np.float64]
 
-COMBINE = ("single", "mean", "max")
 TURN = 2.0 * np.pi
 FEWEST = 24  # points of a curve over a turn
-MICRON = 1e-6
 # Document A shows its measured curve as a picture alone. Assumed: the amplitudes of E-A5, and phases.
 ASSUMED_CURVE = kinematic_error.Fourier(order=[1, 2, 4], amplitude=[0.8e-4, 3.0e-4, 0.5e-4], phase=[0.3, -0.8, 0.7])
 
@@ -88,17 +87,6 @@ def pure_error(measured: str | Path | None, law: Any) -> PureError:
     angle, curve, source = _assumed() if measured is None else _read(Path(measured))
     curve = curve - turn_mean(angle, curve)
     return PureError(angle, curve, source, {combine: fitted(angle, curve, law.replace(combine=combine)) for combine in COMBINE})
-
-
-def placed(law: Any, m: tuple[float, float], c_x: float = 0.0) -> Any:
-    """The law with the shaft at m [m] in the housing and the generator c_x [m] off the shaft along its major axis."""
-    x, y = m
-    return law.replace(
-        housing_eccentricity=float(np.hypot(x, y)),
-        housing_direction=float(np.arctan2(y, x)),
-        generator_eccentricity=abs(c_x),
-        generator_direction=0.0 if c_x >= 0.0 else np.pi,
-    )
 
 
 def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:

@@ -8,12 +8,11 @@ from math import log, pi, radians, tan
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.diagnose.actuator_ramp import ASSUMED, ERROR, INPUT, OUTPUT, ActuatorRamp, geometry, in_series, noises
+from strainwave.diagnose.recovery import harmonics, placed
 from strainwave.native import kernels
 from strainwave.studies import misalignment as study
-from strainwave.studies.actuator_ramp import ASSUMED, ERROR, INPUT, OUTPUT, ActuatorRamp, geometry, in_series, noises
 from strainwave.studies.misalignment import Levels, passed, recovered, share_by_ideal_loop, swept
-from strainwave.studies.pure_error import placed
-from strainwave.studies.recovery import harmonics
 
 SHORT = radians(60.0), 3.0  # stroke and time of the ramps of these tests
 PER_METRE = tan(radians(20.0)) / 25e-3  # rad at the output per metre of displacement, of the assumed dimensions

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.diagnose.recovery import placed
 from strainwave.native import kernels
 from strainwave.report.misalignment import misalignment_report, summary
 from strainwave.report.misalignment_claims import CONFIRMED, CORRECTED, IN_PART, claims
 from strainwave.report.provenance import Provenance
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, misalignment
-from strainwave.studies.pure_error import fitted, placed, pure_error, turn_mean
+from strainwave.studies.pure_error import fitted, pure_error, turn_mean
 
 from tests.python.command import Result, refused, strainwave
 from tests.python.report.measured import HOSTILE

@@ -50,12 +50,14 @@ class ActuatorRamp:
         stroke: of the output [rad]
         duration: of the ramp [s]
         dt: largest step [s]
+        load_torque: constant torque that acts on the output besides the load of the drive [N.m]
     """
 
     drive: Drive
     stroke: float
     duration: float
     dt: float
+    load_torque: float = 0.0
 
     @classmethod
     def of(cls, drive: Drive, stroke: float, duration: float) -> ActuatorRamp:
@@ -121,6 +123,10 @@ class ActuatorRamp:
         """The same with another kinematic error."""
         return replace(self, drive=self.drive.replace({ERROR: law}))
 
+    def loaded(self, load_torque: float) -> ActuatorRamp:
+        """Return the same with a constant torque [N.m] on the output besides the load of the drive."""
+        return replace(self, load_torque=load_torque)
+
     def lasting(self, duration: float) -> ActuatorRamp:
         """The same stroke in another time [s]."""
         return replace(self, duration=duration)
@@ -131,7 +137,7 @@ class ActuatorRamp:
 
     def run(self) -> Recording:
         """One run, all channels."""
-        return simulate(self.drive, self.command, self.dt, sample=self.sample)
+        return simulate(self.drive, self.command, self.dt, sample=self.sample, load_torque=self.load_torque)
 
     def many(self, members: Sequence[Mapping[str, float]], record: Sequence[str]) -> Ensemble:
         """Runs that differ in the numbers given; each takes what it does not name from the drive.
@@ -149,6 +155,7 @@ class ActuatorRamp:
             dt=self.dt,
             sample=self.sample,
             record=list(dict.fromkeys(("input_angle", *record))),
+            load_torque=self.load_torque,
         )
         if runs.failures:
             member, reason = next(iter(runs.failures.items()))
@@ -202,7 +209,7 @@ def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
     k = 1.0 / sum(1.0 / spring for spring, _ in pairs)
     damping = k**2 * sum(damper / spring**2 for spring, damper in pairs)
     one = {"structure": structure.Lumped(), "stiffness": stiffness.Linear(k=k), "damping": damping}
-    return ActuatorRamp.of(ramp.drive.replace(gear=gear.replace(**one)), ramp.stroke, ramp.duration)
+    return ActuatorRamp.of(ramp.drive.replace(gear=gear.replace(**one)), ramp.stroke, ramp.duration).loaded(ramp.load_torque)
 
 
 def geometry(drive: Drive) -> tuple[Any, bool]:

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
+from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
-from strainwave.studies.actuator_ramp import ERROR, ActuatorRamp
-from strainwave.studies.pure_error import COMBINE, MICRON, placed
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+COMBINE = ("single", "mean", "max")
+MICRON = 1e-6
 ORDERS = (1.0, 2.0, 3.0, 4.0)
 SEEN = ("input_angle", "transmission_error", "current")
 NEIGHBOURS = 8  # lines on each side of an order, whose size tells the noise; but for the next, which has half of the order
@@ -46,9 +47,8 @@ class Model:
     def of(cls, ramp: ActuatorRamp) -> Model:
         """Runs a drive with an error of a few orders, small and of equal size, and without."""
         quiet = ramp.without_noise()
-        probe = kinematic_error.Fourier(order=ORDERS, amplitude=[0.0] * len(ORDERS), phase=[0.0] * len(ORDERS))
         changes = [{f"{ERROR}.amplitude[{place}]": size for place in range(len(ORDERS))} for size in (0.0, PROBE)]
-        runs = quiet.with_error(probe).many(changes, SEEN)
+        runs = quiet.with_error(none_and_probe()).many(changes, SEEN)
         return cls(quiet, *(quiet.settled(runs.member(place)) for place in (0, 1)))
 
     def gain(self, column: str) -> Complex:
@@ -151,7 +151,7 @@ def recover(recording: Recording, column: str, model: Model, law: Any) -> dict[s
     """
     gain = model.gain(column)
     seen = look(beside(recording, model.straight, column), column)
-    return {each: _solved(seen.at / gain, seen, gain, column, law.replace(combine=each)) for each in COMBINE}
+    return {each: solved(seen.at / gain, seen, gain, column, law.replace(combine=each)) for each in COMBINE}
 
 
 def refined(found: Sequence[Recovered], recordings: Sequence[Recording], model: Model, law: Any) -> list[Recovered]:
@@ -178,17 +178,23 @@ def corrected(found: Recovered, recording: Recording, run: Recording, model: Mod
     gain = model.gain(found.column)
     seen = look(beside(recording, run, found.column), found.column)
     asked, sigma = seen.at / gain, seen.noise / np.abs(gain)
-    ways = [
-        (harmonics(placed(law, tuple(found.m + step))) - harmonics(placed(law, tuple(found.m - step)))) / (2.0 * SMALL)
-        for step in SMALL * np.eye(2)
-    ]
-    slopes = np.array([np.concatenate([(way / sigma).real, (way / sigma).imag]) for way in ways]).T
+    slopes = slopes_of(law, found.m) / np.concatenate([sigma, sigma])[:, None]
     wanted = np.concatenate([(asked / sigma).real, (asked / sigma).imag])
     step, *_ = np.linalg.lstsq(slopes, wanted, rcond=None)
     covariance: Array = np.linalg.pinv(slopes.T @ slopes)
     misfit = float(np.sum((wanted - slopes @ step) ** 2)) / (2 * len(ORDERS) - 2)
     m = (float(found.m[0] + step[0]), float(found.m[1] + step[1]))
     return Recovered(found.column, found.combine, m, covariance, seen.degrees, misfit)
+
+
+def slopes_of(law: Any, m: tuple[float, float]) -> Array:
+    """Return the slopes of the real parts and of the imaginary parts of all orders over m [rad/m], shape (8, 2)."""
+    place = np.array(m)
+    ways = [
+        (harmonics(placed(law, tuple(place + step))) - harmonics(placed(law, tuple(place - step)))) / (2.0 * SMALL)
+        for step in SMALL * np.eye(2)
+    ]
+    return np.array([np.concatenate([way.real, way.imag]) for way in ways]).T
 
 
 def beside(recording: Recording, run: Recording, column: str) -> Recording:
@@ -218,6 +224,22 @@ def look(recording: Recording, column: str) -> Seen:
     return Seen(_sines(there.amplitude, there.phase), np.maximum(noise, np.finfo(float).tiny), degrees)
 
 
+def placed(law: Any, m: tuple[float, float], c_x: float = 0.0) -> Any:
+    """The law with the shaft at m [m] in the housing and the generator c_x [m] off the shaft along its major axis."""
+    x, y = m
+    return law.replace(
+        housing_eccentricity=float(np.hypot(x, y)),
+        housing_direction=float(np.arctan2(y, x)),
+        generator_eccentricity=abs(c_x),
+        generator_direction=0.0 if c_x >= 0.0 else np.pi,
+    )
+
+
+def none_and_probe() -> Any:
+    """Return the law of an error of a few orders, of no size, whose amplitudes a run may set."""
+    return kinematic_error.Fourier(order=ORDERS, amplitude=[0.0] * len(ORDERS), phase=[0.0] * len(ORDERS))
+
+
 def harmonics(law: Any) -> Complex:
     """The orders of a law over a turn [rad], shape (4,)."""
     there = law.harmonics(int(ORDERS[-1]))
@@ -229,7 +251,7 @@ def _sines(amplitude: Array, phase: Array) -> Complex:
     return values
 
 
-def _solved(asked: Complex, seen: Seen, gain: Complex, column: str, law: Any) -> Recovered:
+def solved(asked: Complex, seen: Seen, gain: Complex, column: str, law: Any) -> Recovered:
     """m by least squares from an error at each order [rad], each weighed by its noise."""
     from scipy.optimize import least_squares
 
