@@ -18,6 +18,7 @@ from strainwave.commands.compensate import compensate
 from strainwave.commands.compile import compile
 from strainwave.commands.dataset import dataset
 from strainwave.commands.demo import demo
+from strainwave.commands.diagnose import diagnose
 from strainwave.commands.drives import drives
 from strainwave.commands.gears import gears
 from strainwave.commands.identify import identify
@@ -38,6 +39,7 @@ VERBS = (
     predict,
     rank,
     orders,
+    diagnose,
     plan_experiments,
     compensate,
     demo,
@@ -52,7 +54,7 @@ VERBS = (
     cache,
     compile,
 )
-WITH_COLUMNS = {"identify", "predict", "rank", "orders"}  # verbs with the options --column and --unit
+WITH_COLUMNS = {"identify", "predict", "rank", "orders", "diagnose"}  # verbs with the options --column and --unit
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 

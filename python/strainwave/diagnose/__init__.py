@@ -1,1 +1,1 @@
-"""Diagnosis of a gear from what its actuator measures: orders in the motor current, detection, and what is detectable."""
+"""Diagnosis of a gear from what its actuator measures: orders against noise and a baseline, what is detectable, and life."""

@@ -90,12 +90,12 @@ def orders_found(
             f"orders need two angles, input_angle and output_angle, or a torque or current beside one angle; there are "
             f"{listed(recording.names)}"
         )
-    turning, angle, known, remarks = _turning(recording, side, rate)
+    turning, angle, known, remarks = with_angle(recording, side, rate)
     lines = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
     return OrdersFound(name, None, replace(lines, remarks=(*remarks, *lines.remarks)))
 
 
-def _turning(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
+def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
     """Return the recording with an angle, its name and side, and what was done for it."""
     for name, known in ANGLES:
         if name in recording:

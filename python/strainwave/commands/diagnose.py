@@ -1,0 +1,245 @@
+"""The command `strainwave diagnose`: recordings of a joint against noise and a healthy baseline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from strainwave.commands.file_options import FileOptions, paths_in
+from strainwave.commands.options import numeric, with_groups
+from strainwave.commands.progress import progress
+
+if TYPE_CHECKING:
+    from strainwave.diagnose.diagnosis import Diagnosis, Question
+    from strainwave.diagnose.refusals import JointRecording
+    from strainwave.identification.reading.mapping import FileMapping
+    from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
+
+PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
+ALARM = 3  # exit code if a recording changed
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """Options of a planned recording."""
+
+    plan: Annotated[bool, typer.Option("--plan", help="Compute what a recording of the drive --gear would show.")] = False
+    speed: Annotated[float | None, numeric("With --plan: speed of the input, in rad/s.")] = None
+    load: Annotated[float | None, numeric("With --plan: torque at the output against the motion, in N.m; usually none.")] = None
+    duration: Annotated[float | None, numeric("With --plan: length of the record, in s.")] = None
+    noise: Annotated[float | None, numeric("With --plan: standard deviation of a sample of the current, in A.")] = None
+    sample_rate: Annotated[float | None, numeric("With --plan: samples of the current per second, in Hz; usually 1000.")] = None
+    probability: Annotated[float | None, numeric("With --plan: that such an error is found; usually 0.9.")] = None
+
+    def check_unused(self) -> None:
+        """Raise ValueError for an option of a plan without --plan."""
+        names = ("speed", "load", "duration", "noise", "sample_rate", "probability")
+        if given := [f"--{name.replace('_', '-')}" for name in names if getattr(self, name) is not None]:
+            raise ValueError(f"{given[0]} belongs to a planned recording: add --plan, or leave it out")
+
+    def needed(self, name: str) -> float:
+        """Return an option that a plan cannot do without."""
+        value = getattr(self, name)
+        if value is None:
+            raise ValueError(f"--plan needs --{name.replace('_', '-')}: add it")
+        return float(value)
+
+
+@with_groups
+def diagnose(
+    given: FileOptions,
+    planned: PlanOptions,
+    paths: Annotated[
+        list[Path] | None, typer.Argument(metavar="RECORDING…", help="Recordings of a joint, in the order of time.")
+    ] = None,
+    gear: Annotated[str | None, typer.Option(help="Gear of the joint: a set by name, or a gear file.")] = None,
+    baseline: Annotated[
+        list[Path] | None, typer.Option(help="Recording of the healthy joint, or a folder of them; repeat as needed.")
+    ] = None,
+    ratio: Annotated[float | None, numeric("Ratio of the gear, if no gear is given.")] = None,
+    rate: Annotated[float | None, numeric("Samples per second of files without time, in Hz.")] = None,
+    false_alarm: Annotated[float, numeric("Rate of false alarms over all tests of a recording.")] = 1e-3,
+    order: Annotated[
+        list[str] | None, typer.Option(help="Further order per revolution of the input, as of a bearing; repeat as needed.")
+    ] = None,
+    hours: Annotated[str | None, typer.Option(help="Hours of operation at each recording, as 0,120,300.")] = None,
+    threshold: Annotated[
+        float | None, numeric("Health indicator at which the gear is exchanged; its trend gives the remaining life.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for report.html and the numbers.")] = Path("out/diagnose"),
+) -> None:
+    """Diagnose the gear of a joint from torque or current: each order against noise and against the healthy joint.
+
+    Without a baseline lines are compared with noise and with the expected values of the gear alone. A recording without an
+    alarm is no proof of health: the report contains the smallest change that would be one. The exit code is 3 if a recording
+    differs from the baseline. With --plan no recording is needed: the drive is simulated, and the smallest error that a record
+    would show is printed.
+    """
+    if planned.plan:
+        _plan(gear, planned, order or [], false_alarm, out)
+        return
+    planned.check_unused()
+    if not paths:
+        raise ValueError("no recording is given: name one or more files, or add --plan for what a recording would show")
+    from strainwave.files.writing import write_folder
+    from strainwave.identification.joints import ALL
+    from strainwave.identification.reading.source import measurement_files
+    from strainwave.report.diagnose import diagnose_files, diagnose_summary
+    from strainwave.report.provenance import Provenance
+
+    files, healthy = measurement_files(paths), measurement_files(baseline or [])
+    question = _question(gear, ratio, order or [], false_alarm, threshold)
+    by_name = _hours(hours, files.files)
+    question = replace(question, hours=by_name)
+    opened = [*files.files, *healthy.files]
+    mapping = given.mapping_of(opened)
+    read = [*paths_in(files), *paths_in(healthy)]
+    with progress() as turn:
+        joints = _joints(files, mapping) if given.joint == ALL else (given.joint,)
+        found = [_of_joint(joint, files, healthy, mapping, question, rate, turn) for joint in joints]
+        turn("report")
+        written = diagnose_files(found, Provenance.of_this_command(read), by_name)
+        write_folder(out, written)
+    print(diagnose_summary(found))
+    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(written)[:-1])}")
+    if any(each.alarms for each in found):
+        raise typer.Exit(ALARM)
+
+
+def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:
+    """Write and print the detection limits of a drive."""
+    from strainwave.commands.options import number_option
+    from strainwave.diagnose.detection_limit import detection_limit
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import write_folder
+    from strainwave.report.diagnose_plan import PlannedRecord, plan_files, plan_summary
+    from strainwave.report.provenance import Provenance
+
+    if gear is None:
+        raise ValueError("--plan needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
+    model = GearSet.read(gear)
+    record = PlannedRecord(
+        model.name,
+        planned.needed("speed"),
+        0.0 if planned.load is None else planned.load,
+        planned.needed("duration"),
+        1000.0 if planned.sample_rate is None else planned.sample_rate,
+        planned.needed("noise"),
+    )
+    wanted = [number_option(each) for each in orders] or list(PLANNED_ORDERS)
+    drive, limits = model.drive, []
+    with progress(len(wanted)) as turn:
+        for order in wanted:
+            turn(f"order {order:g}")
+            limits.append(
+                detection_limit(
+                    drive,
+                    speed=record.speed,
+                    load_torque=record.load_torque,
+                    duration=record.duration,
+                    sample_rate=record.sample_rate,
+                    noise=record.noise,
+                    order=order,
+                    probability=0.9 if planned.probability is None else planned.probability,
+                    false_alarm=false_alarm,
+                    tests=len(wanted),
+                )
+            )
+    files = plan_files(record, limits, Provenance.of_this_command([]))
+    write_folder(out, files)
+    print(plan_summary(record, limits))
+    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+
+
+def _question(
+    gear: str | None, ratio: float | None, orders: Sequence[str], false_alarm: float, threshold: float | None
+) -> Question:
+    from strainwave.arguments import number, probability
+    from strainwave.commands.options import number_option
+    from strainwave.diagnose.diagnosis import Question
+    from strainwave.files.gear_set import GearSet
+    from strainwave.identification.reading.mapping import check_constant
+
+    probability("--false-alarm", false_alarm)
+    gear_set = None if gear is None else GearSet.read(gear)
+    if ratio is not None:
+        check_constant("--ratio", "ratio", ratio)
+        if gear_set is not None:
+            raise ValueError("--ratio and --gear are given; the gear has a ratio: leave --ratio out")
+    size = ratio if gear_set is None else float(gear_set.gear.kinematics.ratio)
+    further = tuple(number("--order", number_option(each), low=0.0) for each in orders)
+    return Question(gear_set, size, further, false_alarm, threshold=threshold)
+
+
+def _hours(text: str | None, files: Sequence[MeasurementFile]) -> dict[str, float]:
+    """Return the hours of operation by the name of the recording."""
+    from strainwave.number_texts import number_in
+
+    if text is None:
+        return {}
+    numbers = [number_in(each.strip()) for each in text.split(",")]
+    if len(numbers) != len(files):
+        raise ValueError(f"--hours has {len(numbers)} numbers for {len(files)} recordings; give one for each, as 0,120,300")
+    return {file.path.name: hour for file, hour in zip(files, numbers, strict=True)}
+
+
+def _joints(files: MeasurementFiles, mapping: Callable[[Path], FileMapping]) -> tuple[str, ...]:
+    """Return the joints that move in any recording."""
+    from strainwave.identification.reading.recognise import joints_of
+
+    found = [joint for file in files.files for joint in joints_of(file, replace(mapping(file.path), joint=None))]
+    if not found:
+        raise ValueError("no file contains several joints; leave out --joint, or name one")
+    return tuple(dict.fromkeys(found))
+
+
+def _of_joint(
+    joint: str | None,
+    files: MeasurementFiles,
+    healthy: MeasurementFiles,
+    mapping: Callable[[Path], FileMapping],
+    question: Question,
+    rate: float | None,
+    turn: Callable[[str], None],
+) -> Diagnosis:
+    """Return the diagnosis of one joint; a recording that cannot be used is refused with its reason."""
+    from strainwave.diagnose.diagnosis import diagnosed
+    from strainwave.messages import one_line
+
+    runs, refused = [], dict[str, str]()
+    for file in files.files:
+        turn(file.path.name)
+        try:
+            runs.append(_run_of(file, joint, mapping, question, rate))
+        except ValueError as error:
+            refused[file.path.name] = one_line(str(error))
+    baseline = []
+    for file in healthy.files:
+        turn(file.path.name)
+        try:
+            baseline.append(_run_of(file, joint, mapping, question, rate))
+        except ValueError as error:
+            raise ValueError(one_line(f"baseline {error}")) from None
+    turn(f"joint {joint}" if joint else "diagnosis")
+    return diagnosed(runs, question, baseline=baseline, joint=joint or "", refused=refused)
+
+
+def _run_of(
+    file: MeasurementFile, joint: str | None, mapping: Callable[[Path], FileMapping], question: Question, rate: float | None
+) -> JointRecording:
+    from strainwave.diagnose.refusals import usable
+    from strainwave.identification.reading.recognise import recognise
+
+    own = replace(mapping(file.path), joint=joint)
+    constants = own.constants if rate is None else {**own.constants, "rate": rate}
+    read = recognise(file, replace(own, constants=constants))
+    ratio = read.constants.get("ratio") if question.ratio is None else question.ratio
+    read = read if ratio is None else read.at_ratio(ratio)
+    side: Any = own.side
+    name = file.path.name
+    run = usable(read.recording, name, ratio=ratio, side=side, other_angles=read.neighbours)
+    return replace(run, remarks=(*read.remarks, *run.remarks))

@@ -1,0 +1,260 @@
+"""Comparison of a recording with a baseline of the same joint: the change of each order, its interval and its probability.
+
+Blocks of the baseline are replicates. Their spread contains noise and what varies in a healthy joint: load, temperature and
+place. Noise is independent from block to block and averages. The rest of the spread does not: all blocks of a recording share
+the temperature and the day. So a drift that the baseline shows from its beginning to its end is no alarm afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
+from strainwave.messages import listed
+
+Array = NDArray[np.float64]
+
+MIN_BLOCK_PERIODS = 8.0  # periods of the lowest order in a block
+MAX_BLOCKS = 24  # of a baseline: shorter blocks contain no more of the drift
+MIN_BLOCKS = 6  # of a baseline, by which a spread is estimated
+BLOCK_RESOLUTIONS = 1.5  # resolutions of a block, by which two orders differ at least
+CONFIDENCE = 0.95  # of intervals
+SPREAD_MARGIN = 1.0  # standard deviations of the variance of replicates, added to what noise does not explain of it
+MAX_SPEED_RATIO = 1.25  # by which a block may be faster or slower than all blocks of the baseline
+MAX_LOAD_SHARE = 0.25  # of the spread or size of the baseline's load, by which a block may lie outside of it
+MAX_PLACE_SHARE = 0.1  # of the baseline's range of the angle, by which a block may lie outside of it
+
+
+@dataclass(frozen=True)
+class Change:
+    """Change of one order in one direction, recording less baseline.
+
+    Attributes:
+        order: per revolution of the shaft
+        direction: `forward` or `backward`
+        baseline: mean amplitude of the baseline, in the unit of the column
+        spread: standard deviation of a replicate of it
+        amplitude: mean amplitude of the recording
+        change: difference of both
+        sigma: standard deviation of the change
+        low, high: ends of the interval of the change, of 95 %
+        limit: smallest change that is an alarm
+        false_alarm: probability of such a change in a joint that did not change, over all tests of the recording
+        alarm: True if this probability is below the stated rate
+        replicates: number of blocks of the baseline
+        blocks: number of blocks of the recording
+        is_new: True if the line was found blind in the recording and not in the baseline
+    """
+
+    order: float
+    direction: str
+    baseline: float
+    spread: float
+    amplitude: float
+    change: float
+    sigma: float
+    low: float
+    high: float
+    limit: float
+    false_alarm: float
+    alarm: bool
+    replicates: int
+    blocks: int
+    is_new: bool = False
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Changes of a recording against a baseline.
+
+    Attributes:
+        changes: of each order and direction, the least probable first
+        tests: number of tests, over which false alarms are counted
+        remarks: what was not compared, and why
+    """
+
+    changes: tuple[Change, ...]
+    tests: float
+    remarks: tuple[str, ...]
+
+    @property
+    def alarms(self) -> tuple[Change, ...]:
+        """Changes that are alarms."""
+        return tuple(each for each in self.changes if each.alarm)
+
+
+@dataclass(frozen=True, eq=False)
+class Baseline:
+    """Replicates of a healthy joint.
+
+    Attributes:
+        orders: per revolution of the shaft
+        travel: motion of a block [rad]
+        cells: of each recording by block, direction and order
+    """
+
+    orders: tuple[float, ...]
+    travel: float
+    cells: tuple[list[list[list[Cell | None]]], ...]
+
+    def of(self, direction: int, order: int) -> list[list[Cell]]:
+        """Return the cells of an order in a direction, by recording."""
+        return [[cell for block in one if (cell := block[direction][order]) is not None] for one in self.cells]
+
+
+def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Baseline:
+    """Return the replicates of recordings of a healthy joint.
+
+    Args:
+        motions: the recordings, in the same column and over the same angle
+        orders: per revolution of the shaft, the most important first; of two that a block does not separate the first is kept
+
+    Raises:
+        ValueError: there are no orders, or the motion is too short for enough blocks
+    """
+    if not orders:
+        raise ValueError("no order to compare: no line was found and no ratio is known; give --gear or --ratio")
+    whole = sum(motion.travel for motion in motions)
+    lowest = min(orders)
+    count = min(MAX_BLOCKS, int(whole / tau * lowest / MIN_BLOCK_PERIODS))
+    if count < MIN_BLOCKS:
+        raise ValueError(
+            f"the baseline is too short: its motion has {whole / tau * lowest:.3g} periods of order {lowest:.4g}; a spread "
+            f"needs {MIN_BLOCKS * MIN_BLOCK_PERIODS:g} ({MIN_BLOCKS} blocks of {MIN_BLOCK_PERIODS:g}); record longer"
+        )
+    travel = whole / count
+    blocks = [blocks_of(motion, travel) for motion in motions]
+    spans = [
+        float(np.ptp(motion.shaft.own.angle[block == number])) / tau
+        for motion, block in zip(motions, blocks, strict=True)
+        for number in range(int(block.max()) + 1)
+    ]
+    kept = apart(orders, BLOCK_RESOLUTIONS / max(float(np.median(spans)), 1e-12))
+    return Baseline(kept, travel, tuple(cells_of(m, kept, block) for m, block in zip(motions, blocks, strict=True)))
+
+
+def compared(
+    baseline: Baseline, motion: JointMotion, *, false_alarm: float = 1e-3, new: Sequence[float] = (), searched: float = 1.0
+) -> Comparison:
+    """Return the change of each order of a recording against a baseline.
+
+    Args:
+        baseline: replicates, of a fit that contains all orders that are compared
+        motion: the recording
+        false_alarm: stated rate of false alarms, over all tests of a recording
+        new: orders of the baseline that were found in the recording alone
+        searched: number of orders among which these were found; each counts as so many tests
+
+    Raises:
+        ValueError: the rate is no probability
+    """
+    false_alarm = arguments.probability("false_alarm", false_alarm)
+    block = blocks_of(motion, baseline.travel)
+    cells = cells_of(motion, baseline.orders, block)
+    pairs, outside, sparse = [], dict[str, list[str]](), set[str]()
+    for direction, (name, _) in enumerate(SENSES):
+        for k, order in enumerate(baseline.orders):
+            own = [cell for each in cells if (cell := each[direction][k]) is not None]
+            if not own:
+                continue
+            healthy = baseline.of(direction, k)
+            if sum(map(len, healthy)) < MIN_BLOCKS:
+                sparse.add(name)
+                continue
+            alike, reasons = _alike(healthy, own)
+            for reason in reasons:
+                outside.setdefault(f"{name}: {reason}", []).append(f"{order:.4g}")
+            if alike:
+                pairs.append((name, order, healthy, alike))
+    planned = sum(order not in new for _, order, _, _ in pairs)
+    changes = []
+    for name, order, healthy, alike in pairs:
+        tests = float(planned + len(new)) if order not in new else max(searched, 1.0) * len(SENSES)
+        changes.append(_change(name, order, healthy, alike, tests, false_alarm, order in new))
+    remarks = [f"{key}; not compared" for key in outside]
+    if sparse:
+        remarks.append(
+            f"{listed(sorted(sparse))}: the baseline has fewer than {MIN_BLOCKS} blocks in this direction; not compared; "
+            "record both directions"
+        )
+    ranked = tuple(sorted(changes, key=lambda each: (each.false_alarm, -abs(each.change) / each.sigma)))
+    return Comparison(ranked, float(planned), tuple(remarks))
+
+
+def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
+    """Return the cells of a recording under conditions that the baseline contains, and why others are left out."""
+    known = [cell for one in healthy for cell in one]
+    speeds, loads, places = (np.array([getattr(cell, name) for cell in known]) for name in ("speed", "load", "place"))
+    load_room = MAX_LOAD_SHARE * max(float(np.ptp(loads)), float(np.abs(loads).max()))
+    place_room = max(MAX_PLACE_SHARE * float(np.ptp(places)), 0.05)
+    bounds = {
+        "speed": (float(speeds.min()) / MAX_SPEED_RATIO, float(speeds.max()) * MAX_SPEED_RATIO),
+        "load": (float(loads.min()) - load_room, float(loads.max()) + load_room),
+        "place": (float(places.min()) - place_room, float(places.max()) + place_room),
+    }
+    if float(np.ptp(places)) > tau:  # many revolutions: every place comes again
+        del bounds["place"]
+    left, reasons = [], list[str]()
+    for cell in own:
+        outside = [name for name, (low, high) in bounds.items() if not low <= getattr(cell, name) <= high]
+        if not outside:
+            left.append(cell)
+    for name, (low, high) in bounds.items():
+        off = [getattr(cell, name) for cell in own if not low <= getattr(cell, name) <= high]
+        if off:
+            label = {"speed": "speed", "load": "load", "place": "mean angle"}[name]
+            reasons.append(
+                f"{len(off)} of {len(own)} blocks have a {label} from {min(off):.3g} to {max(off):.3g}, outside of the "
+                f"{low:.3g} to {high:.3g} that the baseline covers"
+            )
+    return left, reasons
+
+
+def _change(
+    name: str, order: float, healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], tests: float, allowed: float, is_new: bool
+) -> Change:
+    """Return the change of one order, by Student's distribution with the baseline's spread."""
+    from scipy.stats import t as student
+
+    groups = [np.array([cell.amplitude for cell in one]) for one in healthy if one]
+    values = np.concatenate(groups)
+    spread, freedom = _spread(groups)
+    noise = float(np.mean([cell.sigma**2 for one in healthy for cell in one]))
+    own_noise = float(np.mean([cell.sigma**2 for cell in own]))
+    mean, amplitude = float(values.mean()), float(np.mean([cell.amplitude for cell in own]))
+    shared = max(spread**2 - noise, 0.0) + SPREAD_MARGIN * spread**2 * float(np.sqrt(2.0 / freedom))
+    sigma = float(np.sqrt(min(shared, spread**2) + own_noise / len(own) + max(spread**2, noise) / len(values)))
+    change = amplitude - mean
+    reach = sigma * float(student.isf(0.5 * (1.0 - CONFIDENCE), freedom))
+    probability = min(1.0, tests * 2.0 * float(student.sf(abs(change) / sigma, freedom)))
+    limit = sigma * float(student.isf(0.5 * allowed / tests, freedom))
+    return Change(
+        order, name, mean, spread, amplitude, change, sigma, change - reach, change + reach, limit, probability,
+        probability < allowed, len(values), len(own), is_new,
+    )  # fmt: skip
+
+
+def _spread(groups: Sequence[Array]) -> tuple[float, float]:
+    """Return the standard deviation of a replicate and its degrees of freedom.
+
+    Of several recordings it is that between them and within them together (Satterthwaite's degrees of freedom).
+    """
+    values = np.concatenate(groups)
+    count, kinds = len(values), len(groups)
+    if kinds == 1:
+        return float(values.std(ddof=1)), float(count - 1)
+    within = sum(float(((each - each.mean()) ** 2).sum()) for each in groups) / max(count - kinds, 1)
+    between = sum(len(each) * float((each.mean() - values.mean()) ** 2) for each in groups) / (kinds - 1)
+    size = (count - sum(len(each) ** 2 for each in groups) / count) / (kinds - 1)
+    if between <= within:
+        return float(values.std(ddof=1)), float(count - 1)
+    share = 1.0 / size
+    total = share * between + (1.0 - share) * within
+    parts = (share * between) ** 2 / (kinds - 1) + ((1.0 - share) * within) ** 2 / max(count - kinds, 1)
+    return float(np.sqrt(total)), float(total**2 / max(parts, 1e-300))

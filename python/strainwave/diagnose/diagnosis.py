@@ -1,0 +1,482 @@
+"""Diagnosis of one joint from recordings: lines against noise and against a baseline, the verdict, condition and life."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import log, pi
+from typing import Literal
+
+import numpy as np
+
+from strainwave import arguments
+from strainwave.diagnose.baseline import Comparison, baseline_of, compared
+from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogue_life, condition, trend
+from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
+from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
+from strainwave.files.gear_set import GearSet
+from strainwave.orders.lines import Line
+from strainwave.orders.ripple import Ripple, ripple
+
+Verdict = Literal["changed", "no change found", "insensitive", "not comparable", "lines found", "no line found"]
+
+ARC_MINUTE = pi / 180.0 / 60.0  # rad
+MAX_CATALOGUE_ERROR = 2.0 * ARC_MINUTE  # rad: transmission accuracy of the least accurate catalogue gears
+LOAD_LEVELS = 3  # of the size of the load, in the table of the wave generator's ripple
+MIN_LOAD_SPREAD = 0.3  # of the load's root mean square [1], from which it has levels
+WAVE_RESOLUTIONS = 1.5  # resolutions, by which a line differs at most from the order of the wave generator
+MAX_OTHER_LINES = 6  # that are fitted beside the wave generator's
+
+
+@dataclass(frozen=True)
+class NamedOrder:
+    """An order that a strain wave gear may have.
+
+    Attributes:
+        order: per revolution of the shaft
+        per_input: per revolution of the input
+        name: its cause, in words
+    """
+
+    order: float
+    per_input: float
+    name: str
+
+
+@dataclass(frozen=True)
+class OrderAgainstNoise:
+    """A named order of a recording, compared with its noise.
+
+    Attributes:
+        order: with its cause
+        forward, backward: amplitude in each direction, in the unit of the column; None without such motion
+        threshold: amplitude from which noise alone is less probable than the stated rate, over all orders of the recording
+        expected: amplitude by the kinematic error of the gear and the load of the recording; nan if it is not known
+        error: kinematic error at the output that would have the amplitude of the threshold [rad]; nan if it is not known
+        detected: True if an amplitude is above the threshold
+    """
+
+    order: NamedOrder
+    forward: Cell | None
+    backward: Cell | None
+    threshold: float
+    expected: float
+    error: float
+    detected: bool
+
+
+@dataclass(frozen=True)
+class LoadCell:
+    """Amplitude of the wave generator's ripple in one direction at one level of load."""
+
+    direction: str
+    low: float
+    high: float
+    amplitude: float
+    sigma: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class WaveRipple:
+    """Ripple of the wave generator, found without a ratio or at a given one.
+
+    Attributes:
+        order: per revolution of the shaft
+        sigma: its standard deviation
+        ratios: that the lines determine; empty if the ratio was given or the angle is that of the input
+        false_alarm: probability that noise alone makes such a line
+        cells: amplitude by direction and load
+    """
+
+    order: float
+    sigma: float
+    ratios: tuple[int, ...]
+    false_alarm: float
+    cells: tuple[LoadCell, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RunDiagnosis:
+    """Diagnosis of one recording.
+
+    Attributes:
+        name: of the recording
+        run: its columns
+        ripple: lines found blind
+        wave: ripple of the wave generator; None if none was found
+        orders: named orders against noise; empty if the ratio is not known
+        comparison: with the baseline; None without one
+        verdict: in one or two words
+        reason: of the verdict, in a sentence
+        condition: health indicator; None without a comparison
+        revolutions: of the input, end to end; nan if the ratio is not known
+        load: root mean square of the load, in the unit of the column
+        remarks: what to know of these numbers
+    """
+
+    name: str
+    run: JointRecording
+    ripple: Ripple
+    wave: WaveRipple | None
+    orders: tuple[OrderAgainstNoise, ...]
+    comparison: Comparison | None
+    verdict: Verdict
+    reason: str
+    condition: Condition | None
+    revolutions: float
+    load: float
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """Diagnosis of one joint.
+
+    Attributes:
+        joint: its name; empty if the files have one joint
+        runs: of each recording
+        refused: the reason why a recording cannot be used, by its name
+        baseline: names of the recordings of the baseline
+        false_alarm: stated rate of false alarms of a recording
+        gear: name of the gear; empty if none is given
+        ratio: size of the ratio; nan if it is not known
+        life: by the maker's formula; None if it is not determined
+        trend: of the condition; None if it is not determined
+        remarks: what was not determined, and why
+    """
+
+    joint: str
+    runs: tuple[RunDiagnosis, ...]
+    refused: Mapping[str, str]
+    baseline: tuple[str, ...]
+    false_alarm: float
+    gear: str
+    ratio: float
+    life: CatalogueLife | None
+    trend: Trend | None
+    remarks: tuple[str, ...]
+
+    @property
+    def alarms(self) -> int:
+        """Number of recordings with an alarm."""
+        return sum(each.verdict == "changed" for each in self.runs)
+
+
+@dataclass(frozen=True)
+class Question:
+    """Settings of a diagnosis.
+
+    Attributes:
+        gear_set: of the joint; None if it is not known
+        ratio: size of the ratio; None if it is not known
+        orders: further orders per revolution of the input, as of bearings
+        false_alarm: stated rate of false alarms, over all tests of a recording
+        hours: of operation, by the name of the recording; empty if they are not known
+        threshold: of the health indicator, at which the gear is to be exchanged; None if there is none
+    """
+
+    gear_set: GearSet | None = None
+    ratio: float | None = None
+    orders: tuple[float, ...] = ()
+    false_alarm: float = 1e-3
+    hours: Mapping[str, float] = field(default_factory=dict)
+    threshold: float | None = None
+
+
+def diagnosed(
+    runs: Sequence[JointRecording],
+    question: Question,
+    *,
+    baseline: Sequence[JointRecording] = (),
+    joint: str = "",
+    refused: Mapping[str, str] | None = None,
+) -> Diagnosis:
+    """Return the diagnosis of a joint.
+
+    Args:
+        runs: its recordings, in the order of time
+        question: gear, rates and hours
+        baseline: recordings of the same joint when it was healthy
+        joint: its name
+        refused: recordings that cannot be used, with the reasons
+
+    Raises:
+        ValueError: there is no recording, recordings are in different columns or over different shafts, or the hours do not
+            match
+    """
+    arguments.probability("false_alarm", question.false_alarm)
+    refused = dict(refused or {})
+    if not runs:
+        why = "; ".join(refused.values())
+        raise ValueError(why or "there is no recording to diagnose; give one or more")
+    _check_alike([*runs, *baseline])
+    healthy = [joint_motion(run) for run in baseline]
+    known = [line for run in baseline for line in gear_lines(_blind(run, question))]
+    done = [_run(run, question, healthy, known) for run in runs]
+    remarks: list[str] = []
+    if not baseline:
+        remarks.append(
+            "without a baseline lines are compared with noise and with the gear's expected values alone: a line is no fault, "
+            "and its absence no proof of health; --baseline compares with recordings of the healthy joint"
+        )
+    life = _life(runs, question, remarks)
+    return Diagnosis(
+        joint,
+        tuple(done),
+        refused,
+        tuple(run.name for run in baseline),
+        question.false_alarm,
+        "" if question.gear_set is None else question.gear_set.name,
+        float("nan") if question.ratio is None else abs(question.ratio),
+        life,
+        _trend(done, question, remarks),
+        tuple(remarks),
+    )
+
+
+def named_orders(run: JointRecording, question: Question) -> tuple[NamedOrder, ...]:
+    """Return the orders that a strain wave gear may have over the angle of a shaft; empty if its ratio is not known."""
+    per_input = run.per_input
+    if not np.isfinite(per_input):
+        return ()
+    orders = [
+        NamedOrder(WAVE_ORDER * per_input, WAVE_ORDER, "wave generator"),
+        NamedOrder(per_input, 1.0, "eccentricity of the wave generator"),
+        NamedOrder(2.0 * WAVE_ORDER * per_input, 2.0 * WAVE_ORDER, "wave generator, second harmonic"),
+    ]
+    kinematics = None if question.gear_set is None else question.gear_set.gear.kinematics
+    teeth = getattr(kinematics, "circular_spline_teeth", None), getattr(kinematics, "flexspline_teeth", None)
+    if teeth[0] and teeth[1]:
+        other = WAVE_ORDER * float(teeth[0]) / float(teeth[1])
+        orders.append(NamedOrder(other * per_input, other, "wave generator against the other spline"))
+    orders += [NamedOrder(each * per_input, each, "as asked") for each in question.orders]
+    return tuple(orders)
+
+
+def _blind(run: JointRecording, question: Question) -> Ripple:
+    return ripple(
+        run.recording, run.column, angle=run.angle, side=run.side, ratio=run.ratio, rate=run.rate, other_angles=run.others
+    )
+
+
+def _check_alike(runs: Sequence[JointRecording]) -> None:
+    """Raise ValueError for recordings that cannot be compared."""
+    first = runs[0]
+    for run in runs[1:]:
+        for what, one, other in (("column", first.column, run.column), ("shaft", first.side, run.side)):
+            if one != other:
+                raise ValueError(
+                    f"{run.name}: {what} {other}, but {one} in {first.name}; recordings of one joint are compared in the same "
+                    f"column over the same shaft: name them with --column, or diagnose them apart"
+                )
+
+
+def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]) -> RunDiagnosis:
+    found = _blind(run, question)
+    motion = joint_motion(run)
+    orders = _against_noise(motion, named_orders(run, question), found, question)
+    comparison, remarks = _compared(motion, found, question, healthy, known)
+    verdict, reason = _verdict(orders, comparison, found, question, bool(healthy), remarks)
+    return RunDiagnosis(
+        run.name,
+        run,
+        found,
+        _wave(motion, found),
+        orders,
+        comparison,
+        verdict,
+        reason,
+        None if comparison is None else condition(run.name, comparison),
+        motion.span * run.per_input,
+        motion.load,
+        tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
+    )
+
+
+def _compared(
+    motion: JointMotion, found: Ripple, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]
+) -> tuple[Comparison | None, list[str]]:
+    """Return the comparison with the baseline, or why there is none."""
+    if not healthy:
+        return None, []
+    named = [each.order for each in named_orders(motion.run, question) if each.order <= found.highest]
+    resolution = 1.0 / max(each.span for each in healthy)
+    planned = apart([*named, *known], resolution)
+    own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
+    searched = (found.highest - found.lowest) * max(found.revolutions, 1.0)
+    try:
+        baseline = baseline_of(healthy, [*planned, *own])
+    except ValueError as error:
+        return None, [str(error)]
+    new = [order for order in own if order in baseline.orders]
+    return compared(baseline, motion, false_alarm=question.false_alarm, new=new, searched=searched), []
+
+
+def _against_noise(
+    motion: JointMotion, named: Sequence[NamedOrder], found: Ripple, question: Question
+) -> tuple[OrderAgainstNoise, ...]:
+    """Return the named orders that the samples follow and the record separates, each with its threshold."""
+    seen = [each for each in named if each.order <= found.highest]
+    kept = set(apart([each.order for each in seen], 1.0 / max(motion.span, 1e-12)))
+    seen = [each for each in seen if each.order in kept]
+    if not seen:
+        return ()
+    (cells,) = cells_of(motion, [each.order for each in seen], np.zeros(len(motion.shaft.series), dtype=int))
+    tests = len(SENSES) * len(seen)
+    law = None if question.gear_set is None else question.gear_set.gear.kinematic_error
+    amplitudes = dict(zip(getattr(law, "order", ()), getattr(law, "amplitude", ()), strict=True))
+    rows = []
+    for k, each in enumerate(seen):
+        forward, backward = cells[0][k], cells[1][k]
+        there = [cell for cell in (forward, backward) if cell is not None]
+        if not there:
+            continue
+        sigma = min(cell.sigma for cell in there)
+        threshold = sigma * float(np.sqrt(2.0 * log(tests / question.false_alarm)))
+        ratio = motion.run.ratio
+        per_error = np.nan if ratio is None else each.per_input * ratio * motion.load  # by virtual work, at low speed
+        error = threshold / per_error if per_error > 0.0 else np.nan
+        expected = amplitudes[each.per_input] * per_error if each.per_input in amplitudes else np.nan
+        detected = any(cell.amplitude > cell.sigma * threshold / sigma for cell in there)
+        rows.append(OrderAgainstNoise(each, forward, backward, threshold, float(expected), float(error), detected))
+    return tuple(rows)
+
+
+def _verdict(
+    orders: Sequence[OrderAgainstNoise],
+    comparison: Comparison | None,
+    found: Ripple,
+    question: Question,
+    has_baseline: bool,
+    remarks: Sequence[str],
+) -> tuple[Verdict, str]:
+    """Return the verdict with its reason; never that a gear is healthy."""
+    if comparison is not None and comparison.alarms:
+        worst = comparison.alarms[0]
+        return "changed", (
+            f"{len(comparison.alarms)} of {len(comparison.changes)} amplitudes differ from the baseline; the surest is order "
+            f"{worst.order:.5g} {worst.direction}: {worst.baseline:.3g} before, {worst.amplitude:.3g} now, probability "
+            f"{worst.false_alarm:.1g} in a joint that did not change"
+        )
+    wave = next((each for each in orders if each.order.per_input == WAVE_ORDER), None)
+    if wave is not None and wave.error > MAX_CATALOGUE_ERROR and not wave.detected:
+        return "insensitive", (
+            f"only a kinematic error above {wave.error / ARC_MINUTE:.3g} arc minutes would be seen at this load and speed, and "
+            f"catalogue gears have up to {MAX_CATALOGUE_ERROR / ARC_MINUTE:g}: a fault may be there; record under more load, "
+            "longer or with less noise"
+        )
+    if comparison is not None and comparison.changes:
+        low = min(each.limit / max(each.baseline, 1e-300) for each in comparison.changes)
+        return "no change found", (
+            f"none of {len(comparison.changes)} amplitudes differs from the baseline by more than it varies; the smallest "
+            f"change that would be an alarm is {100.0 * low:.3g} % of an amplitude"
+        )
+    if has_baseline:
+        why = [*remarks, *(() if comparison is None else comparison.remarks)]
+        return "not comparable", why[0] if why else "no block of the recording has conditions that the baseline contains"
+    count = sum(line.kind in ("order", "either") and not line.joint for line in found.lines)
+    if count or any(each.detected for each in orders):
+        return "lines found", f"{max(count, sum(each.detected for each in orders))} lines repeat with the angle of this joint"
+    return "no line found", "no line stands out of the noise, which is no proof of health"
+
+
+def _wave(motion: JointMotion, found: Ripple) -> WaveRipple | None:
+    """Return the ripple of the wave generator: of the lines of a blind search the one that is order 2 of the ratio."""
+    own = [line for line in found.lines if line.kind in ("order", "either") and not line.joint]
+    line = _wave_line(own, motion, found)
+    if line is None:
+        return None
+    others = [each.order for each in own if each is not line][:MAX_OTHER_LINES]
+    orders = apart([line.order, *others], 1.0 / motion.span)
+    return WaveRipple(line.order, line.order_sigma, found.concluded, line.false_alarm, _by_load(motion, orders))
+
+
+def _wave_line(own: Sequence[Line], motion: JointMotion, found: Ripple) -> Line | None:
+    reach = WAVE_RESOLUTIONS / motion.span
+    per_input = motion.run.per_input
+    if motion.run.side == "input":
+        wanted = [WAVE_ORDER]
+    elif np.isfinite(per_input):
+        wanted = [WAVE_ORDER * (per_input + shift) for shift in (0.0, 1.0, -1.0)]
+    else:
+        wanted = [WAVE_ORDER * (ratio + shift) for ratio in found.concluded for shift in (0.0, 1.0, -1.0)]
+    near = [line for line in own if any(abs(line.order - order) <= max(reach, 3.0 * line.order_sigma) for order in wanted)]
+    return max(near, key=lambda line: line.evidence, default=None)
+
+
+def _by_load(motion: JointMotion, orders: Sequence[float]) -> tuple[LoadCell, ...]:
+    """Return the amplitude of the first order in each direction at each level of the load."""
+    shaft = motion.shaft
+    size, moving = np.abs(shaft.load), shaft.weight > 0.5
+    is_varied = float(np.std(size[moving])) > MIN_LOAD_SPREAD * max(motion.load, 1e-300) if moving.any() else False
+    levels = LOAD_LEVELS if is_varied else 1
+    edges = np.quantile(size[moving] if moving.any() else size, np.linspace(0.0, 1.0, levels + 1))
+    places = np.clip(np.searchsorted(edges, size, side="right") - 1, 0, levels - 1)
+    kinds = [(name, sign, level) for name, sign in SENSES for level in range(levels)]
+    parts = [(shaft.own.sense == sign) & (places == level) for _, sign, level in kinds]
+    (cells,) = cells_of(motion, orders, np.zeros(len(size), dtype=int), parts)
+    return tuple(
+        LoadCell(name, float(edges[level]), float(edges[level + 1]), cell[0].amplitude, cell[0].sigma, cell[0].speed)
+        for (name, _, level), cell in zip(kinds, cells, strict=True)
+        if cell[0] is not None
+    )
+
+
+# ---- Condition and life -----------------------------------------------------------------------------------------------
+
+
+def _trend(done: Sequence[RunDiagnosis], question: Question, remarks: list[str]) -> Trend | None:
+    if question.threshold is None:
+        return None
+    if not question.hours:
+        raise ValueError("--threshold needs the hours of operation of each recording: add --hours, one number for each")
+    by_name = [(each.condition.indicator, question.hours[each.name]) for each in done if each.condition is not None]
+    indicators, hours = [one for one, _ in by_name], [one for _, one in by_name]
+    try:
+        return trend(hours, indicators, question.threshold)
+    except ValueError as error:
+        remarks.append(f"no trend: {error}")
+        return None
+
+
+def _life(runs: Sequence[JointRecording], question: Question, remarks: list[str]) -> CatalogueLife | None:
+    """Return the life by the maker's formula, with torque and speed of all recordings."""
+    if question.gear_set is None or question.ratio is None:
+        return None
+    turned = cubed = lasted = 0.0
+    for run in runs:
+        torque = _output_torque(run, question)
+        if torque is None or "time" not in run.recording:
+            remarks.append(f"no life by the maker's formula: {run.name} has no torque at the output or no time")
+            return None
+        time = run.recording.time
+        speed = np.abs(np.gradient(run.recording.values(run.angle, "rad"), time)) * run.per_input
+        turned += float(np.trapezoid(speed, time))
+        cubed += float(np.trapezoid(speed * np.abs(torque) ** 3, time))
+        lasted += float(time[-1] - time[0])
+    try:
+        return catalogue_life(
+            question.gear_set,
+            average_torque=float(np.cbrt(cubed / turned)),
+            average_speed=turned / lasted * 60.0 / (2.0 * pi),
+            hours=max(question.hours.values(), default=0.0),
+        )
+    except ValueError as error:
+        remarks.append(f"no life by the maker's formula: {error}")
+        return None
+
+
+def _output_torque(run: JointRecording, question: Question) -> np.ndarray | None:
+    """Return the torque at the output [N.m]; of a motor's torque or current it contains the friction of the input."""
+    ratio = question.ratio
+    if ratio is None or question.gear_set is None:
+        return None
+    if "joint_torque" in run.recording:
+        return run.recording.values("joint_torque", "N.m")
+    if "input_torque" in run.recording:
+        return run.recording.values("input_torque", "N.m") * abs(ratio)
+    constant = getattr(question.gear_set.motor, "torque_constant", None)
+    if "current" in run.recording and constant:
+        return run.recording.values("current", "A") * float(constant) * abs(ratio)
+    return None

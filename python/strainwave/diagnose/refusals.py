@@ -1,0 +1,145 @@
+"""Recordings that a diagnosis cannot use: too short, aliased, at rest, or without the columns that it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import pi, tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.recording import Recording
+from strainwave.messages import listed
+from strainwave.orders.comb import RATIOS
+from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
+from strainwave.orders.ripple import Side
+from strainwave.orders.turning import evenly, unwrapped
+
+Array = NDArray[np.float64]
+
+EFFORTS = ("current", "input_torque", "torque", "joint_torque")  # in which lines are looked for: what the motor measures first
+WAVE_ORDER = 2.0  # of the wave generator: the main line of a strain wave gear per revolution of the input
+MIN_INPUT_REVOLUTIONS = 3.0  # revolutions of the input from end to end
+MIN_TRAVEL = 1e-3  # rad of the shaft: less is noise of an encoder at rest
+SLOW_SHARE = 0.05  # of the largest speed: slower samples count as rest
+SPEED_QUANTILE = 0.5  # of the moving samples: half of them must be slow enough for an order
+
+
+@dataclass(frozen=True)
+class JointRecording:
+    """A recording of one joint that a diagnosis can use.
+
+    Attributes:
+        name: of the recording
+        recording: with the columns
+        column: torque or current in which lines are looked for
+        angle: column with the angle of the shaft
+        side: of the gear on which this shaft is
+        ratio: size of the ratio, if it is known
+        others: columns with the angles of other joints that move, by their names
+        rate: samples per second of a recording without time [Hz]
+        remarks: what was done for it
+    """
+
+    name: str
+    recording: Recording
+    column: str
+    angle: str
+    side: Side
+    ratio: float | None = None
+    others: Mapping[str, str] = field(default_factory=dict)
+    rate: float | None = None
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """Unit of the torque or current."""
+        return self.recording.unit(self.column)
+
+    @property
+    def per_input(self) -> float:
+        """Revolutions of the input per revolution of the shaft; nan if the ratio is not known."""
+        return 1.0 if self.side == "input" else np.nan if self.ratio is None else self.ratio
+
+
+def usable(
+    recording: Recording,
+    name: str,
+    *,
+    ratio: float | None = None,
+    side: Side | None = None,
+    rate: float | None = None,
+    other_angles: Mapping[str, str] | None = None,
+) -> JointRecording:
+    """Return a recording as a diagnosis uses it.
+
+    Args:
+        recording: columns with the names of a drive log
+        name: of the recording, for messages
+        ratio: of the gear, if it is known; the sign does not matter
+        side: on which the angle or speed was measured, if its name does not contain it
+        rate: samples per second of a recording without time [Hz]
+        other_angles: columns with the angles of other joints that move, by the name of the joint
+
+    Raises:
+        ValueError: there is no torque or current, no angle and no speed; the shaft rests; it turns too little; or its samples
+            are too far apart for order 2 of the wave generator
+
+    >>> resting = Recording({"time": np.arange(100.0), "output_angle": np.zeros(100), "current": np.ones(100)},
+    ...                     {"time": "s", "output_angle": "rad", "current": "A"})
+    >>> usable(resting, "rest.csv")
+    Traceback (most recent call last):
+    ValueError: rest.csv: at rest: output_angle moves by 0 rad from end to end; at least 0.001 rad is needed; record a motion
+    """
+    size = None if ratio is None else abs(ratio)
+    effort = next((each for each in EFFORTS if each in recording), None)
+    if effort is None:
+        raise ValueError(
+            f"{name}: without current or torque: its columns are {listed(recording.names)}; a diagnosis needs one of "
+            f"{listed(EFFORTS)}; record it, or name its column with --column current=…"
+        )
+    if not any(each in recording for each, _ in (*ANGLES, *SPEEDS)):
+        raise ValueError(
+            f"{name}: without an angle or a speed: its columns are {listed(recording.names)}; a diagnosis needs one of "
+            f"{listed(each for each, _ in (*ANGLES, *SPEEDS))}; record it, or name its column with --column output_angle=…"
+        )
+    turning, angle, known, remarks = with_angle(recording, side, rate)
+    try:
+        run = JointRecording(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
+        _check_motion(run)
+    except ValueError as error:
+        raise ValueError(str(error) if str(error).startswith(f"{name}:") else f"{name}: {error}") from None
+    return run
+
+
+def _check_motion(run: JointRecording) -> None:
+    """Raise ValueError for a shaft that rests, turns too little or too fast for the samples."""
+    raw = run.recording.values(run.angle, "rad")
+    if (travel := float(np.ptp(raw))) < MIN_TRAVEL:
+        raise ValueError(
+            f"at rest: {run.angle} moves by {travel:.3g} rad from end to end; at least {MIN_TRAVEL:g} rad is needed; "
+            "record a motion"
+        )
+    record = evenly(run.recording, [run.angle], run.rate)
+    angle = unwrapped(run.angle, record.columns[run.angle])
+    least_ratio = float(RATIOS[0])
+    per_input = run.per_input if np.isfinite(run.per_input) else least_ratio
+    assumed = "" if np.isfinite(run.per_input) else f", with the smallest ratio that makers offer, {least_ratio:g}"
+    turned = float(np.ptp(angle)) / tau * per_input
+    if turned < MIN_INPUT_REVOLUTIONS:
+        raise ValueError(
+            f"too short: the input turns {turned:.3g} revolutions from end to end{assumed}; a diagnosis needs "
+            f"{MIN_INPUT_REVOLUTIONS:g} or more; record a longer motion"
+        )
+    steps = np.abs(np.diff(angle))
+    moving = steps[steps > SLOW_SHARE * float(np.quantile(steps, 0.95))]
+    step = float(np.quantile(moving, SPEED_QUANTILE))  # rad per sample
+    if (phase := WAVE_ORDER * per_input * step) > pi:
+        rate = 1.0 / record.step
+        limit = f"{0.5 * rate:.4g} Hz, half of the sample rate" if record.timed else "half a period per sample"
+        value = f"{phase / tau * rate:.4g} Hz" if record.timed else f"{phase / tau:.3g} periods per sample"
+        raise ValueError(
+            f"aliased: order 2 of the wave generator passes at {value} at the usual speed{assumed}; the limit is {limit}; "
+            f"record {phase / pi:.2g} times faster, or turn {phase / pi:.2g} times slower"
+        )
