@@ -82,7 +82,7 @@ def section(model: Model) -> tuple[str, Figure | None]:
 
 
 def failure_modes(models: Sequence[Model]) -> list[str]:
-    """Return a table of faults: what fails, the numbers that change, what follows and where it shows; nothing for other models."""
+    """Return a table of faults: what fails, the numbers that change, effect and signal; nothing for other models."""
     if not all(hasattr(model, "mode") for model in models):
         return []
     facts = _core.fault.Facts(flexspline_teeth=200, circular_spline_teeth=202, ratio=-100.0)
