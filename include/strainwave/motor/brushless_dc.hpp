@@ -96,7 +96,7 @@ struct BrushlessDC {
     constexpr State relaxation_rate() const { return {resistance / inductance}; }
 
 private:
-    constexpr Cogging<S> cogging() const { return Cogging<S>::of(cogging_torque, cogging_order); }
+    constexpr CoggingTorque<S> cogging() const { return CoggingTorque<S>::of(cogging_torque, cogging_order); }
     constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
 };
 

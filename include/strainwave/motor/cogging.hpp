@@ -5,12 +5,12 @@ namespace strainwave::motor {
 
 /// The torque with which the magnets of a rotor hold to the teeth of its stator: a sine over the angle, without loss.
 template <class S>
-struct Cogging {
+struct CoggingTorque {
     S amplitude{0.0};  ///< N.m
     S order{1.0};      ///< periods per revolution
     bool acts = false;
 
-    static constexpr Cogging of(const S& amplitude, const S& order) {
+    static constexpr CoggingTorque of(const S& amplitude, const S& order) {
         return {amplitude, order, sought(amplitude) || any(amplitude > S(0.0))};
     }
     /// Of a motor with this electric torque [N.m]; its very bits without cogging.

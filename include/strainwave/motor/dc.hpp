@@ -85,7 +85,7 @@ struct DC {
         Winding<S> winding;
         S per_inductance, torque_constant, back_emf, inertia, brush_drop;
         bool has_brush_drop;
-        Cogging<S> cogging;
+        CoggingTorque<S> cogging;
 
         constexpr S torque(const State& x, const S& voltage, const Rotor<S>& rotor) const {
             return cogging.added_to(torque_constant * current(x, voltage, rotor), rotor.angle);
@@ -120,7 +120,7 @@ struct DC {
                 inertia,
                 brush_drop,
                 sought(brush_drop) || any(brush_drop > S(0.0)),
-                Cogging<S>::of(cogging_torque, cogging_order)};
+                CoggingTorque<S>::of(cogging_torque, cogging_order)};
     }
 
     // The same, for a motor that is not compiled.
