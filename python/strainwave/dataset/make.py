@@ -139,7 +139,7 @@ def make(
             runners.run_by_dask(target, scheduler, show)
         else:
             runners.run_locally(target, min(count, shards.plan.shards), show)
-        target.finish()
+        runners.finish(target)
     return target.path
 
 

@@ -23,6 +23,7 @@ from strainwave.native import kernels
 
 POLL_SECONDS = 0.2
 PROGRESS_SECONDS = 2.0
+MAX_FINISH_SECONDS = 60.0  # that a worker may take to end after the last shard is there
 MAX_DEATHS_WITHOUT_SHARD = 5  # of workers in succession, while no shard was completed
 REFUSED = 2  # exit code of a worker for what will not go better the next time
 MAX_ERROR_BYTES = 4000
@@ -74,6 +75,21 @@ def _shards(path: str, digest: str) -> Shards:
     population = Population(DatasetFolder(Path(path)).plan)
     kernels.load(population.drive, "simulate_many", compile_it=False)
     return Shards(population)
+
+
+def finish(folder: DatasetFolder) -> None:
+    """Finish a data set whose shards are all there, once no worker makes one of them a second time.
+
+    Raises:
+        RuntimeError: a worker does not end
+    """
+    begin = time.monotonic()
+    while not folder.finish():
+        if time.monotonic() - begin > MAX_FINISH_SECONDS:
+            raise RuntimeError(
+                f"all shards of {folder.path} are there, but a worker still has one locked; end it and try again"
+            )
+        time.sleep(POLL_SECONDS)
 
 
 # Processes of this machine

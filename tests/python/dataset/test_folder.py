@@ -258,9 +258,10 @@ def test_dask_makes_an_equal_data_set_though_workers_are_killed(whole: tuple[Pat
         def kill(line: str) -> None:
             lines.append(line)
             if len(killed) < 2:
-                worker = next(nanny.pid for nanny in cluster.workers.values() if nanny.pid not in killed)
-                killed.add(worker)
-                os.kill(worker, signal.SIGKILL)
+                alive = [nanny.pid for nanny in cluster.workers.values() if nanny.pid]  # none while a nanny starts another
+                for worker in [each for each in alive if each not in killed][:1]:
+                    killed.add(worker)
+                    os.kill(worker, signal.SIGKILL)
 
         runners_seconds, runners.PROGRESS_SECONDS = runners.PROGRESS_SECONDS, 0.0
         try:
