@@ -121,32 +121,30 @@ def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
     try:
         while True:
             time.sleep(POLL_SECONDS)
-            done = folder.done()
-            if board.note(done):
+            codes = [worker.process.poll() for worker in workers]
+            if board.note(folder.done()):
                 deaths = 0
-            for part, worker in enumerate(workers):
-                code = worker.process.poll()
-                if code is None or (code == 0 and done >= whole):
-                    continue
+            if board.done >= whole and None not in codes:
+                break
+            for part, (worker, code) in enumerate(zip(workers, codes, strict=True)):
+                if code is None or (code == 0 and (None in codes or board.done >= whole)):
+                    continue  # at work, or nothing was left for it
                 if code == REFUSED:
                     raise OSError(f"a worker stopped: {worker.message()}")
-                deaths += code != 0
+                deaths += 1
                 if deaths > MAX_DEATHS_WITHOUT_SHARD:
                     raise RuntimeError(
                         f"{deaths} workers ended in succession without a shard, the last with code {code}: {worker.message()}; "
                         "if it was killed for memory, give fewer workers"
                     )
-                worker.errors.close()
-                if folder.done() < whole:
+                if board.done < whole:
+                    worker.errors.close()
                     workers[part] = _start(folder, part, count)
-            if folder.done() >= whole and all(worker.process.poll() is not None for worker in workers):
-                break
     finally:
         for worker in workers:
             worker.process.terminate()
             worker.process.wait()
             worker.errors.close()
-    board.note(folder.done())
 
 
 def _start(folder: DatasetFolder, part: int, parts: int) -> _Worker:
