@@ -40,13 +40,15 @@ def write(folder: Path) -> None:
     folder.mkdir()
     for name, (about, models) in pages().items():
         title = name.replace("_", " ").capitalize()
-        text = "\n\n".join([f"# {title}", escaped(about), *(saved_section(folder, model) for model in models)])
+        sections = [saved_section(folder, model) for model in models]
+        text = "\n\n".join([f"# {title}", escaped(about), *failure_modes(models), *sections])
         (folder / f"{name}.md").write_text(titled(text) + "\n", encoding="utf-8")
 
 
 def pages() -> dict[str, tuple[str, list[Model]]]:
     """Return what each page is about and its models, by the name of the page."""
-    every = [(module_of(model), family, model) for family, models in _core.families.items() for model in models.values()]
+    families = _core.families | _core.fault_families
+    every = [(module_of(model), family, model) for family, models in families.items() for model in models.values()]
     every.sort(key=lambda entry: (entry[0], entry[0] != entry[1]))  # the family with the name of the module first
     found = {
         name: (str(getattr(sw, name).__doc__), [model for _, _, model in entries])
@@ -70,11 +72,34 @@ def section(model: Model) -> tuple[str, Figure | None]:
     """Return the section of a model on its page, and the figure that it shows."""
     words, _, _ = (model.__doc__ or "").partition("\n\nParameters\n---")
     written = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {linked(model.source)}"]
+    if module_of(model) in _core.fault_families:
+        return "\n\n".join(written), None  # it does nothing by itself
     shown = SHOWN.get(model.name) or parts.SUITED.get(model.name) or {"": constructed(model, words)}
     figure = drawn(shown)
     if figure:
         written.append(f"![what {model.__name__} does]({model.name}.svg)\n\n*Shown:* {caption(shown)}")
     return "\n\n".join(written), figure
+
+
+def failure_modes(models: Sequence[Model]) -> list[str]:
+    """Return a table of faults: what fails, the numbers that change, effect and signal; nothing for other models."""
+    if not all(hasattr(model, "mode") for model in models):
+        return []
+    facts = _core.fault.Facts(flexspline_teeth=200, circular_spline_teeth=202, ratio=-100.0)
+    head = "| Fault | Failure mode | Numbers that change | Effect | Signal |\n|---|---|---|---|---|"
+    rows = (
+        f"| `{model.__name__}` | {model.mode} | {numbers(model, facts)} | {escaped(model.effect)} | {escaped(model.signal)} |"
+        for model in models
+    )
+    return ["## Failure modes, numbers and signals", "\n".join([head, *rows])]
+
+
+def numbers(model: Model, facts: Any) -> str:
+    """The numbers of a drive that a fault changes, by their places; of a wave its law."""
+    found: dict[str, dict[str, None]] = {}
+    for place, quantity, kind, _, law, *_ in model().changes(facts):
+        found.setdefault(place, {})[f"waves of `{law}`" if kind == "wave" else f"`{quantity}`"] = None
+    return "; ".join(f"`{place}`: {', '.join(names)}" for place, names in found.items())
 
 
 def caption(shown: dict[str, Any]) -> str:

@@ -12,7 +12,8 @@ import strainwave as sw
 from strainwave import _core
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-MODELS = [*(model for family in _core.families.values() for model in family.values()), sw.Gear, sw.Drive, sw.Sensors]
+FAMILIES = _core.families | _core.fault_families
+MODELS = [*(model for family in FAMILIES.values() for model in family.values()), sw.Gear, sw.Drive, sw.Sensors]
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,17 @@ def test_the_section_of_a_model_can_be_generated(model: Any, theory: ModuleType)
 def test_every_model_is_on_one_page(theory: ModuleType) -> None:
     shown = [model for _, models in theory.pages().values() for model in models]
     assert sorted(model.__name__ for model in shown) == sorted(model.__name__ for model in MODELS)
-    assert len({model.name for model in shown}) == len(shown)  # else one figure replaces another
+    pictured = [model for model in shown if theory.module_of(model) not in _core.fault_families]
+    assert len({model.name for model in pictured}) == len(pictured)  # else one figure replaces another
+
+
+def test_the_table_of_failure_modes_has_a_row_for_every_fault(theory: ModuleType) -> None:
+    faults = list(_core.fault_families["fault"].values())
+    _, table = theory.failure_modes(faults)
+    rows = table.splitlines()[2:]
+    assert [row.split("|")[1].strip(" `") for row in rows] == [fault.__name__ for fault in faults]
+    assert all(fault.mode in row and ("`gear." in row or "`sensors." in row) for fault, row in zip(faults, rows, strict=True))
+    assert theory.failure_modes([sw.Gear]) == []
 
 
 def test_an_error_under_load_is_that_of_the_model_divided_by_the_load(theory: ModuleType) -> None:

@@ -198,8 +198,8 @@ def _with_law(drive: Drive, fault: Fault, change: Change) -> Drive:
     whole = _put_in(_options(_at(drive, owner) if owner else drive, name), present, change.law)
     if whole is None:
         raise ValueError(
-            f"{fault.name} needs a law {change.law} at {change.place}, where {present.name} is; that can be neither held by it nor "
-            f"replaced without a change of the healthy drive; give the drive such a law"
+            f"{fault.name} needs a law {change.law} at {change.place}, where {present.name} is, which it can neither hold nor "
+            "replace without a change of the healthy drive; give the drive such a law"
             + (f" ({REMEDIES[change.law]})" if change.law in REMEDIES else "")
             + ", or leave the fault out"
         )

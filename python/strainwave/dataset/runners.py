@@ -127,7 +127,7 @@ def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
             if board.done >= whole and None not in codes:
                 break
             for part, (worker, code) in enumerate(zip(workers, codes, strict=True)):
-                if code is None or (code == 0 and (None in codes or board.done >= whole)):
+                if code is None or board.done >= whole or (code == 0 and None in codes):
                     continue  # at work, or nothing was left for it
                 if code == REFUSED:
                     raise OSError(f"a worker stopped: {worker.message()}")
@@ -137,9 +137,8 @@ def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
                         f"{deaths} workers ended in succession without a shard, the last with code {code}: {worker.message()}; "
                         "if it was killed for memory, give fewer workers"
                     )
-                if board.done < whole:
-                    worker.errors.close()
-                    workers[part] = _start(folder, part, count)
+                worker.errors.close()
+                workers[part] = _start(folder, part, count)
     finally:
         for worker in workers:
             worker.process.terminate()
