@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from strainwave.dataset.plan import Plan
 
 RUNNERS = ("local", "dask", "slurm")
+QUIET_SECONDS = 60.0  # between lines of progress where nobody watches
 
 
 def dataset(
@@ -68,15 +70,23 @@ def _make(plan: Path, out: Path, runner: str, workers: int | None, scheduler: st
     from strainwave.files.writing import written
 
     try:
-        made = make(plan, out, runner=runner, workers=workers, scheduler=scheduler, progress=_progress)  # type: ignore[arg-type]
+        made = make(plan, out, runner=runner, workers=workers, scheduler=scheduler, progress=_Progress())  # type: ignore[arg-type]
     except RuntimeError as error:
         raise OSError(str(error)) from None
     written.append(made)
     print(f"sbatch {made}" if runner == "slurm" else f"wrote {made}")
 
 
-def _progress(line: str) -> None:
-    print(f"strainwave: {line}", file=sys.stderr, flush=True)
+class _Progress:
+    """Lines of progress: all on a terminal, now and then in a file."""
+
+    def __init__(self) -> None:
+        self.last = time.monotonic()
+
+    def __call__(self, line: str) -> None:
+        if sys.stderr.isatty() or time.monotonic() - self.last >= QUIET_SECONDS:
+            self.last = time.monotonic()
+            print(f"strainwave: {line}", file=sys.stderr, flush=True)
 
 
 def _make_member(plan: Path, member: int, out: Path | None) -> None:

@@ -135,11 +135,14 @@ def make(
                 file.write(runners.slurm_script(target.path, shards.plan, count).encode())
             return script
         target.remove_drafts()
-        if runner == "dask":
-            runners.run_by_dask(target, scheduler, show)
-        else:
-            runners.run_locally(target, min(count, shards.plan.shards), show)
-        target.finish()
+        try:
+            if runner == "dask":
+                runners.run_by_dask(target, scheduler, show)
+            else:
+                runners.run_locally(target, min(count, shards.plan.shards), show)
+        finally:
+            target.remove_drafts()
+        runners.finish(target)
     return target.path
 
 

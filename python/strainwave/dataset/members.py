@@ -331,7 +331,7 @@ class Population:
             needed = MAX_SIGNAL_FREQUENCY_SHARE / frequency
             raise ValueError(
                 f"condition {condition.number} ({condition.profile}): order {highest:g} reaches {frequency:.4g} Hz; samples "
-                f"{table.sample:g} s apart alias; take simulation.sample = {needed:.2g} s or less, or lower orders"
+                f"{table.sample:g} s apart alias; take simulation.sample = {0.99 * needed:.3g} s or less, or lower orders"
             )
 
     def _check_faults(self) -> None:

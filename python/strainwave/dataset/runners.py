@@ -23,6 +23,7 @@ from strainwave.native import kernels
 
 POLL_SECONDS = 0.2
 PROGRESS_SECONDS = 2.0
+MAX_FINISH_SECONDS = 60.0  # that a worker may take to end after the last shard is there
 MAX_DEATHS_WITHOUT_SHARD = 5  # of workers in succession, while no shard was completed
 REFUSED = 2  # exit code of a worker for what will not go better the next time
 MAX_ERROR_BYTES = 4000
@@ -76,6 +77,21 @@ def _shards(path: str, digest: str) -> Shards:
     return Shards(population)
 
 
+def finish(folder: DatasetFolder) -> None:
+    """Finish a data set whose shards are all there, once no worker makes one of them a second time.
+
+    Raises:
+        RuntimeError: a worker does not end
+    """
+    begin = time.monotonic()
+    while not folder.finish():
+        if time.monotonic() - begin > MAX_FINISH_SECONDS:
+            raise RuntimeError(
+                f"all shards of {folder.path} are there, but a worker still has one locked; end it and try again"
+            )
+        time.sleep(POLL_SECONDS)
+
+
 # Processes of this machine
 
 
@@ -105,32 +121,29 @@ def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
     try:
         while True:
             time.sleep(POLL_SECONDS)
-            done = folder.done()
-            if board.note(done):
+            codes = [worker.process.poll() for worker in workers]
+            if board.note(folder.done()):
                 deaths = 0
-            for part, worker in enumerate(workers):
-                code = worker.process.poll()
-                if code is None or (code == 0 and done >= whole):
-                    continue
+            if board.done >= whole and None not in codes:
+                break
+            for part, (worker, code) in enumerate(zip(workers, codes, strict=True)):
+                if code is None or board.done >= whole or (code == 0 and None in codes):
+                    continue  # at work, or nothing was left for it
                 if code == REFUSED:
                     raise OSError(f"a worker stopped: {worker.message()}")
-                deaths += code != 0
+                deaths += 1
                 if deaths > MAX_DEATHS_WITHOUT_SHARD:
                     raise RuntimeError(
                         f"{deaths} workers ended in succession without a shard, the last with code {code}: {worker.message()}; "
                         "if it was killed for memory, give fewer workers"
                     )
                 worker.errors.close()
-                if folder.done() < whole:
-                    workers[part] = _start(folder, part, count)
-            if folder.done() >= whole and all(worker.process.poll() is not None for worker in workers):
-                break
+                workers[part] = _start(folder, part, count)
     finally:
         for worker in workers:
             worker.process.terminate()
             worker.process.wait()
             worker.errors.close()
-    board.note(folder.done())
 
 
 def _start(folder: DatasetFolder, part: int, parts: int) -> _Worker:
