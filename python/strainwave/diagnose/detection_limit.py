@@ -21,11 +21,13 @@ from strainwave.diagnose.detection import needed_signal_to_noise
 from strainwave.diagnose.motion import MAX_SAMPLES, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
+from strainwave.messages import listed
 from strainwave.parameters import every
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.resolution import COARSEST
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, constant, ramp
+from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
 
@@ -199,7 +201,8 @@ def detection_limit(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an argument is out of range, the drive has no current, does not reach the speed, or the record is too short or long
+        ValueError: an argument is out of range, the drive has no current or does not reach the speed, or the record is too short
+            or too long
         FloatingPointError: the drive is not stable
 
     Valid for the drive as it is modelled: hysteresis and friction answer a small error otherwise than a large one, so the gain
@@ -309,6 +312,10 @@ def _run(drive: Drive, speed: float, load_torque: float, duration: float, sample
         raise ValueError(
             f"sample_rate = {sample_rate:g} Hz has less than 5 samples in a period of order {order:g}; take "
             f"{2.5 * order * speed / pi:.4g} Hz or more"
+        )
+    if COLUMN not in (known := outputs(drive)):
+        raise ValueError(
+            f"the drive records no current, only {listed(known)}; give it a motor that has one, as DC or CurrentSource"
         )
     quiet = {path: 0.0 for path in every(drive) if path.startswith("sensors.") and path.endswith(".amplitude")}
     return Run(drive.replace(quiet), speed, load_torque, duration, sample_rate, order)

@@ -21,6 +21,7 @@ MIN_SPEED_SHARE = 0.1  # of a fast speed [1]: slower samples are left out, since
 MAX_SAMPLES = 2**18  # that are used, the last ones
 MAX_PHASE_STEP = 0.125 * pi  # rad of the highest order between two averaged samples: an amplitude loses 0.7 %
 MAX_AVERAGED = 64  # samples in one mean
+MAX_RATE = 1e9  # Hz, of samples
 MAX_ROUNDING = 1e-6  # revolutions, by which a whole number may be missed
 
 
@@ -100,6 +101,8 @@ def motion_of(
     check_recording("recording", recording)
     arguments.text("column", column)
     names = [angle, column, *([load_column] if load_column else [])]
+    if rate is not None:
+        rate = arguments.number("rate", rate, "Hz", "(]", 0.0, MAX_RATE)
     record = evenly(recording, names, rate)
     kept = slice(max(0, len(record) - MAX_SAMPLES), None)
     turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))[kept]

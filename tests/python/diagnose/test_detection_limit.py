@@ -94,5 +94,7 @@ def test_runs_that_cannot_be_planned_are_refused() -> None:
         planned(duration=1.0)
     with pytest.raises(ValueError, match="has less than 5 samples in a period"):
         planned(sample_rate=8.0)
+    with pytest.raises(ValueError, match="records no current"):
+        detection_limit(sw.load("two-inertia-gear"), load_torque=5.0, **RECORD)
     with pytest.raises(ValueError, match="turns its input by"):
         detection_limit(sw.load("space-pointing-joint"), load_torque=5.0, **(RECORD | {"speed": 200.0}))
