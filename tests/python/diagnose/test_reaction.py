@@ -37,7 +37,8 @@ def test_the_signature_of_a_held_input_is_that_of_the_closed_form(load: float, p
     per_error = np.array([ideal_current(order, load) for order in ORDER])
     assert_allclose(1e3 * np.abs(per_error) * AMPLITUDE, printed, rtol=0.03)
     assert_allclose(np.abs(found.total[places] / per_error), 1.0, rtol=0.06)  # the loop multiplies by T_c
-    assert_allclose(np.abs(found.inertial[places] / [ideal_current(order, 0.0) for order in ORDER]), 1.0, rtol=0.06)
+    inertial = np.abs(found.inertial[places] / [ideal_current(order, 0.0) for order in ORDER])
+    assert_allclose(inertial, 1.0, rtol=0.1)  # at order 1 a part of 0.08 mA is separated from 32 mA
 
 
 def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(parts: CurrentPerError) -> None:
