@@ -102,7 +102,7 @@ class Sensitivity:
             return f"sensitive: {numbers}"
         return (
             f"insensitive: {numbers}. The record does not determine whether the gear is healthy. Load the output with about "
-            f"{self.needed_torque:.2g} N.m; the torque through the gear was {self.torque:.2g} N.m"
+            f"{self.needed_torque:.2g} N.m; the torque through the gear was {round(self.torque, 3):.2g} N.m"
         )
 
 
