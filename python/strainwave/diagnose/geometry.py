@@ -471,7 +471,7 @@ def least_amplitude() -> float:
     The size of a line of noise is that of Rayleigh, with a signal that of Rice.
 
     >>> round(least_amplitude(), 2)
-    4.96
+    4.88
     """
     from scipy.optimize import brentq
     from scipy.stats import ncx2
