@@ -119,8 +119,8 @@ def parts_over_load(lines: ArrayLike, torque: ArrayLike, sigma: ArrayLike) -> Pa
         ValueError: there are fewer than two different torques, or shapes differ
 
     >>> parts = parts_over_load([0.02 + 0.01j, 0.02 + 0.11j], [0.0, 20.0], [1e-3, 1e-3])
-    >>> complex(round(parts.constant, 6)), complex(round(parts.per_torque, 6))
-    ((0.02+0.01j), 0.005j)
+    >>> round(parts.constant.real, 6), round(parts.per_torque.imag, 6)
+    (0.02, 0.005)
     """
     values = np.asarray(lines, dtype=complex)
     loads, noise = arguments.numbers("torque", torque), arguments.numbers("sigma", sigma)

@@ -37,7 +37,8 @@ def test_the_signature_of_a_held_input_is_that_of_the_closed_form(load: float, p
     per_error = np.array([ideal_current(order, load) for order in ORDER])
     assert_allclose(1e3 * np.abs(per_error) * AMPLITUDE, printed, rtol=0.03)
     assert_allclose(np.abs(found.total[places] / per_error), 1.0, rtol=0.06)  # the loop multiplies by T_c
-    assert_allclose(np.abs(found.inertial[places] / [ideal_current(order, 0.0) for order in ORDER]), 1.0, rtol=0.06)
+    inertial = np.abs(found.inertial[places] / [ideal_current(order, 0.0) for order in ORDER])
+    assert_allclose(inertial, 1.0, rtol=0.1)  # at order 1 a part of 0.08 mA is separated from 32 mA
 
 
 def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(parts: CurrentPerError) -> None:
@@ -72,8 +73,9 @@ def test_two_loads_determine_the_error_though_the_output_inertia_is_not_known(pa
     by_slope = abs(found.per_torque / parts.per_torque[1] / error)
     by_one_load = abs(lines[0] / parts.total[1] / error)
     as_reaction = abs(lines[0] / parts.reaction[1] / error)
-    print(by_slope, by_one_load, as_reaction)
-    assert by_slope == pytest.approx(1.0, abs=0.1)
+    assert by_slope == pytest.approx(1.0, abs=0.02)
+    assert by_one_load > 1.04  # with the inertia of the nominal drive
+    assert as_reaction > 1.1
 
 
 def test_a_line_over_the_load_has_the_covariance_of_least_squares() -> None:
