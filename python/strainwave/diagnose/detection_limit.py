@@ -201,8 +201,8 @@ def detection_limit(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an argument is out of range, the drive has no current or does not reach the speed, or the record is too short
-            or too long
+        ValueError: an argument is out of range, the drive has no current or does not reach the speed, or the record has
+            too few or too many samples
         FloatingPointError: the drive is not stable
 
     Valid for the drive as it is modelled: hysteresis and friction answer a small error otherwise than a large one, so the gain
