@@ -87,7 +87,7 @@ def joint_motion(run: JointRecording) -> JointMotion:
     record = beginning(evenly(run.recording, names, run.rate), MAX_SAMPLES)
     angles = {name: unwrapped(name, convert(record.columns[name], run.recording.unit(name), "rad")) for name in names[1:]}
     others = {joint: angles[name] for joint, name in run.others.items() if float(np.ptp(angles[name])) > 0.0}
-    shaft = moving(angles[run.angle], record.columns[run.column], others)
+    shaft = moving(angles[run.angle], record.columns[run.column], others, run.per_input)
     weight = np.where(record.measured, shaft.weight, 0.0)
     shaft = Moving(shaft.shafts, shaft.series, shaft.smooth, shaft.load, weight, shaft.outliers)
     return JointMotion(

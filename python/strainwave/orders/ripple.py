@@ -122,7 +122,8 @@ def ripple(
     arguments.one_of("side", side, ("input", "output"))
     false_alarm = arguments.probability("false_alarm", false_alarm)
     size = None if ratio is None else abs(arguments.ratio("ratio", ratio))
-    record, shaft = _moved(recording, column, angle, rate, other_angles or {})
+    per_input = 1.0 if side == "input" else size or np.nan
+    record, shaft = _moved(recording, column, angle, rate, other_angles or {}, per_input)
     lowest, top = _range(shaft, side, size, highest)
     _check_sampled(shaft, record, side, size, top, angle)
     found = find_lines(shaft, lowest, top, false_alarm)
@@ -152,7 +153,7 @@ def ripple(
 
 
 def _moved(
-    recording: Recording, column: str, angle: str, rate: float | None, others: Mapping[str, str]
+    recording: Recording, column: str, angle: str, rate: float | None, others: Mapping[str, str], per_input: float
 ) -> tuple[Evenly, Moving]:
     """Return a shaft and what drives it, evenly in time, of a long record the beginning; filled rows do not count."""
     record = beginning(evenly(recording, [column, angle, *others.values()], rate), MAX_SAMPLES)
@@ -164,7 +165,7 @@ def _moved(
     if float(np.ptp(record.columns[column])) == 0.0:
         raise ValueError(f"{column} does not change; there is no ripple in it: give the column that was measured")
     moved = {joint: turned[name] for joint, name in others.items() if float(np.ptp(turned[name])) > 0.0}
-    shaft = moving(turned[angle], record.columns[column], moved)
+    shaft = moving(turned[angle], record.columns[column], moved, per_input)
     return record, replace(shaft, weight=np.where(record.measured, shaft.weight, 0.0))
 
 

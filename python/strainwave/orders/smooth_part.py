@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import tau
+from math import nan, tau
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,12 @@ REST_SHARE = 0.05  # of a fast speed [1]: around it a sample counts half, since 
 MAX_RESIDUAL_SHARE = 0.98  # of the residual's square [1], that remains if a loss under load is taken for one
 OUTLIER_SIGMA = 8.0  # robust standard deviations of the residual, beyond which a sample counts as a mistake
 MIN_SENSE_SHARE = 0.02  # of the squared weight [1]: a direction with less has no amplitudes of its own
+WAVE_ORDERS = (1.0, 2.0, 4.0)  # per revolution of the input, that a gear makes in the motion as well as in the torque
+MIN_OWN_SHARE = (
+    0.3  # of a column's norm [1], that the waves of the gear must leave of it, so that it belongs to the smooth part
+)
+SMOOTH_SHARE = 0.95  # likewise, from which a column has no ripple of the gear: waves are never quite orthogonal to it
+MIN_WAVE_PERIODS = 3.0  # of a wave in the record
 MIN_GRAVITY_SPAN = 0.5  # rad: sine and cosine of a smaller motion are the trend
 BOTH_SENSES = (1.0, -1.0)
 
@@ -93,16 +99,19 @@ class Moving:
         return self.shafts[0]
 
 
-def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = None) -> Moving:
+def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = None, per_input: float = nan) -> Moving:
     """Return the shaft with the torque less its smooth part.
 
     The smooth part is fitted by least squares over speed, direction, acceleration and angle. Of other joints it contains
-    gravity over their angles and over the sums with this one, and their inertia.
+    gravity over their angles and over the sums with this one, and their inertia. The shaft swings at the orders of its gear, so
+    that speed and acceleration have the same orders as the torque. If these orders are known, they are removed from speed and
+    acceleration first: else friction and inertia would take the ripple for theirs.
 
     Args:
         angle: of the shaft [rad], shape (n,)
         torque: or current, shape (n,)
         others: angles of other joints that move [rad], by name
+        per_input: revolutions of the input per revolution of the shaft; nan if it is not known
     """
     own = Shaft.of("", angle)
     shafts = (own, *(Shaft.of(name, values) for name, values in (others or {}).items()))
@@ -111,6 +120,8 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
     rest = np.concatenate([_trend(angle), own.acceleration[:, None], *(_coupling(own, each) for each in shafts[1:])], axis=1)
     gate = own.speed**2 / (own.speed**2 + (REST_SHARE * fast) ** 2)
     weight = gate * taper(len(angle))
+    waves = _waves(own, per_input)
+    friction, rest = _without_ripple(friction, waves, weight), _without_ripple(rest, waves, weight)
     smooth, turning = _fitted(torque, friction, rest, weight)
     if own.reverses():  # a share of the load is lost, one way and the other
         lossy = np.concatenate([friction, (own.sense * np.abs(smooth - turning))[:, None]], axis=1)
@@ -124,6 +135,28 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
         smooth, turning = _fitted(torque, friction, rest, weight)
         left = torque - smooth
     return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()))
+
+
+def _waves(own: Shaft, per_input: float) -> Array:
+    """Return sines and cosines of the orders of a gear, in each direction, shape (n, waves)."""
+    orders = [order * per_input for order in WAVE_ORDERS if order * per_input * own.revolutions >= MIN_WAVE_PERIODS]
+    senses = [own.sense == sense for sense in BOTH_SENSES if np.any(own.sense == sense)]
+    waves = [there * wave(order * own.angle) for order in orders for there in senses for wave in (np.sin, np.cos)]
+    return np.stack(waves, axis=1) if waves else np.zeros((len(own.angle), 0))
+
+
+def _without_ripple(columns: Array, waves: Array, weight: Array) -> Array:
+    """Return the columns less their waves, if these are more than chance, without columns of which little is left."""
+    if not waves.shape[1] or not columns.shape[1]:
+        return columns
+    weighed = columns * weight[:, None]
+    constant = weight[:, None] * (weight @ weighed / max(float(weight @ weight), 1e-300))
+    shares = np.linalg.lstsq(waves * weight[:, None], weighed - constant, rcond=1e-8)[0]
+    size = np.linalg.norm(weighed - constant, axis=0)
+    left = np.linalg.norm(weighed - constant - weight[:, None] * (waves @ shares), axis=0)
+    is_smooth = (left >= SMOOTH_SHARE * size) | (size <= 1e-9 * np.linalg.norm(weighed, axis=0))
+    cleaned: Array = np.where(is_smooth, columns, columns - waves @ shares)[:, (left >= MIN_OWN_SHARE * size) | is_smooth]
+    return cleaned
 
 
 def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple[Array, Array]:
