@@ -28,10 +28,10 @@ HEALTHY = sw.Drive(
 )
 
 
-def lines(fault: Any, orders: list[float]) -> list[float]:
+def lines(fault: Any, orders: list[float], load: float = LOAD) -> list[float]:
     """Amplitudes [A] in the current at constant speed, once the load has settled."""
     duration = 2.0 + TURNS * 6.2832 / SPEED
-    run = sw.simulate(sw.with_faults(HEALTHY, [fault]), sw.scenario.constant(-SPEED / 100.0, duration), load_torque=LOAD)
+    run = sw.simulate(sw.with_faults(HEALTHY, [fault]), sw.scenario.constant(-SPEED / 100.0, duration), load_torque=load)
     return [float(each) for each in sw.order_amplitudes(run.between(1.0, duration), "current", orders).amplitude]
 
 
@@ -54,3 +54,17 @@ def test_a_bearing_shows_by_the_friction_at_the_input() -> None:
     ((order, _, _),) = waves(bearing, REVERSING, "gear.friction_input")
     (line,) = lines(bearing, [order])
     assert line == pytest.approx(0.3 * 0.05 / CONSTANT, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("fault", "order", "power"),
+    [
+        (sw.fault.ToothWear(play=0.0, amplitude=3e-4), 2.02, 1),
+        (sw.fault.FlexsplineCrack(depth=0.05, waves=2), 2.02, 2),
+        (sw.fault.WaveGeneratorBearing(friction_depth=0.3, waves=1), 10.41227, 0),
+    ],
+    ids=lambda each: getattr(each, "name", None),
+)
+def test_a_line_grows_with_a_power_of_the_load(fault: Any, order: float, power: int) -> None:
+    (half,), (whole,) = lines(fault, [order], 20.0), lines(fault, [order], 40.0)
+    assert whole / half == pytest.approx(2.0**power, rel=0.01)
