@@ -20,6 +20,7 @@ LAYERS = {
     "analysis": {*BELOW, "analysis"},
     "orders": {*BELOW, "analysis", "orders"},
     "identification": {*BELOW, "analysis", "orders", "identification"},
+    "dataset": {*BELOW, "analysis", "orders", "identification", "dataset"},
     "export": {*BELOW, "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
     "studies": {*BELOW, "analysis", "orders", "studies"},
