@@ -110,6 +110,8 @@ def card(shards: Shards, schema: Any) -> str:
         "",
         "- The labels are those of the model. A model that lacks an effect lacks it in all members.",
         "- Units differ only in the columns of role parameter.",
+        "- Features are computed from true quantities with white noise. Lag, bias and play of a sensor show only in what the "
+        "controller makes of them.",
         "- The severity of a fault is constant within a run.",
         "- The column `failure` has the reason if a member could not be run. Its features are not-a-number.",
         *(

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, kinematics, sensor
+from strainwave import Drive
 from strainwave.dataset.features import FeatureSet
 from strainwave.dataset.plan import Plan, Range, check_unit_grid
 from strainwave.dataset.profiles import command_of, peak_speed
@@ -145,9 +145,9 @@ class Population:
     def features(self) -> FeatureSet:
         known = {*outputs(self.drive), "tracking_error"}
         signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in known}
-        gear = self.drive.gear.kinematics
+        gear: Any = self.drive.gear.kinematics
         tooth = None
-        if self.plan.features.tooth_orders and isinstance(gear, kinematics.StrainWave):
+        if self.plan.features.tooth_orders and hasattr(gear, "circular_spline_teeth"):
             tooth = round(2.0 * gear.circular_spline_teeth / gear.flexspline_teeth, 6)
         return FeatureSet(signals, self.plan.features.orders, tooth)
 
@@ -407,4 +407,4 @@ def _drawn(design: str, seed: int, count: int, ranges: Mapping[Any, Range], firs
 def _without_noise(sensors: Any) -> Any:
     """Sensors with their laws alone: their noise is added to the features instead."""
     laws = {each["name"]: getattr(sensors, each["name"]) for each in type(sensors).fields}
-    return sensors.replace(**{name: law.law for name, law in laws.items() if isinstance(law, sensor.Noisy)})
+    return sensors.replace(**{name: law.law for name, law in laws.items() if hasattr(law, "seed") and hasattr(law, "law")})

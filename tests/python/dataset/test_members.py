@@ -159,9 +159,14 @@ def test_a_member_that_cannot_run_has_the_reason_and_no_features() -> None:
         ({"kind": "no_such_fault", "share": 0.5}, 'faults.kind = "no_such_fault" is not known; there are misalignment'),
         ({"kind": "misalignment", "share": 0.5, "numbers": {"colour": 1.0}}, 'misalignment has no "colour"'),
         ({"kind": "lubrication_loss", "share": 0.5, "onset": {"law": "sudden"}}, 'onset.law = "sudden" is not known'),
+        ({"kind": "encoder_eccentricity", "share": 0.5}, "needs a law encoder at sensors.output_angle, where second_order is"),
+        ({"kind": "wave_generator_bearing", "share": 0.5}, "changes nothing of this drive"),
     ],
 )
-def test_a_fault_without_its_part_is_refused_before_the_first_run(fault: dict[str, Any], said: str) -> None:
+def test_a_fault_without_its_part_is_refused_before_the_first_run(
+    fault: dict[str, Any], said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Shards, "tables", None)  # no run
     with pytest.raises(ValueError, match=said):
         population(changed(faults=[fault])).check()
 
