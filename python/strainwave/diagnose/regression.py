@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.diagnose.motion import Motion
+from strainwave.orders.floor import Floor, floor_under
 
 Array = NDArray[np.float64]
 
@@ -26,6 +27,7 @@ MIN_SENSE_SHARE = 0.02  # of the samples [1]: with fewer of a direction it has n
 MIN_GRAVITY_SPAN = 0.5  # rad of the output: sine and cosine of a smaller motion are the trend
 MAX_SCORES = 2**24  # numbers in the columns of all parts of the neighbours
 MIN_INDEPENDENCE = 1e-3  # of the square of a neighbour's columns [1], that others must leave
+MAX_NOISE_RANGE = 1e6  # largest over least power of the noise
 MAX_CONDITION = 1e10  # of the squared columns, beyond which a direction does not count
 
 
@@ -184,22 +186,25 @@ def regressions(motion: Motion, orders: Sequence[float]) -> list[OrderRegression
     grows = growths(motion)
     waves = [np.stack([wave * each for each in grows.values() for wave in motion.wave(order)], axis=1) for order in orders]
     single = [np.stack(motion.wave(order), axis=1) for order in orders]
-    inverse, factor, basis = _solved(np.concatenate([*waves, smooth], axis=1))
-    mean_inverse, mean_factor, _ = _solved(np.concatenate([*single, smooth], axis=1))
+    everything = np.concatenate([*waves, smooth], axis=1)
+    white = _whitening(motion.series, everything) if len(grows) > 1 else _unchanged
+    inverse, factor, basis = _solved(white(everything))
+    mean_inverse, mean_factor, _ = _solved(white(np.concatenate([*single, smooth], axis=1)))
     width, found = 2 * len(grows), []
     for k, order in enumerate(orders):
         own, two = slice(k * width, (k + 1) * width), slice(2 * k, 2 * k + 2)
+        scores = _scores(motion, order, orders, basis, grows, white)
         found.append(
             OrderRegression(
                 order=order,
                 names=tuple(grows),
-                estimator=inverse[own],
+                estimator=white(inverse[own].T).T,
                 factor=factor[own, own],
-                mean_estimator=mean_inverse[two],
+                mean_estimator=white(mean_inverse[two].T).T,
                 mean_factor=mean_factor[two, two],
                 shape=waves[k],
-                noise=_noise_basis(motion, order, orders, basis),
-                scores=_scores(motion, order, orders, basis, grows),
+                noise=white(_noise_basis(motion, order, orders, basis, white)),
+                scores=np.stack([white(each) for each in scores]) if scores else np.zeros((0, len(motion.angle), 2)),
             )
         )
     return found
@@ -221,27 +226,52 @@ def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> 
     return found
 
 
-def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: Array) -> Array:
+def _unchanged(columns: Array) -> Array:
+    return columns
+
+
+def _whitening(series: Array, columns: Array) -> Callable[[Array], Array]:
+    """Return the filter that makes noise white, from what no column explains: motion at many speeds sees all its colours.
+
+    The filter is symmetric, so that the product of filtered columns with a filtered series is that of twice filtered columns
+    with the series itself.
+    """
+    inverse, _, _ = _solved(columns)
+    residual = series - columns @ (inverse @ series)
+    found = floor_under(residual, np.ones(len(series)))
+    level = np.maximum(found.level, found.level.max() / MAX_NOISE_RANGE)
+    floor = Floor(found.place, level / level.max(), found.lines)
+    return lambda each: np.stack([floor.whitened(column) for column in each.T], axis=1)
+
+
+def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: Array, white: Callable[[Array], Array]) -> Array:
     """Return orthonormal columns of the neighbours of an order that are orthogonal to all that is fitted."""
     around = neighbours_of(order, orders, motion.revolutions)
     if not around:
         raise ValueError(f"order {order:g} leaves no room for the noise around it: look for fewer orders, or record longer")
-    columns = np.stack([wave for place in around for wave in motion.wave(place)], axis=1)
-    columns -= basis @ (basis.T @ columns)
+    columns = white(np.stack([wave for place in around for wave in motion.wave(place)], axis=1))
+    columns = columns - basis @ (basis.T @ columns)
     values, vectors = np.linalg.eigh(columns.T @ columns)
     kept = values > values.max() * 1e-6
     orthonormal: Array = columns @ (vectors[:, kept] / np.sqrt(values[kept]))
     return orthonormal
 
 
-def _scores(motion: Motion, order: float, orders: Sequence[float], basis: Array, grows: Mapping[str, Array]) -> Array:
-    """Return orthonormal columns of the parts of each neighbour, one neighbour after the other, shape (k, n, 2 parts)."""
+def _scores(
+    motion: Motion,
+    order: float,
+    orders: Sequence[float],
+    basis: Array,
+    grows: Mapping[str, Array],
+    white: Callable[[Array], Array],
+) -> list[Array]:
+    """Return orthonormal columns of the parts of each neighbour, one neighbour after the other, each of shape (n, 2 parts)."""
     if len(grows) == 1:
-        return np.zeros((0, len(motion.angle), 2))
+        return []
     found: list[Array] = []
     room = max(2 * len(grows) + 2, MAX_SCORES // (2 * len(grows) * len(motion.angle)))
     for place in neighbours_of(order, orders, motion.revolutions)[:room]:
-        block = np.stack([wave * each for each in grows.values() for wave in motion.wave(place)], axis=1)
+        block = white(np.stack([wave * each for each in grows.values() for wave in motion.wave(place)], axis=1))
         size = np.linalg.norm(block, axis=0)
         block = block / size
         block = block - basis @ (basis.T @ block)
@@ -256,7 +286,7 @@ def _scores(motion: Motion, order: float, orders: Sequence[float], basis: Array,
             f"order {order:g} has {len(grows)} parts and {len(found)} neighbours with noise alone: record longer, or leave out "
             "the load column"
         )
-    return np.stack(found)
+    return found
 
 
 def _solved(columns: Array) -> tuple[Array, Array, Array]:
