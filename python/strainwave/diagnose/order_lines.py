@@ -255,13 +255,14 @@ def _line(each: OrderRegression, motion: Motion, tests: int, allowed: float, nea
     found = each.estimator @ motion.series
     mean = each.mean_estimator @ motion.series
     evidence = float(each.evidence(series)[0])
-    alarm = false_alarm_of(evidence, len(found), each.freedom, tests)
+    alarm = false_alarm_of(evidence, len(found), each.evidence_freedom, tests)
     amplitude = hypot(*mean) if len(each.names) == 1 else float(np.sqrt(2.0 * np.mean((each.shape @ found) ** 2)))
+    covariance = each.covariance(motion.series)
     parts, waves = {}, {}
     for k, name in enumerate(each.names):
         own = slice(2 * k, 2 * k + 2)
         sine, cosine = found[own].tolist()
-        parts[name] = (hypot(sine, cosine), float(np.sqrt(0.5 * variance * np.trace(each.factor[own, own]))))
+        parts[name] = (hypot(sine, cosine), float(np.sqrt(0.5 * np.trace(covariance[own, own]))))
         waves[name] = complex(sine, cosine)
     return OrderLine(
         order=each.order,

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.diagnose.motion import Motion
+from strainwave.orders.floor import Floor, floor_under
 
 Array = NDArray[np.float64]
 
@@ -23,6 +25,9 @@ MIN_SPREAD = 0.1  # relative spread of load or squared speed [1], from which par
 SPEED_SPREAD = 0.01  # relative spread of the speed [1], from which friction over speed is determined
 MIN_SENSE_SHARE = 0.02  # of the samples [1]: with fewer of a direction it has no part of its own
 MIN_GRAVITY_SPAN = 0.5  # rad of the output: sine and cosine of a smaller motion are the trend
+MAX_SCORES = 2**24  # numbers in the columns of all parts of the neighbours
+MIN_INDEPENDENCE = 1e-3  # of the square of a neighbour's columns [1], that others must leave
+MAX_NOISE_RANGE = 1e6  # largest over least power of the noise
 MAX_CONDITION = 1e10  # of the squared columns, beyond which a direction does not count
 
 
@@ -39,6 +44,7 @@ class OrderRegression:
         mean_factor: covariance of those over the variance, shape (2, 2)
         shape: columns of the parts, shape (n, 2 parts)
         noise: orthonormal columns of the neighbours, free of all that is fitted, shape (n, freedom)
+        scores: orthonormal columns of the parts of each neighbour, shape (k, n, 2 parts); none with one part
     """
 
     order: float
@@ -49,6 +55,13 @@ class OrderRegression:
     mean_factor: Array
     shape: Array
     noise: Array
+    scores: Array
+
+    @property
+    def evidence_freedom(self) -> int:
+        """Degrees of freedom of the noise in `evidence`."""
+        parts = len(self.names)
+        return self.freedom if parts == 1 else 2 * (len(self.scores) - parts + 1)
 
     @property
     def freedom(self) -> int:
@@ -60,12 +73,58 @@ class OrderRegression:
         level: Array = np.sum((self.noise.T @ series) ** 2, axis=0) / self.freedom
         return level
 
+    def covariance(self, series: Array) -> Array:
+        """Return the covariance of the coefficients of the parts under the noise around the order, shape (2 parts, 2 parts).
+
+        Noise is coloured over time, and parts see it at other speeds. So neighbours with the same parts measure it.
+        """
+        if len(self.names) == 1:
+            return self.factor * float(self.variance(series[:, None])[0])
+        around = _complex(np.einsum("knp,n->pk", self.scores, series))
+        level = (around @ around.conj().T) / (2.0 * around.shape[1])
+        root = _root(self.factor)
+        found: Array = root @ _real(level) @ root
+        return found
+
     def evidence(self, series: Array) -> Array:
-        """Return F of all parts of the order together, of each column of the series, shape (k,)."""
+        """Return F of all parts of the order together, of each column of the series, shape (k,).
+
+        With several parts this is Hotelling's test: the covariance of the parts is that of their neighbours.
+        """
         found = self.estimator @ series
-        square = np.sum(found * np.linalg.solve(self.factor, found), axis=0)
-        explained: Array = square / len(found) / np.maximum(self.variance(series), 1e-300)
-        return explained
+        if len(self.names) == 1:
+            square = np.sum(found * np.linalg.solve(self.factor, found), axis=0)
+            explained: Array = square / len(found) / np.maximum(self.variance(series), 1e-300)
+            return explained
+        own = _complex(np.linalg.solve(_root(self.factor), found))
+        around = _complex(np.einsum("knp,nm->pkm", self.scores, series))
+        parts, count = len(self.names), around.shape[1]
+        level = np.einsum("pkm,qkm->mpq", around, around.conj()) / count
+        level = level + 1e-300 * np.eye(parts)
+        solved = np.linalg.solve(level, own.T[..., None])[..., 0]
+        square = np.sum(own.T.conj() * solved, axis=1).real
+        scaled: Array = square * (count - parts + 1) / (count * parts)
+        return scaled
+
+
+def _complex(scores: NDArray[Any]) -> NDArray[np.complex128]:
+    """Return sine and cosine of each part as one complex number; the first axis is halved."""
+    return scores[0::2] + 1j * scores[1::2]
+
+
+def _real(level: NDArray[np.complex128]) -> Array:
+    """Return the covariance of sines and cosines of a complex one, shape (2 parts, 2 parts)."""
+    found = np.zeros((2 * len(level), 2 * len(level)))
+    found[0::2, 0::2] = found[1::2, 1::2] = level.real
+    found[1::2, 0::2], found[0::2, 1::2] = level.imag, -level.imag
+    return found
+
+
+def _root(matrix: Array) -> Array:
+    """Return the symmetric square root of a positive matrix."""
+    values, vectors = np.linalg.eigh(matrix)
+    root: Array = (vectors * np.sqrt(np.maximum(values, 1e-300))) @ vectors.T
+    return root
 
 
 def smooth_columns(motion: Motion, lowest: float) -> Array:
@@ -127,21 +186,25 @@ def regressions(motion: Motion, orders: Sequence[float]) -> list[OrderRegression
     grows = growths(motion)
     waves = [np.stack([wave * each for each in grows.values() for wave in motion.wave(order)], axis=1) for order in orders]
     single = [np.stack(motion.wave(order), axis=1) for order in orders]
-    inverse, factor, basis = _solved(np.concatenate([*waves, smooth], axis=1))
-    mean_inverse, mean_factor, _ = _solved(np.concatenate([*single, smooth], axis=1))
+    everything = np.concatenate([*waves, smooth], axis=1)
+    white = _whitening(motion.series, everything) if len(grows) > 1 else _unchanged
+    inverse, factor, basis = _solved(white(everything))
+    mean_inverse, mean_factor, _ = _solved(white(np.concatenate([*single, smooth], axis=1)))
     width, found = 2 * len(grows), []
     for k, order in enumerate(orders):
         own, two = slice(k * width, (k + 1) * width), slice(2 * k, 2 * k + 2)
+        scores = _scores(motion, order, orders, basis, grows, white)
         found.append(
             OrderRegression(
                 order=order,
                 names=tuple(grows),
-                estimator=inverse[own],
+                estimator=white(inverse[own].T).T,
                 factor=factor[own, own],
-                mean_estimator=mean_inverse[two],
+                mean_estimator=white(mean_inverse[two].T).T,
                 mean_factor=mean_factor[two, two],
                 shape=waves[k],
-                noise=_noise_basis(motion, order, orders, basis),
+                noise=white(_noise_basis(motion, order, orders, basis, white)),
+                scores=np.stack([white(each) for each in scores]) if scores else np.zeros((0, len(motion.angle), 2)),
             )
         )
     return found
@@ -163,17 +226,67 @@ def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> 
     return found
 
 
-def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: Array) -> Array:
+def _unchanged(columns: Array) -> Array:
+    return columns
+
+
+def _whitening(series: Array, columns: Array) -> Callable[[Array], Array]:
+    """Return the filter that makes noise white, from what no column explains: motion at many speeds sees all its colours.
+
+    The filter is symmetric, so that the product of filtered columns with a filtered series is that of twice filtered columns
+    with the series itself.
+    """
+    inverse, _, _ = _solved(columns)
+    residual = series - columns @ (inverse @ series)
+    found = floor_under(residual, np.ones(len(series)))
+    level = np.maximum(found.level, found.level.max() / MAX_NOISE_RANGE)
+    floor = Floor(found.place, level / level.max(), found.lines)
+    return lambda each: np.stack([floor.whitened(column) for column in each.T], axis=1)
+
+
+def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: Array, white: Callable[[Array], Array]) -> Array:
     """Return orthonormal columns of the neighbours of an order that are orthogonal to all that is fitted."""
     around = neighbours_of(order, orders, motion.revolutions)
     if not around:
         raise ValueError(f"order {order:g} leaves no room for the noise around it: look for fewer orders, or record longer")
-    columns = np.stack([wave for place in around for wave in motion.wave(place)], axis=1)
-    columns -= basis @ (basis.T @ columns)
+    columns = white(np.stack([wave for place in around for wave in motion.wave(place)], axis=1))
+    columns = columns - basis @ (basis.T @ columns)
     values, vectors = np.linalg.eigh(columns.T @ columns)
     kept = values > values.max() * 1e-6
     orthonormal: Array = columns @ (vectors[:, kept] / np.sqrt(values[kept]))
     return orthonormal
+
+
+def _scores(
+    motion: Motion,
+    order: float,
+    orders: Sequence[float],
+    basis: Array,
+    grows: Mapping[str, Array],
+    white: Callable[[Array], Array],
+) -> list[Array]:
+    """Return orthonormal columns of the parts of each neighbour, one neighbour after the other, each of shape (n, 2 parts)."""
+    if len(grows) == 1:
+        return []
+    found: list[Array] = []
+    room = max(2 * len(grows) + 2, MAX_SCORES // (2 * len(grows) * len(motion.angle)))
+    for place in neighbours_of(order, orders, motion.revolutions)[:room]:
+        block = white(np.stack([wave * each for each in grows.values() for wave in motion.wave(place)], axis=1))
+        size = np.linalg.norm(block, axis=0)
+        block = block / size
+        block = block - basis @ (basis.T @ block)
+        for other in found:
+            block = block - other @ (other.T @ block)
+        squared = block.T @ block
+        values, vectors = np.linalg.eigh(squared)
+        if values[0] > MIN_INDEPENDENCE:
+            found.append(block @ ((vectors / np.sqrt(values)) @ vectors.T))
+    if len(found) < 2 * len(grows):
+        raise ValueError(
+            f"order {order:g} has {len(grows)} parts and {len(found)} neighbours with noise alone: record longer, or leave out "
+            "the load column"
+        )
+    return found
 
 
 def _solved(columns: Array) -> tuple[Array, Array, Array]:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi, sqrt, tau
 
 import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
+from strainwave.diagnose.detection import threshold_of
+from strainwave.diagnose.motion import motion_of
 from strainwave.diagnose.order_lines import OrderLine, order_lines, synchronous_average
+from strainwave.diagnose.regression import regressions
 
-from tests.detection_limits import false_alarms, interval, signature_drive
+from tests.detection_limits import false_alarms, interval, noises, signature_drive
 
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "input_angle": "rad", "current": "A", "load": "N.m"}
@@ -116,6 +120,23 @@ def test_healthy_units_raise_alarms_at_the_stated_rate(colour: str) -> None:
     alarms, runs = false_alarms(colour, 0.01, 8, 250)
     low, high = interval(0.01, runs)
     assert low <= alarms <= high
+
+
+@pytest.mark.parametrize("colour", ["white", "pink"])
+def test_motion_to_and_fro_under_a_load_that_varies_raises_alarms_at_the_stated_rate(colour: str) -> None:
+    """All four parts of each order are tested together, F with eight amplitudes; the colour is that over time."""
+    time = np.arange(0.0, 60.0, 8e-3)
+    angle = -48.0 * np.cos(tau * time / 20.0)
+    load = 10.0 + 6.0 * np.sin(tau * time / 7.3)
+    made = recorded(time, angle, np.sin(time), load)
+    motion = motion_of(made, "current", 4.0, load_column="load")
+    rows = noises(colour, len(motion.series), 2000, motion.step, np.random.default_rng(6))
+    alarm = np.zeros(2000, dtype=bool)
+    for each in regressions(replace(motion, series=rows[:, 0]), [2.0, 4.0]):
+        assert len(each.names) == 4
+        alarm |= each.evidence(rows) > threshold_of(0.02, 8, each.evidence_freedom, 2)
+    low, high = interval(0.02, 2000)
+    assert low <= alarm.sum() <= high
 
 
 def test_orders_that_merge_are_one_until_half_an_output_revolution() -> None:
