@@ -26,6 +26,9 @@ MIN_BLOCKS = 6  # of a baseline, by which a spread is estimated
 BLOCK_RESOLUTIONS = 1.5  # resolutions of a block, by which two orders differ at least
 CONFIDENCE = 0.95  # of intervals
 SPREAD_MARGIN = 1.0  # standard deviations of the variance of replicates, added to what noise does not explain of it
+CONDITIONS = ("", "speed", "load")  # over which an amplitude may change in a healthy joint, besides a mean
+MIN_BLOCKS_FOR_LINE = 10  # blocks, by which a line over a condition is fitted
+MAX_LEFT_OUT_SHARE = 0.8  # of the squared error of left-out blocks [1], to which a line has to reduce it
 MAX_SPEED_RATIO = 1.25  # by which a block may be faster or slower than all blocks of the baseline
 MAX_LOAD_SHARE = 0.25  # of the spread or size of the baseline's load, by which a block may lie outside of it
 MAX_PLACE_SHARE = 0.1  # of the baseline's range of the angle, by which a block may lie outside of it
@@ -38,7 +41,7 @@ class Change:
     Attributes:
         order: per revolution of the shaft
         direction: `forward` or `backward`
-        baseline: mean amplitude of the baseline, in the unit of the column
+        baseline: amplitude of the baseline under the conditions of the recording, in the unit of the column
         spread: standard deviation of a replicate of it
         amplitude: mean amplitude of the recording
         change: difference of both
@@ -49,6 +52,7 @@ class Change:
         alarm: True if this probability is below the stated rate
         replicates: number of blocks of the baseline
         blocks: number of blocks of the recording
+        condition: `speed` or `load`, over which the baseline is a straight line; empty if it is a mean
         is_new: True if the line was found blind in the recording and not in the baseline
     """
 
@@ -66,6 +70,7 @@ class Change:
     alarm: bool
     replicates: int
     blocks: int
+    condition: str
     is_new: bool = False
 
 
@@ -222,38 +227,95 @@ def _change(
     """Return the change of one order, by Student's distribution with the baseline's spread."""
     from scipy.stats import t as student
 
-    groups = [np.array([cell.amplitude for cell in one]) for one in healthy if one]
-    values = np.concatenate(groups)
-    spread, freedom = _spread(groups)
+    condition, expected = _expected(healthy)
+    groups = [np.array([cell.amplitude for cell in one]) - expected.of(one) for one in healthy if one]
+    replicates = sum(map(len, groups))
+    spread, freedom = _spread(groups, expected.terms)
     noise = float(np.mean([cell.sigma**2 for one in healthy for cell in one]))
     own_noise = float(np.mean([cell.sigma**2 for cell in own]))
-    mean, amplitude = float(values.mean()), float(np.mean([cell.amplitude for cell in own]))
+    mean, amplitude = float(expected.of(own).mean()), float(np.mean([cell.amplitude for cell in own]))
     shared = max(spread**2 - noise, 0.0) + SPREAD_MARGIN * spread**2 * float(np.sqrt(2.0 / freedom))
-    sigma = float(np.sqrt(min(shared, spread**2) + own_noise / len(own) + max(spread**2, noise) / len(values)))
+    fit = max(spread**2, noise) * expected.leverage(own)
+    sigma = float(np.sqrt(min(shared, spread**2) + own_noise / len(own) + fit))
     change = amplitude - mean
     reach = sigma * float(student.isf(0.5 * (1.0 - CONFIDENCE), freedom))
     probability = min(1.0, tests * 2.0 * float(student.sf(abs(change) / sigma, freedom)))
     limit = sigma * float(student.isf(0.5 * allowed / tests, freedom))
     return Change(
         order, name, mean, spread, amplitude, change, sigma, change - reach, change + reach, limit, probability,
-        probability < allowed, len(values), len(own), is_new,
+        probability < allowed, replicates, len(own), condition, is_new,
     )  # fmt: skip
 
 
-def _spread(groups: Sequence[Array]) -> tuple[float, float]:
+@dataclass(frozen=True, eq=False)
+class _Expected:
+    """Amplitude of the healthy joint, as a mean or a straight line over a condition."""
+
+    condition: str
+    values: Array
+    inverse: Array
+
+    @property
+    def terms(self) -> int:
+        return len(self.values)
+
+    def of(self, cells: Sequence[Cell]) -> Array:
+        """Return the amplitude under the conditions of cells, shape (n,)."""
+        predicted: Array = _design(self.condition, cells) @ self.values
+        return predicted
+
+    def leverage(self, cells: Sequence[Cell]) -> float:
+        """Return the variance of the mean prediction over that of a replicate."""
+        mean = _design(self.condition, cells).mean(axis=0)
+        return float(mean @ self.inverse @ mean)
+
+
+def _design(condition: str, cells: Sequence[Cell]) -> Array:
+    ones = np.ones(len(cells))
+    return np.stack([ones, [abs(getattr(cell, condition)) for cell in cells]] if condition else [ones], axis=1)
+
+
+def _fitted(condition: str, cells: Sequence[Cell]) -> _Expected:
+    design = _design(condition, cells)
+    inverse = np.asarray(np.linalg.pinv(design.T @ design))
+    return _Expected(condition, inverse @ (design.T @ np.array([cell.amplitude for cell in cells])), inverse)
+
+
+def _expected(healthy: Sequence[Sequence[Cell]]) -> tuple[str, _Expected]:
+    """Return the condition over which the amplitude changes, and the fit: the one that predicts left-out recordings best,
+    of one recording left-out blocks."""
+    cells = [cell for one in healthy for cell in one]
+    own = [list(one) for one in healthy if one]
+    parts = own if len(own) > 1 else [[cell] for cell in cells]  # blocks of a day may share what looks like a condition
+    folds = [([cell for other in parts if other is not part for cell in other], part) for part in parts]
+    best, least, name = None, np.inf, ""
+    for condition in CONDITIONS if len(cells) >= MIN_BLOCKS_FOR_LINE else ("",):
+        fit = _fitted(condition, cells)
+        error = 0.0
+        for kept, left_out in folds:
+            left = np.array([cell.amplitude for cell in left_out]) - _fitted(condition, kept).of(left_out)
+            error += float(left @ left)
+        if best is None or error < MAX_LEFT_OUT_SHARE * least:
+            best, least, name = fit, error, condition
+    assert best is not None
+    return name, best
+
+
+def _spread(groups: Sequence[Array], terms: int) -> tuple[float, float]:
     """Return the standard deviation of a replicate and its degrees of freedom.
 
-    Of several recordings it is that between them and within them together (Satterthwaite's degrees of freedom).
+    Of several recordings it is that between them and within them together (degrees of freedom by Satterthwaite1946).
     """
     values = np.concatenate(groups)
     count, kinds = len(values), len(groups)
+    whole = float(np.sqrt((values @ values) / (count - terms))), float(count - terms)
     if kinds == 1:
-        return float(values.std(ddof=1)), float(count - 1)
+        return whole
     within = sum(float(((each - each.mean()) ** 2).sum()) for each in groups) / max(count - kinds, 1)
     between = sum(len(each) * float((each.mean() - values.mean()) ** 2) for each in groups) / (kinds - 1)
     size = (count - sum(len(each) ** 2 for each in groups) / count) / (kinds - 1)
     if between <= within:
-        return float(values.std(ddof=1)), float(count - 1)
+        return whole
     share = 1.0 / size
     total = share * between + (1.0 - share) * within
     parts = (share * between) ** 2 / (kinds - 1) + ((1.0 - share) * within) ** 2 / max(count - kinds, 1)

@@ -15,6 +15,7 @@ from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogu
 from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.files.gear_set import GearSet
+from strainwave.messages import listed
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import Ripple, ripple
 
@@ -24,6 +25,7 @@ ARC_MINUTE = pi / 180.0 / 60.0  # rad
 MAX_CATALOGUE_ERROR = 2.0 * ARC_MINUTE  # rad: transmission accuracy of the least accurate catalogue gears
 LOAD_LEVELS = 3  # of the size of the load, in the table of the wave generator's ripple
 MIN_LOAD_SPREAD = 0.3  # of the load's root mean square [1], from which it has levels
+MAX_HARMONIC = 12  # of an order, up to which a cause is named
 WAVE_RESOLUTIONS = 1.5  # resolutions, by which a line differs at most from the order of the wave generator
 MAX_OTHER_LINES = 6  # that are fitted beside the wave generator's
 
@@ -112,6 +114,7 @@ class RunDiagnosis:
         condition: health indicator; None without a comparison
         revolutions: of the input, end to end; nan if the ratio is not known
         load: root mean square of the load, in the unit of the column
+        causes: of the orders of the alarms, in words
         remarks: what to know of these numbers
     """
 
@@ -126,6 +129,7 @@ class RunDiagnosis:
     condition: Condition | None
     revolutions: float
     load: float
+    causes: tuple[str, ...]
     remarks: tuple[str, ...]
 
 
@@ -254,6 +258,43 @@ def named_orders(run: JointRecording, question: Question) -> tuple[NamedOrder, .
     return tuple(orders)
 
 
+def causes(orders: Sequence[float], motion: JointMotion, question: Question) -> tuple[str, ...]:
+    """Return what orders of a shaft repeat with in a strain wave gear, a sentence for each cause.
+
+    Args:
+        orders: per revolution of the shaft
+        motion: of the recording, which separates orders by its length
+        question: with the gear, whose teeth separate the splines
+    """
+    per_input = motion.run.per_input
+    if not np.isfinite(per_input):
+        return ()
+    kinematics = None if question.gear_set is None else question.gear_set.gear.kinematics
+    circular, flexible = (getattr(kinematics, f"{name}_teeth", 0) for name in ("circular_spline", "flexspline"))
+    is_fixed = getattr(kinematics, "fixed", "") == "circular_spline"
+    still, turning = ("circular spline", "flexspline") if is_fixed else ("flexspline", "circular spline")
+    passes = (float(circular) / float(flexible)) ** (1.0 if is_fixed else -1.0) if circular and flexible else 0.0
+    reach = 1.0 / max(motion.span * per_input, 1e-300)
+    by_cause = dict[str, list[str]]()
+    for order in dict.fromkeys(orders):
+        own = order / per_input
+        whole = abs(own - round(own)) < reach and 1 <= round(own) <= MAX_HARMONIC
+        rounds = own / (WAVE_ORDER * passes) if passes else 0.0
+        other = 1 <= round(rounds) <= MAX_HARMONIC and abs(rounds - round(rounds)) * WAVE_ORDER * passes < reach
+        if whole and other:
+            cause = "of either spline, which this record does not separate: turn the output further"
+        elif other:
+            cause = f"passes of the wave generator over one place of the {turning}: a crack, or damaged teeth there"
+        elif whole:
+            cause = f"whole multiples: misalignment or wear of the wave generator, or teeth of the {still}"
+        else:
+            cause = "of none of both splines: a bearing, the motor, or a resonance"
+        by_cause.setdefault(cause, []).append(f"{own:.4g}")
+    return tuple(
+        f"order{'s' if len(each) > 1 else ''} {listed(each)} of the input: {cause}" for cause, each in by_cause.items()
+    )
+
+
 def _blind(run: JointRecording, question: Question) -> Ripple:
     return ripple(
         run.recording, run.column, angle=run.angle, side=run.side, ratio=run.ratio, rate=run.rate, other_angles=run.others
@@ -290,6 +331,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         None if comparison is None else condition(run.name, comparison),
         motion.span * run.per_input,
         motion.load,
+        () if comparison is None else causes([each.order for each in comparison.alarms], motion, question),
         tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
     )
 
@@ -302,7 +344,7 @@ def _compared(
         return None, []
     named = [each.order for each in named_orders(motion.run, question) if each.order <= found.highest]
     resolution = 1.0 / max(each.span for each in healthy)
-    planned = apart([*named, *known], resolution)
+    planned = apart([*known, *named], resolution)  # a line is where it was found, also beside a whole order
     own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
     searched = (found.highest - found.lowest) * max(found.revolutions, 1.0)
     try:

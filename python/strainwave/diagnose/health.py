@@ -15,10 +15,10 @@ from strainwave.files.gear_set import GearSet
 
 Array = NDArray[np.float64]
 
-RATED_SPEED = 2000.0  # rpm of the input, at which makers state the rated torque [HarmonicDriveLife]
-LIFE_L10 = {"csg": 10000.0, "shg": 10000.0}  # h at rated torque and speed, by series [HarmonicDriveLife]
-OTHER_LIFE_L10 = 7000.0  # h: series CSF, HFUC and others [HarmonicDriveLife]
-MEDIAN_TO_L10 = 5.0  # L50 over L10 [HarmonicDriveLife]
+RATED_SPEED = 2000.0  # rpm of the input, at which makers state the rated torque [HarmonicDrive2014]
+LIFE_L10 = {"csg": 10000.0, "shg": 10000.0}  # h at rated torque and speed, by series [HarmonicDrive2014]
+OTHER_LIFE_L10 = 7000.0  # h: series CSF, HFUC and others [HarmonicDrive2014]
+MEDIAN_TO_L10 = 5.0  # L50 over L10 [HarmonicDrive2014]
 WEIBULL_SLOPE = log(log(2.0) / log(1.0 / 0.9)) / log(MEDIAN_TO_L10)  # 1.17, by these two quantiles
 MIN_TREND_RECORDINGS = 5  # recordings, of which a trend is extrapolated
 CONFIDENCE = 0.95  # of intervals
@@ -75,7 +75,7 @@ class Trend:
         slope, slope_sigma: per hour, and its standard deviation
         threshold: of the indicator
         remaining: hours from the last recording until the line passes the threshold; infinite if it falls
-        low, high: ends of the interval of these hours, of 95 % (Fieller); infinite if the slope may be zero
+        low, high: ends of the interval of these hours, of 95 % (Fieller1954); infinite if the slope may be zero
     """
 
     slope: float
@@ -138,7 +138,7 @@ def _conditional(scale: float, hours: float, failed: float) -> float:
 def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float) -> Trend:
     """Return the line through health indicators and the hours until it passes a threshold.
 
-    The interval is that of Fieller's theorem: it contains all hours at which the line, with its uncertainty, may have the value
+    The interval is that of Fieller's theorem (Fieller1954): it contains all hours at which the line may have the value
     of the threshold. A line is an assumption; wear that accelerates ends sooner.
 
     Args:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import tau
 
 import numpy as np
@@ -19,6 +19,9 @@ from strainwave.orders.turning import beginning, evenly, unwrapped
 Array = NDArray[np.float64]
 
 MAX_SAMPLES = 2**18  # that are fitted
+TREND_SPANS = 1.2  # of the range of the angle [1], in the longest period of the load
+TREND_HARMONICS = 2  # of this period, in the load
+RIDGE = 1e-3  # of the squared weight [1]
 MIN_CELL_SHARE = 0.05  # of the squared weight of a block: a direction or a load with less has no amplitude
 MIN_CELL_PERIODS = 3.0  # periods of an order in a cell
 SENSES = (("forward", 1.0), ("backward", -1.0))
@@ -31,14 +34,12 @@ class JointMotion:
     Attributes:
         run: the recording
         shaft: its shaft, what drives it, and other joints that move
-        floor: noise of the series over its frequencies
         step: between two samples [s], or 1 if no time is known
         timed: True if the time is known
     """
 
     run: JointRecording
     shaft: Moving
-    floor: Floor
     step: float
     timed: bool
 
@@ -89,10 +90,41 @@ def joint_motion(run: JointRecording) -> JointMotion:
     others = {joint: angles[name] for joint, name in run.others.items() if float(np.ptp(angles[name])) > 0.0}
     shaft = moving(angles[run.angle], record.columns[run.column], others, run.per_input)
     weight = np.where(record.measured, shaft.weight, 0.0)
-    shaft = Moving(shaft.shafts, shaft.series, shaft.smooth, shaft.load, weight, shaft.outliers)
-    return JointMotion(
-        run, shaft, floor_under(shaft.series * weight, weight), record.step if record.timed else 1.0, record.timed
-    )
+    if run.side == "input":
+        shaft = _without_gravity(shaft)
+    shaft = replace(shaft, load=_load(shaft, record.columns[run.column], weight), weight=weight)
+    return JointMotion(run, shaft, record.step if record.timed else 1.0, record.timed)
+
+
+def _without_gravity(shaft: Moving) -> Moving:
+    """Return a shaft of the input whose smooth part has no waves of order 1: these are gravity at the output alone."""
+    waves = np.sin(shaft.own.angle), np.cos(shaft.own.angle)
+    kept = [column for column in shaft.basis.T if not any(np.array_equal(column, wave) for wave in waves)]
+    basis = np.stack(kept, axis=1)
+    whole = shaft.series + shaft.smooth
+    size = np.linalg.norm(basis, axis=0)
+    size[size == 0.0] = 1.0
+    found = np.linalg.lstsq(basis / size * shaft.weight[:, None], whole * shaft.weight, rcond=1e-8)[0] / size
+    smooth = basis @ found
+    return replace(shaft, series=whole - smooth, smooth=smooth, basis=basis)
+
+
+def _load(shaft: Moving, series: Array, weight: Array) -> Array:
+    """Return what of a torque or current varies slowly with the angle, friction and inertia taken out, shape (n,).
+
+    The ridge prefers small parts if the motion does not separate them, as speed and angle of a single sine.
+    """
+    own = shaft.own
+    span = max(float(np.ptp(own.angle)), 1e-12)
+    phases = [tau * k * (own.angle - own.angle[0]) / (TREND_SPANS * span) for k in range(1, TREND_HARMONICS + 1)]
+    trend = [np.ones_like(own.angle), *(wave(phase) for phase in phases for wave in (np.sin, np.cos))]
+    others = [own.sense, own.speed / max(float(np.abs(own.speed).max()), 1e-300)]
+    others.append(own.acceleration / max(float(np.abs(own.acceleration).max()), 1e-300))
+    columns = np.stack([*trend, *others], axis=1) * weight[:, None]
+    squares = columns.T @ columns
+    found = np.linalg.solve(squares + RIDGE * float(weight @ weight) * np.eye(len(squares)), columns.T @ (series * weight))
+    load: Array = np.stack(trend, axis=1) @ found[: len(trend)]
+    return load
 
 
 def blocks_of(motion: JointMotion, travel: float) -> NDArray[np.int_]:
@@ -125,17 +157,35 @@ def cells_of(
     """
     shaft = motion.shaft
     masks = [shaft.own.sense == sign for _, sign in SENSES] if parts is None else list(parts)
-    white = motion.floor.whitened(shaft.series * shaft.weight)
-    waves = []
-    for mask in masks:
-        there = np.where(mask, shaft.weight, 0.0)
-        for order in orders:
-            phase = order * shaft.own.angle
-            waves += [motion.floor.whitened(there * np.cos(phase)), motion.floor.whitened(-there * np.sin(phase))]
-    columns = np.stack(waves, axis=1)
+    phases = [order * shaft.own.angle for order in orders]
+    waves = [wave * mask for mask in masks for phase in phases for wave in (np.cos(phase), -np.sin(phase))]
+    weighted = _without_smooth(shaft, np.stack(waves, axis=1) * shaft.weight[:, None])
+    floor = _floor_below(shaft, weighted)
+    white = floor.whitened(shaft.series * shaft.weight)
+    columns = np.stack([floor.whitened(wave) for wave in weighted.T], axis=1)
     return [
         _block_cells(motion, orders, masks, block == number, columns, white) for number in range(int(block.max(initial=-1)) + 1)
     ]
+
+
+def _floor_below(shaft: Moving, waves: Array) -> Floor:
+    """Return the noise of the series without these waves, which would raise it where the speed varies."""
+    series = shaft.series * shaft.weight
+    left = series - waves @ np.linalg.lstsq(waves, series, rcond=1e-8)[0]
+    return floor_under(left, shaft.weight)
+
+
+def _without_smooth(shaft: Moving, waves: Array) -> Array:
+    """Return weighted waves without what the fit of the smooth part takes of them, shape (n, k) (Frisch and Waugh).
+
+    Over few revolutions friction over speed follows a slow order near reversals, which would make its amplitude too small.
+    """
+    basis = shaft.basis * shaft.weight[:, None]
+    size = np.linalg.norm(basis, axis=0)
+    size[size == 0.0] = 1.0
+    taken = np.linalg.lstsq(basis / size, waves, rcond=1e-8)[0]
+    left: Array = waves - (basis / size) @ taken
+    return left
 
 
 def _block_cells(

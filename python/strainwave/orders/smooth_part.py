@@ -84,6 +84,7 @@ class Moving:
         load: smooth part without what turns over with the direction, shape (n,)
         weight: 0 at rest and at the ends, up to 1 elsewhere, shape (n,)
         outliers: number of samples that do not count
+        basis: columns of which the smooth part is a sum, shape (n, k)
     """
 
     shafts: tuple[Shaft, ...]
@@ -92,6 +93,7 @@ class Moving:
     load: Array
     weight: Array
     outliers: int
+    basis: Array
 
     @property
     def own(self) -> Shaft:
@@ -134,7 +136,8 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
         weight = np.where(wrong, 0.0, weight)
         smooth, turning = _fitted(torque, friction, rest, weight)
         left = torque - smooth
-    return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()))
+    basis = np.concatenate([friction, rest], axis=1)
+    return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()), basis)
 
 
 def _waves(own: Shaft, per_input: float) -> Array:

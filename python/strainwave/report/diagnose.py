@@ -64,6 +64,7 @@ def _run(found: RunDiagnosis, name: str) -> dict[str, Any]:
         "verdict": found.verdict,
         "reason": found.reason,
         "facts": _run_facts(found),
+        "causes": found.causes,
         "spectrum": spectrum_figure(found.ripple, f"{name}-spectrum"),
         "changes": [] if comparison is None else [_change(each, unit) for each in comparison.changes[:MAX_CHANGES]],
         "left": 0 if comparison is None else max(len(comparison.changes) - MAX_CHANGES, 0),
@@ -191,6 +192,7 @@ def _wrapped(text: str, indent: str) -> list[str]:
 def _run_lines(found: RunDiagnosis) -> Iterator[str]:
     unit = found.run.unit
     yield found.reason
+    yield from found.causes
     if found.condition is not None:
         yield f"health indicator {number(found.condition.indicator, 3)} (1 is an alarm)"
     if found.wave is not None:
@@ -257,5 +259,6 @@ def _run_results(found: RunDiagnosis) -> dict[str, Any]:
         "orders": found.orders,
         "comparison": found.comparison,
         "condition": found.condition,
+        "causes": found.causes,
         "remarks": found.remarks,
     }
