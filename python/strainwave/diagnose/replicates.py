@@ -112,13 +112,14 @@ def _without_gravity(shaft: Moving) -> Moving:
 def _load(shaft: Moving, series: Array, weight: Array) -> Array:
     """Return what of a torque or current varies slowly with the angle, friction and inertia taken out, shape (n,).
 
-    The ridge prefers small parts if the motion does not separate them, as speed and angle of a single sine.
+    The ridge prefers small parts if the motion does not separate them, as speed and angle of a single sine. A motion of one
+    direction does not separate friction from load: both count as load.
     """
     own = shaft.own
     span = max(float(np.ptp(own.angle)), 1e-12)
     phases = [tau * k * (own.angle - own.angle[0]) / (TREND_SPANS * span) for k in range(1, TREND_HARMONICS + 1)]
     trend = [np.ones_like(own.angle), *(wave(phase) for phase in phases for wave in (np.sin, np.cos))]
-    others = [own.sense, own.speed / max(float(np.abs(own.speed).max()), 1e-300)]
+    others = [own.sense, own.speed / max(float(np.abs(own.speed).max()), 1e-300)] if own.reverses() else []
     others.append(own.acceleration / max(float(np.abs(own.acceleration).max()), 1e-300))
     columns = np.stack([*trend, *others], axis=1) * weight[:, None]
     squares = columns.T @ columns
