@@ -19,6 +19,7 @@ from tests.detection_limits import false_alarms, interval, noises, signature_dri
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "input_angle": "rad", "current": "A", "load": "N.m"}
 ERROR = {1.0: 8e-5, 2.0: 3e-4, 4.0: 5e-5}  # rad at the output
+PHASE = {1.0: 0.0, 2.0: 0.3, 4.0: -1.1}  # rad; the products of orders depend on them
 SPEED, RATIO, LOAD = 10.0, 100.0, 20.0
 STIFFNESS, OUTPUT_INERTIA, ROTOR, TORQUE_CONSTANT = 8000.0, 0.05, 1.5e-4, 0.05
 
@@ -29,8 +30,15 @@ def recorded(time: Array, angle: Array, current: Array, load: Array | None = Non
     return sw.Recording(columns, {name: UNITS[name] for name in columns})
 
 
-def signature(load: float, proportional: float, integral: float, dt: float = 2e-4) -> tuple[OrderLine, ...]:
-    drive = signature_drive(error=True).replace(control=sw.control.PI(proportional=proportional, integral=integral, limit=50.0))
+def signature(
+    load: float, proportional: float, integral: float, dt: float = 2e-4, orders: tuple[float, ...] = tuple(ERROR)
+) -> tuple[OrderLine, ...]:
+    law = sw.kinematic_error.Fourier(
+        order=list(orders), amplitude=[ERROR[each] for each in orders], phase=[PHASE[each] for each in orders]
+    )
+    drive = signature_drive().replace(
+        {"control": sw.control.PI(proportional=proportional, integral=integral, limit=50.0), "gear.kinematic_error": law}
+    )
     ratio = float(drive.gear.kinematics.ratio)
     duration = 20.0 * tau / SPEED
     run = sw.simulate(
@@ -42,7 +50,7 @@ def signature(load: float, proportional: float, integral: float, dt: float = 2e-
         sample=1e-3,
         record=["input_angle", "current"],
     )
-    return order_lines(run.between(duration - 12.02 * tau / SPEED, duration), "current", list(ERROR))
+    return order_lines(run.between(duration - 12.02 * tau / SPEED, duration), "current", list(orders))
 
 
 def closed_loop(order: float, proportional: float, integral: float) -> float:
@@ -74,6 +82,16 @@ def test_without_load_the_inertia_of_the_output_is_left() -> None:
             ideal * closed_loop(line.order, 4.0, 100.0), rel=0.05 if line.order == 1.0 else 5e-3
         )
         assert ideal == pytest.approx(about, rel=0.05)
+
+
+def test_without_load_a_single_order_is_that_of_the_closed_form() -> None:
+    for order in ERROR:
+        (line,) = signature(0.0, 4.0, 100.0, orders=(order,))
+        s = 1j * order * SPEED
+        spring = STIFFNESS + 2.0 * s
+        inert = OUTPUT_INERTIA * s**2 * spring / (OUTPUT_INERTIA * s**2 + spring) / RATIO
+        ideal = abs(inert) * ERROR[order] / TORQUE_CONSTANT
+        assert line.amplitude == pytest.approx(ideal * closed_loop(order, 4.0, 100.0), rel=1e-3)
 
 
 def test_parts_by_direction_load_and_squared_speed_are_recovered() -> None:
