@@ -35,12 +35,11 @@ class Unit:
 
     @property
     def error(self) -> tuple[float, float]:
-        """Estimate less truth in size [m] and in direction [rad]; m and -m are the same unless one lobe carries."""
+        """Estimate less truth in size [m] and in direction [rad]; m and -m are the same."""
         estimate = self.end
         size = estimate.size - float(np.hypot(*self.m))
         turn = estimate.direction - float(np.arctan2(self.m[1], self.m[0]))
-        period = 2.0 * np.pi if estimate.combine == "single" else np.pi
-        return size, (turn + 0.5 * period) % period - 0.5 * period
+        return size, (turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi
 
     @property
     def end(self) -> Recovered:

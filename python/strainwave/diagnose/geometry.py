@@ -154,10 +154,12 @@ class Geometry:
         return float(np.arctan2(self.ends[1].size, self.height))
 
     def contains(self, m: tuple[float, float]) -> bool:
-        """True if m lies in the region of 95 % of any geometry of the class; m and -m are the same unless one lobe carries."""
-        return any(
-            as_tilt(self.estimate, share * self.tilt_shift).contains(m) for share in np.linspace(0.0, 1.0, SHARES_OF_TILT)
-        )
+        """True if m or -m lies in the region of 95 % of any geometry of the class.
+
+        Both make the same orders: where one lobe carries, an e2 beyond m determines which one.
+        """
+        points = [as_tilt(self.estimate, share * self.tilt_shift) for share in np.linspace(0.0, 1.0, SHARES_OF_TILT)]
+        return any(point.contains(side) for point in points for side in (m, (-m[0], -m[1])))
 
     @property
     def condition(self) -> str:
@@ -189,8 +191,7 @@ def in_words(eccentricity: Recovered, tilt: Recovered, height: float) -> str:
     size, turn = eccentricity.half_widths
     direction = float(np.degrees(eccentricity.direction)) % 360.0
     way = f"{_between(direction, float(np.degrees(turn)))} deg"
-    if eccentricity.combine != "single":
-        way += f" (or {(direction + 180.0) % 360.0:.0f} deg, which makes the same)"
+    way += f" (or {(direction + 180.0) % 360.0:.0f} deg, which makes the same)"
     angles = (float(np.degrees(np.arctan2(value, height))) for value in (tilt.size, tilt.half_widths[0]))
     return (
         f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of "
