@@ -22,6 +22,7 @@ from strainwave.diagnose.recovery import (
     MICRON,
     ORDERS,
     PROBE,
+    SMALL,
     Recovered,
     Seen,
     beside,
@@ -29,7 +30,6 @@ from strainwave.diagnose.recovery import (
     look,
     none_and_probe,
     placed,
-    slopes_of,
     solved,
 )
 from strainwave.files.gear_set import GearSet
@@ -57,6 +57,9 @@ LOBES = {
 }
 MAX_MISFIT = 8.0  # mean square of the residual of the orders over that of noise and model; by chance 1 record in 10^4 has more
 MIN_RELATIVE_ORDER = 0.01  # of the largest order of a law: smaller ones are those of rounding
+STARTS = ((1.0, 0.0), (1.1, 0.4), (1.1, -0.4), (1.6, 0.8), (1.6, -0.8))  # initial m over a first estimate, and c_x over m
+GOOD_MISFIT = 2.0  # no further start is tried
+PENALTY_PER_PARAMETER = 6.0  # of a sum of squares: chance alone gains as much in 1 of 70 records
 SMALL_TILT = 1e-5  # rad: by which the eccentricity per tilt is taken
 SILENT = "e2 and alpha alone change no harmonic and are not identifiable from this record"
 
@@ -151,10 +154,12 @@ class Geometry:
         return float(np.arctan2(self.ends[1].size, self.height))
 
     def contains(self, m: tuple[float, float]) -> bool:
-        """True if m lies in the region of 95 % of any geometry of the class; m and -m are the same unless one lobe carries."""
-        return any(
-            as_tilt(self.estimate, share * self.tilt_shift).contains(m) for share in np.linspace(0.0, 1.0, SHARES_OF_TILT)
-        )
+        """True if m or -m lies in the region of 95 % of any geometry of the class.
+
+        Both make the same orders: where one lobe carries, an e2 beyond m determines which one.
+        """
+        points = [as_tilt(self.estimate, share * self.tilt_shift) for share in np.linspace(0.0, 1.0, SHARES_OF_TILT)]
+        return any(point.contains(side) for point in points for side in (m, (-m[0], -m[1])))
 
     @property
     def condition(self) -> str:
@@ -186,8 +191,7 @@ def in_words(eccentricity: Recovered, tilt: Recovered, height: float) -> str:
     size, turn = eccentricity.half_widths
     direction = float(np.degrees(eccentricity.direction)) % 360.0
     way = f"{_between(direction, float(np.degrees(turn)))} deg"
-    if eccentricity.combine != "single":
-        way += f" (or {(direction + 180.0) % 360.0:.0f} deg, which makes the same)"
+    way += f" (or {(direction + 180.0) % 360.0:.0f} deg, which makes the same)"
     angles = (float(np.degrees(np.arctan2(value, height))) for value in (tilt.size, tilt.half_widths[0]))
     return (
         f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of "
@@ -378,16 +382,16 @@ def misalignment_from_current(
     found = {combine: _estimate(masked, seen.noise, ripple, gains, known.law.replace(combine=combine)) for combine in COMBINE}
     teeth_part = 0.5 * float(known.law.major_radius - known.law.minor_radius)
     possible = {combine: each for combine, each in found.items() if each.estimate.size < teeth_part} or found
-    best = min(possible, key=lambda combine: found[combine].estimate.misfit)
+    best = min(possible, key=lambda combine: found[combine].penalised)
     limit = MAX_MISFIT_RATIO * max(found[best].estimate.misfit, 1.0)
     for combine in [each for each in possible if found[each].estimate.misfit < limit]:
         law = known.law.replace(combine=combine)
-        larger = gains * known.gain_of_size(placed(law, found[combine].estimate.m))
+        larger = gains * known.gain_of_size(placed(law, found[combine].estimate.m, found[combine].c_x))
         found[combine] = possible[combine] = _estimate(masked, seen.noise, ripple, larger, law)
     others = {
         combine: (each.estimate, as_tilt(each.estimate, each.tilt_shift))
         for combine, each in possible.items()
-        if combine != best and each.estimate.misfit < limit
+        if combine != best and each.estimate.misfit < limit and not found[best].estimate.contains(each.estimate.m)
     }
     return Geometry(
         found[best].estimate,
@@ -406,8 +410,15 @@ def misalignment_from_current(
 @dataclass(frozen=True)
 class _Estimate:
     estimate: Recovered
+    c_x: float
     tilt_shift: Array
     of_noise: Array
+
+    @property
+    def penalised(self) -> float:
+        """Sum of squares of the residual, and a penalty of each parameter: of two ways that fit, the simpler one is taken."""
+        parameters = 3 if self.estimate.combine == "max" else 2
+        return self.estimate.misfit * (2 * len(ORDERS) - parameters) + PENALTY_PER_PARAMETER * parameters
 
 
 def _estimate(masked: Seen, noise: Array, ripple: Complex, gains: Complex, law: Any) -> _Estimate:
@@ -415,10 +426,12 @@ def _estimate(masked: Seen, noise: Array, ripple: Complex, gains: Complex, law: 
     gain = np.exp(np.log(gains / gains[0]).mean(axis=0)) * gains[0]
     model_noise = np.abs(masked.at) * _spread(gains / gain - 1.0)
     weights = Seen(masked.at, np.hypot(masked.noise, model_noise), masked.degrees)
-    best = solved(masked.at / gain, weights, gain, "current", law)
-    slopes = slopes_of(law, best.m)
+    first = solved(masked.at / gain, weights, gain, "current", law)
+    point, misfit = _with_offset(first, masked.at / gain, weights.noise / np.abs(gain), law)
+    m, c_x = (float(point[0]), float(point[1])), float(point[2])
+    slopes = _slopes(law, point)
     sigma = np.concatenate([weights.noise / np.abs(gain)] * 2)
-    to_m = np.linalg.pinv(slopes / sigma[:, None]) / sigma
+    to_m = (np.linalg.pinv(slopes / sigma[:, None]) / sigma)[:2]
     of_noise: Array = (to_m * np.concatenate([noise / np.abs(gain)] * 2) ** 2) @ to_m.T
     points = _stacked((masked.at + ripple.mean(axis=0) - ripple) / gains) @ to_m.T
     members = len(gains)
@@ -426,8 +439,47 @@ def _estimate(masked: Seen, noise: Array, ripple: Complex, gains: Complex, law: 
     degrees = members - 2 - TREND_DEGREES
     if np.trace(of_noise) > np.trace(of_model):
         degrees = min(degrees, masked.degrees)
-    shift: Array = to_m @ _stacked(harmonics(tilted(law, best.m)) - harmonics(placed(law, best.m)))
-    return _Estimate(Recovered("current", law.combine, best.m, of_noise + of_model, degrees, best.misfit), shift, of_noise)
+    shift: Array = to_m @ _stacked(harmonics(tilted(placed(law, (0.0, 0.0), c_x), m)) - harmonics(placed(law, m, c_x)))
+    estimate = Recovered("current", law.combine, m, of_noise + of_model, degrees, misfit)
+    return _Estimate(estimate, c_x, shift, of_noise)
+
+
+def _with_offset(first: Recovered, asked: Complex, sigma: Array, law: Any) -> tuple[Array, float]:
+    """Return m and the place c_x of the generator on its shaft [m], shape (3,), and the misfit.
+
+    Where the lobe further out carries, c_x beside m moves the error from orders 2 and 4 to orders 1 and 3. Else it is zero.
+    """
+    start = np.array([*first.m, 0.0])
+    if law.combine != "max":
+        return start, first.misfit
+    from scipy.optimize import least_squares
+
+    def gap(point: Array) -> Array:
+        return _stacked((_harmonics_at(law, MICRON * point) - asked) / sigma)
+
+    unit = max(first.size / MICRON, 0.1)
+    far = 0.4 * float(law.minor_radius) / MICRON
+    freedom = 2 * len(ORDERS) - 3
+    best: Any = None
+    for larger, share in STARTS:
+        begin = np.clip(np.array([*(larger * start[:2] / MICRON), share * larger * unit]), -0.9 * far, 0.9 * far)
+        fit: Any = least_squares(gap, begin, bounds=(-far, far), x_scale=unit)
+        best = fit if best is None or fit.cost < best.cost else best
+        if 2.0 * best.cost / freedom < GOOD_MISFIT:
+            break
+    return MICRON * best.x, 2.0 * float(best.cost) / freedom
+
+
+def _harmonics_at(law: Any, point: Array) -> Complex:
+    x, y, c_x = (float(each) for each in point)
+    return harmonics(placed(law, (x, y), c_x))
+
+
+def _slopes(law: Any, point: Array) -> Array:
+    """Return the slopes of all orders over m, and over c_x where the lobe further out carries, shape (8, 2) or (8, 3)."""
+    steps = SMALL * np.eye(3)[: 3 if law.combine == "max" else 2]
+    sides = [(_harmonics_at(law, point + step), _harmonics_at(law, point - step)) for step in steps]
+    return np.array([_stacked(after - before) / (2.0 * SMALL) for after, before in sides]).T
 
 
 def _stacked(values: Complex) -> Array:

@@ -52,7 +52,7 @@ def test_the_interval_covers_drawn_drives_and_that_of_noise_alone_does_not(drive
     inside = np.array([unit.inside for unit in found]).sum(axis=0)
     assert (inside >= UNITS_INSIDE).all(), inside
     assert sum(unit.inside_by_noise for unit in found) < UNITS_INSIDE  # the test can fail: the model's share matters
-    assert all(unit.result.estimate.combine == "max" for unit in found)
+    assert all(unit.result.estimate.combine in ("max", "single") for unit in found)  # c_x beyond m makes one lobe carry
     assert np.median([abs(unit.error[0]) for unit in found]) < 0.5e-6
 
 
@@ -89,7 +89,7 @@ def test_the_generators_own_misalignment_changes_no_order(drives: PossibleDrives
     found = diagnosed(law, drives)
     assert found.condition == "no misalignment shown"
     assert "healthy" not in found.words()
-    assert found.estimate.size < 1e-6
+    assert not found.detected
 
 
 def test_a_drive_outside_of_the_set_is_reported(drives: PossibleDrives) -> None:
