@@ -8,7 +8,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from asyncio import CancelledError as TaskCancelled
 from collections.abc import Callable
+from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -211,17 +213,24 @@ def run_by_dask(folder: DatasetFolder, scheduler: str | None, show: Show) -> Non
     """
     try:
         from distributed import Client, as_completed
+        from distributed.comm import CommClosedError
     except ImportError:
         raise ImportError("the runner dask needs Dask: pip install 'strainwave[dask]'") from None
     if scheduler is None:
         raise ValueError("the runner dask needs the address of a scheduler; give scheduler = tcp://host:8786")
     missing = [number for number in range(folder.plan.shards) if not folder.has(number)]
     board = _Board(folder.plan.shards, folder.done(), show)
-    with Client(scheduler) as client:
-        tasks = client.map(shard_task, missing, path=f"{folder.path.resolve()}", retries=DASK_RETRIES, pure=False)
-        for task in as_completed(tasks):
-            task.result()
-            board.note(folder.done())
+    try:
+        with Client(scheduler) as client:
+            tasks = client.map(shard_task, missing, path=f"{folder.path.resolve()}", retries=DASK_RETRIES, pure=False)
+            for task in as_completed(tasks):
+                task.result()
+                board.note(folder.done())
+    except (CommClosedError, CancelledError, TaskCancelled):
+        raise ConnectionError(
+            f"the Dask scheduler at {scheduler} was lost, with {folder.done()} of {folder.plan.shards} shards complete; "
+            "start it, and give the command again"
+        ) from None
 
 
 def shard_task(number: int, path: str) -> int:
