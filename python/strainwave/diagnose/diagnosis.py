@@ -441,8 +441,9 @@ def _wave_line(own: Sequence[Line], motion: JointMotion, found: Ripple) -> Line 
         wanted = [WAVE_ORDER]
     elif np.isfinite(per_input):
         wanted = [WAVE_ORDER * (per_input + shift) for shift in (0.0, 1.0, -1.0)]
-    else:
+    else:  # motors have combs of whole orders, too: a line that may be one of time is not taken for the wave generator's
         wanted = [WAVE_ORDER * (ratio + shift) for ratio in found.concluded for shift in (0.0, 1.0, -1.0)]
+        own = [line for line in own if line.kind == "order"]
     near = [line for line in own if any(abs(line.order - order) <= max(reach, 3.0 * line.order_sigma) for order in wanted)]
     return max(near, key=lambda line: line.evidence, default=None)
 
