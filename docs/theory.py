@@ -99,7 +99,10 @@ def numbers(model: Model, facts: Any) -> str:
     found: dict[str, dict[str, None]] = {}
     for place, quantity, kind, _, law, *_ in model().changes(facts):
         found.setdefault(place, {})[f"waves of `{law}`" if kind == "wave" else f"`{quantity}`"] = None
-    return "; ".join(f"`{place}`: {', '.join(names)}" for place, names in found.items())
+    places: dict[tuple[str, ...], list[str]] = {}
+    for place, names in found.items():
+        places.setdefault(tuple(names), []).append(f"`{place}`")
+    return "; ".join(f"{', '.join(where)}: {', '.join(names)}" for names, where in places.items())
 
 
 def caption(shown: dict[str, Any]) -> str:

@@ -69,11 +69,12 @@ void bind_around_drives(nb::module_& core, nb::module_ family, const char* name,
 
 void bind_faults(nb::module_& core) {
     core.attr("fault_families") = nb::dict();
-    nb::module_ fault = family_module(core, "fault", "What fails in a drive: changes of its numbers, each by its severity.");
+    nb::module_ fault = family_module(core, "fault", "Faults of a drive: changes of its numbers, each by its severity.");
     bind<Facts>(fault, "Facts", "facts");
     bind_around_drives<FaultVerbs>(core, fault, "fault", strainwave::fault::Models{});
-    bind_around_drives<OnsetVerbs>(core, family_module(core, "onset", "How a fault sets in over the use of a drive."), "onset",
-                                   strainwave::onset::Models{});
+    bind_around_drives<OnsetVerbs>(
+        core, family_module(core, "onset", "Onsets of faults: the share of the severity after some use of a drive."), "onset",
+        strainwave::onset::Models{});
 }
 
 }  // namespace strainwave::host

@@ -1,11 +1,11 @@
-"""What fails in a drive: changes of its numbers, each by its severity."""
+"""Faults of a drive: changes of its numbers, each by its severity."""
 
 from typing import Any
 
 
 class Facts:
     """
-    What a fault needs of its drive.
+    Facts of a drive that a fault needs.
 
     >>> from strainwave.fault import Facts
     >>> Facts(flexspline_teeth=200, circular_spline_teeth=202, ratio=-100.0).fixed

@@ -1,4 +1,4 @@
-"""How a fault sets in over the use of a drive."""
+"""Onsets of faults: the share of the severity after some use of a drive."""
 
 from collections.abc import Sequence
 from typing import Any, overload

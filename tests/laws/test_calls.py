@@ -18,7 +18,8 @@ from tests.each import each
 from tests.interrupts import ctrl_c
 from tests.strategies import made
 
-LAWS = [made(kind) for family in _core.families.values() for kind in family.values()]
+FAMILIES = [*_core.families.values(), *_core.fault_families.values()]
+LAWS = [made(kind) for family in FAMILIES for kind in family.values()]
 WHOLE = [*LAWS, sw.Gear(), sw.Drive()]
 VERBS = [
     pytest.param(getattr(law, name), id=f"{law.name}.{name}")

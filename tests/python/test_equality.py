@@ -44,7 +44,11 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "SimulatedExperiment": lambda: SimulatedExperiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
     "drive": lambda: DRIVE,
     "state": lambda: RUN.end,
-} | {name: partial(usual, kind) for family in _core.families.values() for name, kind in family.items()}
+} | {
+    f"{family}.{name}": partial(usual, kind)
+    for family, kinds in (_core.families | _core.fault_families).items()
+    for name, kind in kinds.items()
+}
 
 made = cache(lambda name: MAKERS[name]())
 every_value = each("name", MAKERS)

@@ -449,3 +449,18 @@ def test_friction_by_the_measured_motion_creeps_where_others_stick(gallery: Call
     for rows in found["friction at the output, too"].values():
         assert (rows[np.array(speeds) < 0.75 * critical, 0] > 0.1).all()
         assert (rows[np.array(speeds) > 1.25 * critical, 0] == 0.0).all()
+
+
+def test_lines_of_faults_grow_with_the_severity_to_their_closed_forms(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Order n of an error A shows T n A / K_t, here with the waves 4 e_1 / (3 pi) and 4 e_1 / (15 pi) of a misalignment."""
+    found = gallery("23")
+    per_displacement = np.tan(np.radians(20.0)) / 25e-3  # rad/m
+    amplitudes = {
+        ("misalignment", 2.0): 20.0 * 2.0 * per_displacement * 4.0 * 3e-5 / (3.0 * np.pi) / 0.05,
+        ("misalignment", 4.0): 20.0 * 4.0 * per_displacement * 4.0 * 3e-5 / (15.0 * np.pi) / 0.05,
+        ("worn teeth", 2.02): 20.0 * 2.02 * 3e-4 / 0.05,
+    }
+    for line, full in amplitudes.items():
+        assert found["found"][line] == pytest.approx(full * found["severities"], rel=0.02, abs=1e-5)
+    for line, measured in found["found"].items():
+        assert measured == pytest.approx(measured[-1] * found["severities"], rel=0.03, abs=1e-5), line

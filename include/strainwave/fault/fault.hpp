@@ -76,7 +76,7 @@ struct Facts {
     static constexpr auto name = "facts";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        What a fault needs of its drive.
+        Facts of a drive that a fault needs.
 
         >>> from strainwave.fault import Facts
         >>> Facts(flexspline_teeth=200, circular_spline_teeth=202, ratio=-100.0).fixed

@@ -2,7 +2,7 @@
 #include <strainwave/field.hpp>
 #include <strainwave/math.hpp>
 
-/// How a fault sets in over the use of a drive. Such a law has
+/// Onsets of faults over the use of a drive. Such a law has
 ///
 ///     share(usage)     the share of its severity, in [0, 1], that a fault has reached
 namespace strainwave::onset {

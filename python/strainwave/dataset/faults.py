@@ -9,6 +9,7 @@ from __future__ import annotations
 from cmath import phase as direction_of
 from cmath import rect
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from math import isclose
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from strainwave import Drive, _core
 from strainwave.files.described import own_paths, parts
 from strainwave.messages import listed
 
+MAX_DRIVES_KEPT = 16  # whose places of numbers are kept
 SAME_ORDER = 1e-9  # relative difference of two orders that are one
 ERROR_PLACE = "gear.kinematic_error"
 WITHOUT_EFFECT = ("constant", "ideal")  # laws that another may replace
@@ -60,9 +62,17 @@ def changes_of(drive: Drive, fault: Fault) -> list[Change]:
         TypeError: this is no fault
         ValueError: the drive lacks what the fault needs, such as the teeth of its gear
     """
+    _check(fault)
+    return _listed(fault, _facts(drive))
+
+
+def _check(fault: Fault) -> None:
     if type(fault) not in _core.fault_families["fault"].values():
         raise TypeError(f"a fault must be a model of strainwave.fault, not {type(fault).__name__}")
-    return [Change(*each) for each in fault.changes(_facts(drive))]
+
+
+def _listed(fault: Fault, facts: Any) -> list[Change]:
+    return [Change(*each) for each in fault.changes(facts)]
 
 
 def prepared(drive: Drive, faults: Sequence[Fault]) -> Drive:
@@ -115,9 +125,10 @@ def changes(drive: Drive, faults: Sequence[Fault]) -> dict[str, float]:
     >>> round(numbers["gear.friction_input.coulomb"], 9)
     0.108
     """
-    numbers = _Numbers(drive)
+    numbers = _Numbers(_places(drive))
     for fault in faults:
-        for change in changes_of(drive, fault):
+        _check(fault)
+        for change in _listed(fault, numbers.places.facts):
             numbers.make(fault, change)
     return numbers.changed
 
@@ -256,8 +267,8 @@ def _same_order(one: float, other: float) -> bool:
 def _has_effect(drive: Drive, change: Change) -> bool:
     """True if the drive has a number that the change alters at some severity."""
     if change.kind == "scale":
-        values = _Numbers(drive).values
-        return any(values[path] != 0.0 for path in _paths_of(drive, change))
+        places = _places(drive)
+        return any(places.values[path] != 0.0 for path in places.scaled(change))
     path = _holder(drive, change)
     if path is None:
         return False
@@ -281,54 +292,82 @@ def _paths_of(drive: Drive, change: Change) -> Iterator[str]:
 # ---- Numbers ---------------------------------------------------------------------------------------------------------
 
 
-class _Numbers:
-    """The numbers of a drive while faults change them."""
+class _Places:
+    """Where the numbers of a drive are, worked out once for faults that act on it many times."""
 
     def __init__(self, drive: Drive) -> None:
         self.drive = drive
-        self.values = {path: value for path, value, *_ in _core.parameters(drive)}
-        self.changed: dict[str, float] = {}
+        self.facts = _facts(drive)
+        self.values: dict[str, float] = {path: value for path, value, *_ in _core.parameters(drive)}
+        self._scaled: dict[tuple[str, str], tuple[str, ...]] = {}
+        self._held: dict[tuple[str, str, str, float], tuple[str, str]] = {}
 
-    def make(self, fault: Fault, change: Change) -> None:
-        if change.kind == "scale":
-            for each in _paths_of(self.drive, change):
-                self._set(each, self._value(each) * change.value)
-            return
+    def scaled(self, change: Change) -> tuple[str, ...]:
+        """Return the paths of all numbers that a scale changes."""
+        key = change.place, change.quantity
+        if key not in self._scaled:
+            self._scaled[key] = tuple(_paths_of(self.drive, change))
+        return self._scaled[key]
+
+    def held(self, fault: Fault, change: Change) -> tuple[str, str]:
+        """Return the paths of the number that a change adds to, and of its direction.
+
+        Raises:
+            ValueError: the drive is not prepared for the fault
+        """
+        key = change.place, change.quantity, change.law, change.order
+        if key not in self._held:
+            self._held[key] = self._found(fault, change)
+        return self._held[key]
+
+    def _found(self, fault: Fault, change: Change) -> tuple[str, str]:
         path = _holder(self.drive, change)
         if path is None:
             raise ValueError(
                 f"the drive is not prepared for {fault.name}: {change.place} lacks {change.law}; call prepared first"
             )
-        if change.kind == "add":
-            self._set(f"{path}.{change.quantity}", self._value(f"{path}.{change.quantity}") + change.value)
-            return
-        place = self._place_of(fault, path, change) if change.kind == "wave" else ""
-        self._add_vector(f"{path}.{change.quantity}{place}", f"{path}.{change.direction}{place}", change)
-
-    def _place_of(self, fault: Fault, path: str, change: Change) -> str:
-        """Return the index of a wave, as it stands in a path."""
-        orders = _at(self.drive, path).order
-        for i, order in enumerate(orders):
+        if change.kind != "wave":
+            return f"{path}.{change.quantity}", f"{path}.{change.direction}"
+        for i, order in enumerate(_at(self.drive, path).order):
             if _same_order(order, change.order):
-                return f"[{i}]"
+                return f"{path}.{change.quantity}[{i}]", f"{path}.{change.direction}[{i}]"
         raise ValueError(
             f"the drive is not prepared for {fault.name}: {path} lacks order {change.order:g}; call prepared first"
         )
 
+
+@lru_cache(maxsize=MAX_DRIVES_KEPT)
+def _places(drive: Drive) -> _Places:
+    return _Places(drive)
+
+
+class _Numbers:
+    """The numbers of a drive while faults change them."""
+
+    def __init__(self, places: _Places) -> None:
+        self.places = places
+        self.changed: dict[str, float] = {}
+
+    def make(self, fault: Fault, change: Change) -> None:
+        if change.kind == "scale":
+            for path in self.places.scaled(change):
+                self.changed[path] = self._value(path) * change.value
+            return
+        path, direction = self.places.held(fault, change)
+        if change.kind == "add":
+            self.changed[path] = self._value(path) + change.value
+        else:
+            self._add_vector(path, direction, change)
+
     def _add_vector(self, length: str, direction: str, change: Change) -> None:
         value, angle = self._value(length), self._value(direction)
-        if change.value == 0.0:
-            added = value, angle
-        elif value == 0.0 and change.value > 0.0:
-            added = change.value, change.phase
-        else:
+        if value == 0.0 and change.value > 0.0:
+            value, angle = change.value, change.phase  # without the rounding of the sum
+        elif change.value != 0.0:
             total = rect(value, angle) + rect(change.value, change.phase)
-            added = abs(total), direction_of(total)
-        self._set(length, added[0])
-        self._set(direction, added[1])
+            value, angle = abs(total), direction_of(total)
+        self.changed[length], self.changed[direction] = value, angle
 
     def _value(self, path: str) -> float:
-        return self.changed.get(path, self.values[path])
-
-    def _set(self, path: str, value: float) -> None:
-        self.changed[path] = value
+        value = self.changed.get(path)
+        return self.places.values[path] if value is None else value
