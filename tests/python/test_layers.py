@@ -21,10 +21,7 @@ LAYERS = {
     "orders": {*BELOW, "analysis", "orders"},
     "identification": {*BELOW, "analysis", "orders", "identification"},
     "dataset": {*BELOW, "dataset"},
-<<<<<<< HEAD
     "diagnose": {*BELOW, "analysis", "orders", "identification", "diagnose"},
-=======
->>>>>>> dataset
     "export": {*BELOW, "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
     "studies": {*BELOW, "analysis", "orders", "diagnose", "studies"},

@@ -70,6 +70,9 @@ def diagnose(
     threshold: Annotated[
         float | None, numeric("Health indicator at which the gear is exchanged; its trend gives the remaining life.")
     ] = None,
+    geometry: Annotated[
+        bool, typer.Option("--geometry", help="Estimate the misalignment too: recordings are ramps from the zero of the drive.")
+    ] = False,
     out: Annotated[Path, typer.Option(help="Folder for report.html and the numbers.")] = Path("out/diagnose"),
 ) -> None:
     """Diagnose the gear of a joint from torque or current: each order against noise and against the healthy joint.
@@ -94,7 +97,9 @@ def diagnose(
     files, healthy = measurement_files(paths), measurement_files(baseline or [])
     question = _question(gear, ratio, order or [], false_alarm, threshold)
     by_name = _hours(hours, files.files)
-    question = replace(question, hours=by_name)
+    if geometry and (question.gear_set is None or question.gear_set.motor is None):
+        raise ValueError("--geometry needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
+    question = replace(question, hours=by_name, ramp_drive=question.gear_set if geometry else None)
     opened = [*files.files, *healthy.files]
     mapping = given.mapping_of(opened)
     read = [*paths_in(files), *paths_in(healthy)]

@@ -11,6 +11,7 @@ import numpy as np
 
 from strainwave import arguments
 from strainwave.diagnose.baseline import Comparison, baseline_of, compared
+from strainwave.diagnose.geometry import Geometry, misalignment_from_current
 from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogue_life, condition, trend
 from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
@@ -112,6 +113,7 @@ class RunDiagnosis:
         verdict: in one or two words
         reason: of the verdict, in a sentence
         condition: health indicator; None without a comparison
+        geometry: misalignment of the wave generator; None if it was not asked for or not determined
         revolutions: of the input, end to end; nan if the ratio is not known
         load: root mean square of the load, in the unit of the column
         causes: of the orders of the alarms, in words
@@ -127,6 +129,7 @@ class RunDiagnosis:
     verdict: Verdict
     reason: str
     condition: Condition | None
+    geometry: Geometry | None
     revolutions: float
     load: float
     causes: tuple[str, ...]
@@ -178,6 +181,7 @@ class Question:
         false_alarm: stated rate of false alarms, over all tests of a recording
         hours: of operation, by the name of the recording; empty if they are not known
         threshold: of the health indicator, at which the gear is to be exchanged; None if there is none
+        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero; None if that is not asked
     """
 
     gear_set: GearSet | None = None
@@ -186,6 +190,7 @@ class Question:
     false_alarm: float = 1e-3
     hours: Mapping[str, float] = field(default_factory=dict)
     threshold: float | None = None
+    ramp_drive: GearSet | None = None
 
 
 def diagnosed(
@@ -319,6 +324,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
     orders = _against_noise(motion, named_orders(run, question), found, question)
     comparison, remarks = _compared(motion, found, question, healthy, known)
     verdict, reason = _verdict(orders, comparison, found, question, bool(healthy), remarks)
+    geometry = _geometry(run, question, remarks)
     return RunDiagnosis(
         run.name,
         run,
@@ -329,11 +335,23 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         verdict,
         reason,
         None if comparison is None else condition(run.name, comparison),
+        geometry,
         motion.span * run.per_input,
         motion.load,
         () if comparison is None else causes([each.order for each in comparison.alarms], motion, question),
         tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
     )
+
+
+def _geometry(run: JointRecording, question: Question, remarks: list[str]) -> Geometry | None:
+    """Return the misalignment by a ramp of the drive, or say why there is none."""
+    if question.ramp_drive is None:
+        return None
+    try:
+        return misalignment_from_current(run.recording, question.ramp_drive)
+    except ValueError as error:
+        remarks.append(f"no misalignment is estimated: {error}")
+        return None
 
 
 def _compared(

@@ -64,7 +64,7 @@ def _run(found: RunDiagnosis, name: str) -> dict[str, Any]:
         "verdict": found.verdict,
         "reason": found.reason,
         "facts": _run_facts(found),
-        "causes": found.causes,
+        "causes": (*found.causes, *_misalignment(found)),
         "spectrum": spectrum_figure(found.ripple, f"{name}-spectrum"),
         "changes": [] if comparison is None else [_change(each, unit) for each in comparison.changes[:MAX_CHANGES]],
         "left": 0 if comparison is None else max(len(comparison.changes) - MAX_CHANGES, 0),
@@ -192,7 +192,7 @@ def _wrapped(text: str, indent: str) -> list[str]:
 def _run_lines(found: RunDiagnosis) -> Iterator[str]:
     unit = found.run.unit
     yield found.reason
-    yield from found.causes
+    yield from (*found.causes, *_misalignment(found))
     if found.condition is not None:
         yield f"health indicator {number(found.condition.indicator, 3)} (1 is an alarm)"
     if found.wave is not None:
@@ -244,6 +244,25 @@ def _results(found: Diagnosis) -> dict[str, Any]:
     }
 
 
+def _misalignment(found: RunDiagnosis) -> tuple[str, ...]:
+    """Return the misalignment in words; empty if none was asked for."""
+    if found.geometry is None:
+        return ()
+    return (f"misalignment: {found.geometry.words().removesuffix('.')}", *found.geometry.doubts)
+
+
+def _misalignment_results(found: RunDiagnosis) -> dict[str, Any] | None:
+    if found.geometry is None:
+        return None
+    return {
+        "condition": found.geometry.condition,
+        "words": found.geometry.words(),
+        "m": [end.m for end in found.geometry.ends],
+        "size_interval": found.geometry.size_interval,
+        "doubts": found.geometry.doubts,
+    }
+
+
 def _run_results(found: RunDiagnosis) -> dict[str, Any]:
     return {
         "name": found.name,
@@ -260,5 +279,6 @@ def _run_results(found: RunDiagnosis) -> dict[str, Any]:
         "comparison": found.comparison,
         "condition": found.condition,
         "causes": found.causes,
+        "misalignment": _misalignment_results(found),
         "remarks": found.remarks,
     }

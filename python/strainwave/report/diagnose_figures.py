@@ -36,7 +36,7 @@ def changes_figure(comparison: Comparison, unit: str, name: str) -> str:
             axes.plot(x, [each.amplitude for each in own], mark, color=LIGHT[colour], label=f"recording, {direction}")
         axes.set_ylim(bottom=0.0)
         figures.label_axes(axes, "amplitude", unit, "order per revolution of the shaft", "1")
-        axes.set_xticks(range(len(orders)), [f"{order:.5g}" for order in orders])
+        axes.set_xticks(range(len(orders)), [f"{order:.5g}" for order in orders], rotation=60)
         figures.legend(figure, axes)
 
     return figures.inline(draw, (WIDTH, 3.0), name, "Amplitudes of the recording and what the baseline allows")
