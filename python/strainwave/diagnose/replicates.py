@@ -98,7 +98,9 @@ def joint_motion(run: JointRecording) -> JointMotion:
 
 def _without_gravity(shaft: Moving) -> Moving:
     """Return a shaft of the input whose smooth part has no waves of order 1: these are gravity at the output alone."""
-    waves = np.sin(shaft.own.angle), np.cos(shaft.own.angle)
+    own = shaft.own.angle
+    angles = [own, *(both for other in shaft.shafts[1:] for both in (own + other.angle, own - other.angle))]
+    waves = [wave(angle) for angle in angles for wave in (np.sin, np.cos)]
     kept = [column for column in shaft.basis.T if not any(np.array_equal(column, wave) for wave in waves)]
     basis = np.stack(kept, axis=1)
     whole = shaft.series + shaft.smooth

@@ -125,11 +125,21 @@ def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
         (("--plan",), "--plan needs --gear with a drive"),
         ((), "no recording is given"),
         (("later.csv", "--false-alarm", "2"), "false-alarm"),
+        (("later.csv", *JOINT, "--geometry"), "--geometry needs --gear with a drive"),
         (("later.csv", "--ratio", "50", *JOINT), "--ratio and --gear are given"),
     ],
 )
 def test_options_that_do_not_fit_are_refused_in_one_line(folder: Path, words: tuple[str, ...], reason: str) -> None:
     refused(folder, ("diagnose", *words), reason)
+
+
+def test_a_record_that_is_no_ramp_has_a_note_and_no_misalignment(folder: Path) -> None:
+    drive = ("--gear", "tilt-actuator-lumped", "--geometry", "--out", "g")
+    done = strainwave("diagnose", "later.csv", *drive, folder=folder)
+    assert done.returncode == 0, done.stderr
+    (found,) = results(folder, "g").values()
+    assert found["misalignment"] is None
+    assert "no misalignment is estimated" in done.stdout
 
 
 def test_a_plan_prints_the_limit_of_each_order(folder: Path) -> None:

@@ -87,6 +87,20 @@ def test_amplitudes_scatter_by_as_much_as_is_stated() -> None:
     assert 0.5 < np.sqrt(np.mean(np.square(off[1::2]))) < 1.4
 
 
+@pytest.mark.parametrize("swing", [0.0, 1e-4, 1e-3])
+def test_a_shaft_that_swings_with_its_gear_shows_the_whole_ripple(swing: float) -> None:
+    time = np.arange(0.0, 6.0, 1e-3)
+    even = 30.0 * time
+    angle = even + swing * np.sin(2.0 * even)
+    noise = np.random.default_rng(0).normal(0.0, 0.02, len(time))
+    columns = {"time": time, "input_angle": angle, "torque": 2.0 + 0.1 * np.cos(2.0 * angle + 0.4) + noise}
+    told = found(columns, angle="input_angle", side="input")
+    line = max(told.lines, key=lambda each: each.amplitude)
+    assert line.order == pytest.approx(2.0, abs=0.01)
+    assert line.amplitude == pytest.approx(0.1, abs=4.0 * line.sigma)
+    assert line.sigma < 0.002
+
+
 @settings(deadline=None, max_examples=sample(4, 10))
 @given(ratio=st.sampled_from([50, 80, 100, 101, 120, 160]), seed=st.integers(0, 100))
 def test_the_ratio_is_found_blind_from_orders_two_and_four(ratio: int, seed: int) -> None:
