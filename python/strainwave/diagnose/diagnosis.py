@@ -181,7 +181,7 @@ class Question:
         false_alarm: stated rate of false alarms, over all tests of a recording
         hours: of operation, by the name of the recording; empty if they are not known
         threshold: of the health indicator, at which the gear is to be exchanged; None if there is none
-        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero; None if that is not asked
+        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero; None if not asked
     """
 
     gear_set: GearSet | None = None
