@@ -79,7 +79,7 @@ class Step:
     Parameters
     ----------
     at: Use u_0 at which the fault is there, in [0, inf); required
-    unit: What counts as use, one of ('output_revolutions', 'load_cycles'); default 'output_revolutions'
+    unit: Unit of usage, one of ('output_revolutions', 'load_cycles'); default 'output_revolutions'
 
     Raises
     ------
@@ -104,7 +104,7 @@ class Step:
 
     @property
     def unit(self) -> str:
-        """What counts as use"""
+        """Unit of usage"""
 
     def __repr__(self) -> str: ...
 
@@ -152,7 +152,7 @@ class Growing:
     begin: Use u_0 at which the fault begins, in [0, inf); default 0.0
     scale: Use u_1 from its beginning to its severity, in (0, inf); required
     exponent: Power p of the growth, in [0.1, 10]; default 1.0
-    unit: What counts as use, one of ('output_revolutions', 'load_cycles'); default 'output_revolutions'
+    unit: Unit of usage, one of ('output_revolutions', 'load_cycles'); default 'output_revolutions'
 
     Raises
     ------
@@ -185,7 +185,7 @@ class Growing:
 
     @property
     def unit(self) -> str:
-        """What counts as use"""
+        """Unit of usage"""
 
     def __repr__(self) -> str: ...
 

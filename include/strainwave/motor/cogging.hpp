@@ -13,7 +13,7 @@ struct CoggingTorque {
     static constexpr CoggingTorque of(const S& amplitude, const S& order) {
         return {amplitude, order, sought(amplitude) || any(amplitude > S(0.0))};
     }
-    /// Of a motor with this electric torque [N.m]; its very bits without cogging.
+    /// Torque of a motor with this electric torque [N.m]; exactly that torque without cogging.
     constexpr S added_to(const S& electric, const Angle<S>& angle) const {
         return acts ? electric + amplitude * sin(order * angle.within) : electric;
     }

@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/math.hpp>
 
-/// What a motor of two axes cannot show: three phases that are not alike. Amplitudes stay amplitudes in every frame.
+/// Three phases that are not alike, in the frame of the rotor. Amplitudes are those of a phase in every frame.
 namespace strainwave::motor {
 
 /// A voltage [V] in the frame of the rotor.
@@ -26,12 +26,12 @@ struct Phases {
         return {at, along * at.cos - across * at.sin, along * at.sin + across * at.cos};
     }
 
-    /// Of a resistance [Ohm] in the first phase alone.
+    /// Voltage drop of a resistance [Ohm] in the first phase alone.
     constexpr RotorVoltage<S> resistance_drop(const S& excess) const {
         const S share = S(2.0 / 3.0) * excess * first;
         return {share * angle.cos, -(share * angle.sin)};
     }
-    /// Of three phases that each take `voltage` [V] against their current, and less in proportion below the current `clamp` [A].
+    /// Voltage drop of three phases, each of `voltage` [V] against its current, in proportion below the current `clamp` [A].
     constexpr RotorVoltage<S> dead_time_drop(const S& voltage, const S& clamp) const {
         const auto drop = [&](const S& current) { return voltage * clip(current / clamp, S(-1.0), S(1.0)); };
         const S half = S(-0.5) * first, side = S(half_root_3) * second;

@@ -30,7 +30,7 @@ struct Growing {
         visit(SW_FIELD(m, begin, "1", "Use u_0 at which the fault begins", 0));
         visit(SW_REQUIRED(m, scale, "1", "Use u_1 from its beginning to its severity", smallest));
         visit(SW_FIELD(m, exponent, "1", "Power p of the growth", 0.1, 10));
-        visit(SW_FIELD(m, unit, "1", "What counts as use"));
+        visit(SW_FIELD(m, unit, "1", "Unit of usage"));
     }
 
     constexpr S share(const S& usage) const {

@@ -7,7 +7,7 @@
 ///     share(usage)     the share of its severity, in [0, 1], that a fault has reached
 namespace strainwave::onset {
 
-/// What counts as use.
+/// Unit of usage.
 enum class Unit { output_revolutions, load_cycles };
 constexpr Array<const char*, 2> choices(Unit) { return {{"output_revolutions", "load_cycles"}}; }
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
 PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
-ALARM = 3  # exit code if a recording changed
+ALARM_EXIT_CODE = 3  # of the process, if a recording differs from the baseline
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def diagnose(
     print(diagnose_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(written)[:-1])}")
     if any(each.alarms for each in found):
-        raise typer.Exit(ALARM)
+        raise typer.Exit(ALARM_EXIT_CODE)
 
 
 def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:

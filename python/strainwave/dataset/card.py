@@ -1,4 +1,4 @@
-"""What describes a data set: the manifest for programs, the card for people."""
+"""Description of a data set: the manifest for programs, the card for people."""
 
 from __future__ import annotations
 

@@ -18,11 +18,11 @@ from strainwave.messages import listed
 Array = NDArray[np.float64]
 Labels = NDArray[np.str_]
 
-TREES = 200  # of the forest
-MIN_LEAF = 2  # runs in a leaf
-CONFIDENCE = 0.95
-RESAMPLES = 400  # of units, for an interval
-SHUFFLES = 5  # of labels between units, for chance
+FOREST_TREES = 200  # of the forest
+MIN_RUNS_PER_LEAF = 2  # runs in a leaf
+INTERVAL_CONFIDENCE = 0.95
+BOOTSTRAP_RESAMPLES = 400  # of units, for an interval
+CHANCE_SHUFFLES = 5  # of labels between units, for chance
 HELD_OUT_SHARE = 0.3  # of the units, and of the conditions
 MIN_UNITS = 8
 EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
@@ -137,7 +137,7 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
     held_unit = _held_out(runs.unit, chance)
     held_condition = _held_out(runs.condition, chance)
     held_run = chance.random(len(runs.label)) < HELD_OUT_SHARE
-    shuffled = [_answers(runs, _shuffled(runs, chance), ~held_unit, held_unit, seed) for _ in range(SHUFFLES)]
+    shuffled = [_answers(runs, _shuffled(runs, chance), ~held_unit, held_unit, seed) for _ in range(CHANCE_SHUFFLES)]
     answers = _answers(runs, runs.label, ~held_unit, held_unit, seed)
     truth, units = runs.label[held_unit], runs.unit[held_unit]
     labels = tuple(np.unique(runs.label).tolist())
@@ -152,7 +152,7 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
         by_condition=score(~held_condition, held_condition),
         by_both=score(~held_unit & ~held_condition, held_unit & held_condition),
         leaky=score(~held_run, held_run),
-        chance=_score(np.tile(truth, SHUFFLES), np.concatenate(shuffled), np.tile(units, SHUFFLES), seed),
+        chance=_score(np.tile(truth, CHANCE_SHUFFLES), np.concatenate(shuffled), np.tile(units, CHANCE_SHUFFLES), seed),
         detector=None if alarms is None else _detects(truth, alarms, runs, units, seed),
         classifier_detects=None if alarms is None else _detects(truth, answers != runs.healthy, runs, units, seed),
         false_alarms=None if alarms is None or not sound.any() else float(alarms[sound].mean()),
@@ -191,7 +191,9 @@ def _answers(runs: LabelledRuns, label: Labels, train: NDArray[np.bool_], test: 
         from sklearn.ensemble import RandomForestClassifier
     except ImportError:
         raise ImportError(EXTRA) from None
-    forest = RandomForestClassifier(TREES, min_samples_leaf=MIN_LEAF, class_weight="balanced", random_state=seed, n_jobs=-1)
+    forest = RandomForestClassifier(
+        FOREST_TREES, min_samples_leaf=MIN_RUNS_PER_LEAF, class_weight="balanced", random_state=seed, n_jobs=-1
+    )
     forest.fit(runs.matrix[train], label[train])
     return np.asarray(forest.predict(runs.matrix[test]))
 
@@ -206,10 +208,10 @@ def _score(truth: Labels, answers: Labels, units: NDArray[np.int64], seed: int) 
     chance = np.random.default_rng(seed)
     members = [np.flatnonzero(units == unit) for unit in np.unique(units)]
     drawn = []
-    for _ in range(RESAMPLES):
+    for _ in range(BOOTSTRAP_RESAMPLES):
         rows = np.concatenate([members[place] for place in chance.integers(len(members), size=len(members))])
         drawn.append(balanced_accuracy(truth[rows], answers[rows]))
-    low, high = np.quantile(drawn, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE])
+    low, high = np.quantile(drawn, [0.5 - 0.5 * INTERVAL_CONFIDENCE, 0.5 + 0.5 * INTERVAL_CONFIDENCE])
     return Score(balanced_accuracy(truth, answers), float(low), float(high), len(truth), len(members))
 
 

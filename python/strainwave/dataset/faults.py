@@ -293,7 +293,7 @@ def _paths_of(drive: Drive, change: Change) -> Iterator[str]:
 
 
 class _Places:
-    """Where the numbers of a drive are, worked out once for faults that act on it many times."""
+    """Places of the numbers of a drive, computed once for faults that act on it many times."""
 
     def __init__(self, drive: Drive) -> None:
         self.drive = drive
