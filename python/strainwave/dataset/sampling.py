@@ -8,7 +8,6 @@ from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -110,6 +109,8 @@ def _grid(seed: int, count: int, columns: int, indices: Indices) -> Array:
 
 
 def _sobol(seed: int, count: int, columns: int, indices: Indices) -> Array:
+    from scipy.stats import qmc  # takes a second to import, which every worker of other designs would spend
+
     sequence = qmc.Sobol(columns, scramble=True, bits=SOBOL_BITS, seed=seed)
     if indices[0] > 0:
         sequence.fast_forward(int(indices[0]))

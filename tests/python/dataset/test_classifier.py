@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from strainwave.dataset import classifier
 from strainwave.dataset.classifier import LabelledRuns, balanced_accuracy, benchmark
 
 pytest.importorskip("sklearn")
 
 UNITS, CONDITIONS, REPEATS = 24, 4, 6
+TREES = 20  # of a forest: five features need no more, and a benchmark grows nine forests
+
+
+@pytest.fixture(autouse=True)
+def small_forests(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(classifier, "FOREST_TREES", TREES)
 
 
 def runs(effect: float, own: float, seed: int = 0) -> LabelledRuns:
