@@ -15,11 +15,13 @@ import argparse
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from math import sqrt
 
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
+from scipy import fft
 from strainwave.diagnose.detection import threshold_of
 from strainwave.diagnose.detection_limit import COLUMN, DetectionLimit, RecordedOrder, Run, detection_limit
 from strainwave.diagnose.motion import Motion, motion_of
@@ -136,18 +138,20 @@ def noises(colour: str, count: int, draws: int, step: float, random: np.random.G
         "brown below 2 Hz": np.sqrt(1.0 + (2.0 / positive) ** 2),
     }[colour]
     shape[0] = 0.0
-    coloured = np.fft.irfft(np.fft.rfft(white, axis=0) * shape[:, None], axis=0)[:count]
+    coloured = fft.irfft(fft.rfft(white, axis=0) * shape[:, None], axis=0)[:count]  # many columns at once, unlike numpy.fft
     return np.asarray(coloured / np.std(coloured))
 
 
-def healthy_motions(units: int, seed: int = 3) -> Iterator[Motion]:
-    """Motions of healthy units whose friction, inertia, load and speed differ."""
-    random = np.random.default_rng(seed)
+@cache
+def healthy_motions(units: int, seed: int = 3) -> tuple[Motion, ...]:
+    """Motions of healthy units whose friction, inertia, load and speed differ, simulated once for all colours of noise."""
+    random, motions = np.random.default_rng(seed), []
     for _ in range(units):
         friction, inertia, faster, load = 1.0 + 0.2 * random.uniform(-1.0, 1.0, 4)
         drive = signature_drive(0.03 * friction, 1.5e-4 * inertia)
         run = Run(drive, 10.0 * faster, 20.0 * load, 24.0, 250.0, 1.0)
-        yield motion_of(run.with_error(0.0), COLUMN, max(ORDERS))
+        motions.append(motion_of(run.with_error(0.0), COLUMN, max(ORDERS)))
+    return tuple(motions)
 
 
 def false_alarms(colour: str, rate: float, units: int, draws: int, noise: float = 0.05) -> tuple[int, int]:

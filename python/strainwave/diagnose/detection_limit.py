@@ -34,7 +34,8 @@ Array = NDArray[np.float64]
 ARCMINUTE = radians(1.0 / 60.0)  # rad
 ACCURACY = ARCMINUTE  # rad: amplitude that makers allow for the accuracy of positioning of usual gears
 PROBE = ARCMINUTE  # rad: error of the first run; later ones have the limit itself
-PROBES = 3  # runs with an error
+PROBES = 3  # runs with an error at most
+MIN_PROBE_CHANGE = 1e-3  # relative change of the error [1], below which a further run would show the same gain
 MAX_PROBE = 60.0 * ARCMINUTE  # rad: error of any run
 MIN_PROBE = 1e-3 * ARCMINUTE  # rad
 RUN_IN_TURNS = 2.0  # revolutions of the input before the record
@@ -230,9 +231,12 @@ def detection_limit(
     healthy = RecordedOrder.of(run.with_error(0.0), order)
     sigma = healthy.sigma(hypot(noise, healthy.own_noise))
     needed = needed_signal_to_noise(probability, false_alarm, healthy.regression.freedom, tests)
-    gain, limit = 0.0j, PROBE
+    gain, limit, before = 0.0j, PROBE, inf
     for _ in range(PROBES):
         probe = min(max(limit, MIN_PROBE), MAX_PROBE)
+        if abs(probe - before) < MIN_PROBE_CHANGE * probe:
+            break
+        before = probe
         gain = (RecordedOrder.of(run.with_error(probe), order).wave - healthy.wave) / probe
         limit = sigma * needed / abs(gain) if abs(gain) > 0.0 else inf
     found = DetectionLimit(
