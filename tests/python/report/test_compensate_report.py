@@ -12,12 +12,13 @@ import strainwave as sw
 from strainwave.report.compensate import compensate_files, compensate_summary, too_much, verdict
 from strainwave.tuning.conditions import OverCompensation
 
+from tests.compensated_joint import robot_joint
 from tests.python.report.reading import Page
 
 
 @pytest.fixture(scope="module")
 def found() -> sw.Compensated:
-    return sw.compensate("robot-joint", members=3, travel=0.05)
+    return robot_joint()
 
 
 @pytest.fixture(scope="module")

@@ -12,18 +12,19 @@ from strainwave.tuning.candidates import baseline, candidates
 from strainwave.tuning.cascade import Plant, Setting
 from strainwave.tuning.compensate import _drawn, _of_the_drive, _remarks
 from strainwave.tuning.goals import position, smooth, speed
-from strainwave.tuning.judging import Judged
+from strainwave.tuning.judging import Judged, judged
 from strainwave.tuning.loops import sharpest
 
 from tests.python.command import refused
 
 STATED = sw.GearSet.read("robot-joint")
 KNOWN = STATED.replace(sources=dict.fromkeys(STATED.sources, Entry("measured", spread=0.01)))
+MEMBERS = 3  # with the gear as its numbers have it four, which fill the registers of any processor
 
 
 @pytest.fixture(scope="module")
 def known() -> sw.Compensated:
-    return sw.compensate(KNOWN, members=4, travel=0.1)
+    return sw.compensate(KNOWN, members=MEMBERS, travel=0.1)
 
 
 def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated) -> None:
@@ -80,7 +81,7 @@ def test_friction_is_by_the_measured_motion_only_where_it_creeps() -> None:
 
 
 def test_a_gear_without_effects_needs_none() -> None:
-    gear = sw.Gear(kinematics=STATED.gear.kinematics, stiffness=sw.stiffness.Linear(k=1e9), input_inertia=4e-5)
+    gear = sw.Gear(kinematics=STATED.gear.kinematics, stiffness=sw.stiffness.Linear(k=1e7), input_inertia=4e-5)
     drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=5e-5), load=sw.loads.Inertia(inertia=1.0))
     found = sw.compensate(drive, members=3, travel=0.05)
     assert not found.is_compensated
@@ -112,7 +113,7 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
 )
 def test_what_is_out_of_range_is_refused(changes: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sw.compensate(STATED, **changes)  # type: ignore[arg-type]
+        sw.compensate(STATED, **{"members": MEMBERS, **changes})  # type: ignore[arg-type]
 
 
 def test_the_command_refuses_a_travel_that_its_goal_does_not_use(tmp_path: Path) -> None:
@@ -135,19 +136,20 @@ def test_a_gear_alone_is_refused() -> None:
 @pytest.mark.parametrize("name", ["tilt-actuator", "two-inertia-gear"])
 def test_drives_of_the_catalogue_run_on_gears_drawn_from_them(name: str) -> None:
     """Of one the pressure angle stands in two parts, which must agree; the other has no friction from which a limit follows."""
-    found = sw.compensate(name, members=3, travel=0.02)
+    found = sw.compensate(name, members=MEMBERS, travel=0.01)
     assert found.baseline.failures == 0
     assert found.baseline.upper("tracking error") < 2e-3
 
 
 def test_the_gain_is_that_on_gears_by_which_nothing_was_chosen(known: sw.Compensated) -> None:
-    """They are those of the next seed; the same seed chooses the same."""
+    """It is chosen on the gears of the seed, and its gain is that on those of the next seed."""
     chosen = next(each for each in known.tried if each.candidate is known.chosen.candidate)
     assert not np.array_equal(chosen.figures["tracking error"], known.chosen.figures["tracking error"])
     assert chosen.nominal == known.chosen.nominal
-    later = sw.compensate(KNOWN, members=4, travel=0.1, seed=1)
-    same = next(each for each in later.tried if each.candidate.name == known.chosen.candidate.name)
-    assert np.array_equal(same.figures["tracking error"], known.chosen.figures["tracking error"])
+    plant = Plant.read(KNOWN, 1e-3, 0.0)
+    for seed, expected in ((0, chosen), (1, known.chosen)):
+        again = judged(chosen.candidate, known.goal, _drawn(KNOWN, plant, MEMBERS, seed, known_load=False), plant)
+        assert np.array_equal(again.figures["tracking error"], expected.figures["tracking error"])
 
 
 def test_the_cascade_supplies_no_friction_twice() -> None:

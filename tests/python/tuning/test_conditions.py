@@ -14,12 +14,14 @@ from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import position
 from strainwave.tuning.judging import judged
 
+from tests.compensated_joint import robot_joint
+
 SET = sw.GearSet.read("robot-joint")
 
 
 @pytest.fixture(scope="module")
 def found() -> sw.Compensated:
-    return sw.compensate(SET, members=3, travel=0.05)
+    return robot_joint()
 
 
 def test_a_spring_of_less_twist_takes_more_torque() -> None:

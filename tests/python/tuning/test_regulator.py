@@ -8,6 +8,8 @@ import strainwave as sw
 from strainwave.tuning.cascade import Plant
 from strainwave.tuning.linear_plant import LinearPlant
 
+from tests.compensated_joint import robot_joint
+
 ROTOR, ARM, RATIO = 1e-4, 0.6, 100.0
 ERROR, EFFORT = 1e-3, 0.2
 
@@ -55,7 +57,7 @@ def test_errors_of_angle_and_speed_are_weighed_as_they_are_stated() -> None:
 def test_with_an_observer_it_holds_the_robot_joint_against_its_friction_and_weight() -> None:
     joint_set = sw.GearSet.read("robot-joint")
     law = sw.regulator(joint_set, error=2e-4)
-    found = sw.compensate(joint_set, members=3, travel=0.05)
+    found = robot_joint()
     compensation = found.chosen.candidate.drive.control.compensation
     control = sw.control.Sampled(law=law, period=1e-3, compensation=compensation)
     run = sw.simulate(found.drive.replace(control=control, sensors=sw.Sensors()), found.goal.command, sample=1e-3)
