@@ -1,5 +1,6 @@
 """What holds for all tests."""
 
+import gc
 import os
 import signal
 import sys
@@ -44,6 +45,20 @@ def pytest_configure() -> None:
     wanted, found = os.environ.get("STRAINWAVE_IS_IN"), Path(strainwave.__file__)
     if wanted and not found.is_relative_to(wanted):
         raise pytest.UsageError(f"the tests are to be of the package in {wanted}, not of {found}")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Tests and modules live as long as the process: the garbage collector looks neither while they are made nor through them.
+
+    Each of its full passes over nine thousand tests would take 0.3 s.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.freeze()
 
 
 # ---- Processor time of each test, with the processes that it starts ----------------------------------------------------
