@@ -82,7 +82,7 @@ def test_a_gear_that_heats_up_is_cold_and_warm_from_the_begin() -> None:
     """In a motion of seconds it hardly warms up: its figures are those of a gear that keeps the temperature around it."""
     joint = sw.GearSet.read("space-pointing-joint")
     plant, draws = Plant.read(joint, 1e-3, 0.0), drawn_gears(joint, 3)
-    goal, cascade = position(0.05, 0.1, plant.effort_unit), baseline(plant, Setting(0.5, "input", 0.5))
+    goal, cascade = position(0.02, 0.1, plant.effort_unit), baseline(plant, Setting(0.5, "input", 0.5))
     both = (judged(cascade, goal, draws, plant),) * 2
     *_, cold, warm = (each.baseline for each in conditions(both, lambda pace: goal, draws, plant))
     assert warm.median("tracking error") != pytest.approx(cold.median("tracking error"), rel=0.01)
