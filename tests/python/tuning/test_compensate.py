@@ -24,7 +24,7 @@ MEMBERS = 3  # with the gear as its numbers have it four, which fill the registe
 
 @pytest.fixture(scope="module")
 def known() -> sw.Compensated:
-    return sw.compensate(KNOWN, members=MEMBERS, travel=0.1)
+    return sw.compensate(KNOWN, members=MEMBERS, travel=0.05)
 
 
 def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated) -> None:
