@@ -86,6 +86,7 @@ class FitRecord:
             )
         self.nuisances = slice(first, first + len(experiment.nuisances))
         self._before = model
+        self._numbers = [value for _, value, *_ in _core.parameters(model)]
         numbers = {path: place for place, (path, *_) in enumerate(_core.parameters(self.part_of(model)))}
         paths = [link.path.removeprefix("gear.") if of_gear else link.path for link in links]
         self._acting = [(numbers[path], link) for path, link in zip(paths, links, strict=True) if path in numbers]
@@ -101,7 +102,7 @@ class FitRecord:
 
     def model(self, x: Array) -> Any:
         """Return the model of this record by the unknowns."""
-        numbers = [value for _, value, *_ in _core.parameters(self._before)]
+        numbers = self._numbers.copy()
         for link in self.links:
             numbers[link.number] = link.factor * float(x[link.unknown])
         return _core.with_numbers(self._before, numbers)
@@ -134,8 +135,9 @@ def _step(rows: Array, left: Array) -> tuple[Array, float]:
     """Return the step of Gauss and Newton, and its decrease of the sum of squares if residuals were linear."""
     size = np.linalg.norm(rows, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    step = np.linalg.lstsq(rows / size, -left, rcond=MIN_SINGULAR)[0]
-    return step / size, float(np.sum((rows / size @ step) ** 2))
+    scaled = rows / size
+    step = np.linalg.lstsq(scaled, -left, rcond=MIN_SINGULAR)[0]
+    return step / size, float(np.sum((scaled @ step) ** 2))
 
 
 class Problem:
