@@ -220,13 +220,19 @@ def code(path: Path) -> str:
     return re.sub(r"//.*", "", re.sub(r'"(\\.|[^"\\\n])*"', '""', text))
 
 
+@cache
+def words(path: Path) -> frozenset[str]:
+    """The words of a source, found once for all models."""
+    return frozenset(re.findall(r"\w+", code(path)))
+
+
 def naming(model: Any) -> set[Path]:
     """Where a model is named, but for the headers and lists of those of its name in other families.
 
     In Python the name of a fault or an onset is that of another class if there is such a class.
     """
     others = set(with_its_name(model)) - set(defining(model))
-    named = {path for path in SOURCES if re.search(rf"\b{model.__name__}\b", code(path))}
+    named = {path for path in SOURCES if model.__name__ in words(path)}
     around = any(model in models.values() for models in _core.fault_families.values())
     if around and any(re.search(rf"\bclass {model.__name__}\b", code(path)) for path in named if path.suffix == ".py"):
         named = {path for path in named if path.suffix != ".py"}
@@ -240,7 +246,9 @@ def defining(model: Any) -> list[Path]:
 
 
 def with_its_name(model: Any) -> list[Path]:
-    return [path for path in SOURCES if re.search(rf"\bstruct {model.__name__} {{", code(path))]
+    return [
+        path for path in SOURCES if model.__name__ in words(path) and re.search(rf"\bstruct {model.__name__} {{", code(path))
+    ]
 
 
 def list_of(header: Path) -> Path:
