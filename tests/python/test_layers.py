@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import strainwave as sw
@@ -31,11 +31,15 @@ LAYERS = {
 TOP = {"__main__", "demo"}
 
 
-def imported(path: Path) -> Iterator[str]:
+@cache
+def imported(path: Path) -> frozenset[str]:
     """The modules of the package that a module imports, within functions too."""
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.module is not None and node.module.split(".")[0] == "strainwave":
-            yield from (f"{node.module}.{each.name}".removeprefix("strainwave.") for each in node.names)
+    return frozenset(
+        f"{node.module}.{each.name}".removeprefix("strainwave.")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom) and node.module is not None and node.module.split(".")[0] == "strainwave"
+        for each in node.names
+    )
 
 
 def test_each_layer_imports_from_those_below_alone() -> None:
