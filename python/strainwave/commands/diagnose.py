@@ -35,6 +35,13 @@ class PlanOptions:
     sample_rate: Annotated[float | None, numeric("With --plan: samples of the current per second, in Hz; usually 1000.")] = None
     probability: Annotated[float | None, numeric("With --plan: that such an error is found; usually 0.9.")] = None
 
+    def check_alone(self, given: dict[str, object]) -> None:
+        """Raise ValueError for an option or a recording that a plan does not use."""
+        if unused := [name for name, value in given.items() if value not in (None, False, [])]:
+            raise ValueError(
+                f"--plan simulates the drive --gear and does not use {unused[0]}: leave it out, or leave --plan out"
+            )
+
     def check_unused(self) -> None:
         """Raise ValueError for an option of a plan without --plan."""
         names = ("speed", "load", "duration", "noise", "sample_rate", "probability")
@@ -83,6 +90,17 @@ def diagnose(
     would show is printed.
     """
     if planned.plan:
+        planned.check_alone(
+            {
+                "recordings": paths,
+                "--baseline": baseline,
+                "--ratio": ratio,
+                "--rate": rate,
+                "--hours": hours,
+                "--threshold": threshold,
+                "--geometry": geometry,
+            }
+        )
         _plan(gear, planned, order or [], false_alarm, out)
         return
     planned.check_unused()
@@ -95,7 +113,8 @@ def diagnose(
     from strainwave.report.provenance import Provenance
 
     files, healthy = measurement_files(paths), measurement_files(baseline or [])
-    question = _question(gear, ratio, order or [], false_alarm, threshold)
+    _check_apart(files.files, healthy.files)
+    question = _question(gear, ratio, rate, order or [], false_alarm, threshold)
     by_name = _hours(hours, files.files)
     if geometry and (question.gear_set is None or question.gear_set.motor is None):
         raise ValueError("--geometry needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
@@ -161,7 +180,12 @@ def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_a
 
 
 def _question(
-    gear: str | None, ratio: float | None, orders: Sequence[str], false_alarm: float, threshold: float | None
+    gear: str | None,
+    ratio: float | None,
+    rate: float | None,
+    orders: Sequence[str],
+    false_alarm: float,
+    threshold: float | None,
 ) -> Question:
     from strainwave.arguments import number, probability
     from strainwave.commands.options import number_option
@@ -170,7 +194,11 @@ def _question(
     from strainwave.identification.reading.mapping import check_constant
 
     probability("--false-alarm", false_alarm)
+    if threshold is not None:
+        number("--threshold", threshold, low=0.0)
     gear_set = None if gear is None else GearSet.read(gear)
+    if rate is not None:
+        check_constant("--rate", "rate", rate)
     if ratio is not None:
         check_constant("--ratio", "ratio", ratio)
         if gear_set is not None:
@@ -182,14 +210,27 @@ def _question(
 
 def _hours(text: str | None, files: Sequence[MeasurementFile]) -> dict[str, float]:
     """Return the hours of operation by the name of the recording."""
+    from strainwave.arguments import number
     from strainwave.number_texts import number_in
 
     if text is None:
         return {}
-    numbers = [number_in(each.strip()) for each in text.split(",")]
+    try:
+        numbers = [number("hours", number_in(each.strip()), "h", "[)", 0.0) for each in text.split(",")]
+    except ValueError as error:
+        raise ValueError(f"--hours {text}: {error}; give the hours of operation at each recording, as 0,120,300") from None
     if len(numbers) != len(files):
         raise ValueError(f"--hours has {len(numbers)} numbers for {len(files)} recordings; give one for each, as 0,120,300")
     return {file.path.name: hour for file, hour in zip(files, numbers, strict=True)}
+
+
+def _check_apart(files: Sequence[MeasurementFile], healthy: Sequence[MeasurementFile]) -> None:
+    """Raise ValueError for a recording that is in the baseline, too: it would be compared with itself."""
+    known = {file.path.resolve() for file in healthy}
+    if both := [file.path for file in files if file.path.resolve() in known]:
+        raise ValueError(
+            f"{both[0]} is diagnosed and is in the baseline, too; a recording does not differ from itself: leave it out of one"
+        )
 
 
 def _joints(files: MeasurementFiles, mapping: Callable[[Path], FileMapping]) -> tuple[str, ...]:

@@ -111,11 +111,14 @@ class Run:
         return constant(output, length) if held.name == "pi" else ramp(output, length)
 
     def _check_speed(self, record: Recording) -> None:
-        turned = float(np.ptp(record["input_angle"]))
-        if turned < MIN_SPEED_SHARE * self.speed * self.duration:
+        """Raise ValueError if the input does not turn as far as the speed makes it, or against it."""
+        angle = record["input_angle"]
+        turned = float(angle[-1] - angle[0]) * float(np.sign(float(self.drive.gear.kinematics.ratio)))
+        wanted = self.speed * self.duration
+        if not MIN_SPEED_SHARE * wanted <= turned <= wanted / MIN_SPEED_SHARE:
             raise ValueError(
-                f"the drive turns its input by {turned:.4g} rad in {self.duration:g} s; speed = {self.speed:g} rad/s makes "
-                f"{self.speed * self.duration:.4g} rad. Take a lower speed or load, or a drive with a controller"
+                f"the drive turns its input by {turned:.4g} rad in {self.duration:g} s, loaded with {self.load_torque:g} N.m; "
+                f"speed = {self.speed:g} rad/s makes {wanted:.4g} rad. Take a lower speed or load, or a drive with a controller"
             )
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi, tau
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
-from strainwave.orders.ripple import Side
+from strainwave.orders.ripple import MAX_PHASE_STEP, Side
+from strainwave.orders.shaft_pair import Pair, ratio_of
 from strainwave.orders.turning import evenly, unwrapped
 
 Array = NDArray[np.float64]
@@ -83,8 +85,8 @@ def usable(
         other_angles: columns with the angles of other joints that move, by the name of the joint
 
     Raises:
-        ValueError: there is no torque or current, no angle and no speed; the shaft rests; it turns too little; or its samples
-            are too far apart for order 2 of the wave generator
+        ValueError: there is no torque or current, no angle and no speed; both angles have another ratio than the one given; the
+            shaft rests; it turns too little; or its samples are too far apart for order 2 of the wave generator
 
     >>> resting = Recording({"time": np.arange(100.0), "output_angle": np.zeros(100), "current": np.ones(100)},
     ...                     {"time": "s", "output_angle": "rad", "current": "A"})
@@ -104,13 +106,41 @@ def usable(
             f"{name}: without an angle or a speed: its columns are {listed(recording.names)}; a diagnosis needs one of "
             f"{listed(each for each, _ in (*ANGLES, *SPEEDS))}; record it, or name its column with --column output_angle=…"
         )
-    turning, angle, known, remarks = with_angle(recording, side, rate)
     try:
+        turning, angle, known, remarks = with_angle(recording, side, rate)
         run = JointRecording(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
+        run = _with_shaft_of_input(run) if "input_angle" in recording and "output_angle" in recording else run
         _check_motion(run)
     except ValueError as error:
         raise ValueError(str(error) if str(error).startswith(f"{name}:") else f"{name}: {error}") from None
     return run
+
+
+def _with_shaft_of_input(run: JointRecording) -> JointRecording:
+    """Return a run with both angles over the input itself, whose angle a controller may have divided by the ratio.
+
+    Without a ratio it is then a run over the output.
+
+    Raises:
+        ValueError: the angles have another ratio than the one given
+    """
+    names = ("input_angle", "output_angle")
+    record = evenly(run.recording, names, run.rate)
+    turned = [unwrapped(name, convert(record.columns[name], run.recording.unit(name), "rad")) for name in names]
+    try:
+        pair = Pair(record, *turned)
+        _, free = ratio_of(pair, None)
+    except ValueError as error:
+        return replace(run, remarks=(*run.remarks, f"the ratio of both angles is not determined: {error}"))
+    if run.ratio is None:
+        return replace(run, side="output") if free.in_joint_units else run
+    _, ratio = ratio_of(pair, run.ratio)
+    if not ratio.in_joint_units:
+        return run
+    angle = run.ratio * run.recording.values("input_angle", "rad")
+    remark = f"both angles are counted in joint units; the motor angle is multiplied by the ratio, {run.ratio:.9g}"
+    recording = run.recording.with_column("input_angle", angle, "rad")
+    return replace(run, recording=recording, remarks=(*run.remarks, remark))
 
 
 def _check_motion(run: JointRecording) -> None:
@@ -135,11 +165,13 @@ def _check_motion(run: JointRecording) -> None:
     steps = np.abs(np.diff(angle))
     moving = steps[steps > SLOW_SHARE * float(np.quantile(steps, 0.95))]
     step = float(np.quantile(moving, SPEED_QUANTILE))  # rad per sample
-    if (phase := WAVE_ORDER * per_input * step) > pi:
+    limit = MAX_PHASE_STEP * pi
+    if (phase := WAVE_ORDER * per_input * step) > limit:
         rate = 1.0 / record.step
-        limit = f"{0.5 * rate:.4g} Hz, half of the sample rate" if record.timed else "half a period per sample"
+        share = f"{MAX_PHASE_STEP:g} of half"
+        allowed = f"{limit / tau * rate:.4g} Hz, {share} of the sample rate" if record.timed else f"{share} a period per sample"
         value = f"{phase / tau * rate:.4g} Hz" if record.timed else f"{phase / tau:.3g} periods per sample"
         raise ValueError(
-            f"aliased: order 2 of the wave generator passes at {value} at the usual speed{assumed}; the limit is {limit}; "
-            f"record {phase / pi:.2g} times faster, or turn {phase / pi:.2g} times slower"
+            f"aliased: order 2 of the wave generator passes at {value} at the usual speed{assumed}; the limit is {allowed}; "
+            f"record {phase / limit:.2g} times faster, or turn {phase / limit:.2g} times slower"
         )

@@ -31,6 +31,7 @@ def write(path: Path, seed: int, lines: dict[float, float], load: float = 1.0, n
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("diagnose")
     (place / "healthy").mkdir()
+    (place / "empty").mkdir()
     for day in range(3):
         write(place / "healthy" / f"day-{day}.csv", day, {2.0: 0.05})
     write(place / "later.csv", 10, {2.0: 0.05})
@@ -124,6 +125,15 @@ def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
         (("--plan", *JOINT), "--plan needs --speed"),
         (("--plan",), "--plan needs --gear with a drive"),
         ((), "no recording is given"),
+        (("later.csv", "--plan", *JOINT), "--plan simulates the drive --gear and does not use recordings: leave it out"),
+        (("--plan", *JOINT, "--baseline", "healthy"), "does not use --baseline"),
+        (("later.csv", "--hours", "a"), '--hours a: "a" is no number'),
+        (("later.csv", "--hours", "-5"), "--hours -5: hours = -5.0 h must lie in [0, inf)"),
+        (("later.csv", "--threshold", "-2", "--hours", "1"), "--threshold = -2.0 must lie in (0, inf)"),
+        (("later.csv", "--rate", "-4"), "--rate = -4.0 Hz must lie in"),
+        (("healthy/day-1.csv", "--baseline", "healthy"), "day-1.csv is diagnosed and is in the baseline, too"),
+        (("nosuch",), "nosuch does not exist"),
+        (("later.csv", "--baseline", "empty"), "empty is a folder without a file of measurements"),
         (("later.csv", "--false-alarm", "2"), "false-alarm"),
         (("later.csv", *JOINT, "--geometry"), "--geometry needs --gear with a drive"),
         (("later.csv", "--ratio", "50", *JOINT), "--ratio and --gear are given"),

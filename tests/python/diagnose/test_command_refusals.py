@@ -34,7 +34,10 @@ def test_a_usable_recording_keeps_its_columns() -> None:
             r"log.csv: too short: the input turns 1.5 revolutions .* needs 3 or more; record",
         ),
         (recording(revolutions=1e-5), r"log.csv: at rest: input_angle moves by 6.28e-05 rad .* at least 0.001 rad .* motion"),
-        (recording(revolutions=400.0, rate=100.0), r"aliased: order 2 .* passes at .* Hz .* limit is 50 Hz.* slower"),
+        (
+            recording(revolutions=400.0, rate=100.0),
+            r"aliased: order 2 .* passes at .* Hz .* limit is 40 Hz, 0.8 of half .* slower",
+        ),
         (recording(current=True), r"without current or torque: its columns are time, input_angle; .* --column current="),
         (
             recording(input_angle=True),
@@ -59,17 +62,54 @@ def test_a_known_ratio_counts_the_revolutions_of_the_input() -> None:
         usable(slow, "log.csv")
 
 
-def test_the_limit_of_aliasing_is_half_the_rate_at_the_usual_speed() -> None:
-    """At 100 Hz order 2 may pass at 50 Hz: 25 revolutions of the input per second."""
+def test_the_limit_of_aliasing_is_that_of_the_blind_search_at_the_usual_speed() -> None:
+    """At 100 Hz order 2 may pass at 40 Hz: 20 revolutions of the input per second."""
     time = np.arange(0.0, 20.0, 0.01)
     noise = np.random.default_rng(1).normal(size=len(time))
-    for speed, is_used in ((24.0, True), (26.0, False)):
+    for speed, is_used in ((19.0, True), (21.0, False)):
         made = sw.Recording(
             {"time": time, "input_angle": tau * speed * time, "current": noise},
             {"time": "s", "input_angle": "rad", "current": "A"},
         )
         if is_used:
-            assert usable(made, "log.csv").name == "log.csv"
+            run = usable(made, "log.csv")
+            assert sw.ripple(run.recording, run.column, angle=run.angle, side="input").highest > 2.0
         else:
-            with pytest.raises(ValueError, match=r"passes at 52 Hz .* the limit is 50 Hz"):
+            with pytest.raises(ValueError, match=r"passes at 42 Hz .* the limit is 40 Hz"):
                 usable(made, "log.csv")
+
+
+def both_angles(ratio: float, divided: float = 1.0) -> sw.Recording:
+    """A motor and its output to and fro, with the motor angle divided by a number."""
+    made = recording(revolutions=40.0)
+    motor = made["input_angle"]
+    return made.with_column("output_angle", motor / ratio, "rad").with_column("input_angle", motor / divided, "rad")
+
+
+def test_a_ratio_that_is_not_that_of_both_angles_is_refused() -> None:
+    assert usable(both_angles(150.0), "log.csv", ratio=150.0).per_input == 1.0
+    with pytest.raises(ValueError, match=r"log.csv: ratio = 100 is not that of the angles, 150 .* check the units of both"):
+        usable(both_angles(150.0), "log.csv", ratio=100.0)
+
+
+def test_a_motor_angle_in_joint_units_is_multiplied_by_the_ratio() -> None:
+    """Else order 2 of the input would be looked for at 2 per revolution of the output."""
+    run = usable(both_angles(100.0, divided=100.0), "log.csv", ratio=100.0)
+    assert run.side == "input"
+    assert np.ptp(run.recording["input_angle"]) == pytest.approx(40.0 * tau, rel=1e-6)
+    assert any("joint units" in remark for remark in run.remarks)
+    blind = usable(both_angles(100.0, divided=100.0), "log.csv")
+    assert blind.side == "output"
+    assert np.isnan(blind.per_input)
+
+
+def test_angles_that_do_not_move_together_are_a_remark() -> None:
+    made = recording()
+    other = made.with_column("output_angle", np.cos(3.0 * made["time"]), "rad")
+    assert any("the ratio of both angles is not determined" in remark for remark in usable(other, "log.csv").remarks)
+
+
+def test_a_speed_without_time_is_refused_with_the_name_of_the_file() -> None:
+    made = sw.Recording({"input_speed": np.ones(100), "torque": np.ones(100)}, {"input_speed": "rad/s", "torque": "N.m"})
+    with pytest.raises(ValueError, match=r"log.csv: input_speed gives an angle only over time; .* --rate"):
+        usable(made, "log.csv")
