@@ -7,16 +7,20 @@ False alarms: healthy units of a drive, whose friction, inertia and speed differ
 coloured noise is added, four orders are tested together, and alarms are counted. The 95 % interval is that of a binomial count.
 
 Bound: standard deviation of the amplitude found over sigma_i sqrt(2 / M).
+
+Tables: each limit that docs/detection-limit.md prints, computed again.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from math import sqrt
+from pathlib import Path
 
 import numpy as np
 import strainwave as sw
@@ -34,6 +38,10 @@ FACTORS = (0.8, 1.0, 1.2)  # of the planned limit
 ORDERS = (1.0, 2.0, 4.0, 6.28)
 COLOURS = ("white", "first order", "pink", "brown below 2 Hz")
 BLOCK = 500  # draws at once
+PAGE = Path(__file__).parents[1] / "docs" / "detection-limit.md"
+PAGE_RECORD = {"speed": 10.0, "duration": 20.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}  # of its first example
+PAGE_LOAD = 20.0  # N.m, if a table does not have another one
+PAGE_HEADS = {"load [N·m]": "load_torque", "speed of the input [rad/s]": "speed", "duration [s]": "duration"}
 
 
 @dataclass(frozen=True)
@@ -188,6 +196,59 @@ def bound_ratio(case: Case, draws: int, level: float = 5.0) -> tuple[float, floa
     return float(np.std(np.hypot(*waves))) / bound, float(np.mean(reported)) / bound
 
 
+@dataclass(frozen=True)
+class PrintedLimit:
+    """A limit in a table of the page.
+
+    Attributes:
+        varied: argument of the detection limit that the table varies
+        value: of this argument
+        load_torque: N.m
+        arcminutes: as printed
+        half_place: half of the last place that is printed [arcmin]
+        insensitive: True if the page adds that
+    """
+
+    varied: str
+    value: float
+    load_torque: float
+    arcminutes: float
+    half_place: float
+    insensitive: bool
+
+    def computed(self) -> DetectionLimit:
+        """Return the limit of the drive of the page's first example."""
+        example = re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+        assert example is not None, f"{PAGE.name} has no example"
+        names = dict[str, object]()
+        exec(example[1].partition("record =")[0], names)
+        drive = names["drive"]
+        assert isinstance(drive, sw.Drive), f"{PAGE.name} makes no drive"
+        return detection_limit(drive, **{**PAGE_RECORD, "load_torque": self.load_torque, self.varied: self.value})
+
+    def is_met_by(self, found: DetectionLimit) -> bool:
+        """True if the limit rounds to the printed one."""
+        is_close = abs(found.arcminutes - self.arcminutes) <= self.half_place
+        return is_close and found.insensitive == self.insensitive
+
+
+def printed_limits() -> Iterator[PrintedLimit]:
+    """Yield the limits in the tables of the page."""
+    varied, values = "", list[float]()
+    for line in PAGE.read_text(encoding="utf-8").splitlines():
+        head, *cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if head in PAGE_HEADS:
+            varied, values = PAGE_HEADS[head], [float(cell) for cell in cells]
+        elif varied and head.startswith("limit"):
+            for value, cell in zip(values, cells, strict=True):
+                number, _, word = cell.partition(" ")
+                half = 0.5 * 10.0 ** -len(number.partition(".")[2])
+                load = value if varied == "load_torque" else 0.0 if head == "limit without load" else PAGE_LOAD
+                yield PrintedLimit(varied, value, load, float(number), half, word == "(insensitive)")
+        elif not line.startswith("|"):
+            varied = ""
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--draws", type=int, default=2000, help="of noise for each amplitude (2000)")
@@ -214,6 +275,15 @@ def main() -> int:
         spread, reported = bound_ratio(case, wanted.draws)
         failures += not (0.8 <= spread <= 1.2 and 0.8 <= reported <= 1.2)
         print(f"{case.name:24} {spread:6.3f} {reported:6.3f}", flush=True)
+    print(f"\ntables of {PAGE.name}: printed and computed limits in arc minutes")
+    for printed in printed_limits():
+        found = printed.computed()
+        failures += not printed.is_met_by(found)
+        print(
+            f"{printed.varied:12} {printed.value:5g}, {printed.load_torque:4g} N.m: {printed.arcminutes:8g} "
+            f"{found.arcminutes:10.5f}{' insensitive' if found.insensitive else ''}",
+            flush=True,
+        )
     print(f"\nfalse alarms in any of {len(ORDERS)} orders, {wanted.healthy} healthy runs of 50 simulated units")
     for colour in COLOURS:
         for rate in (1e-3, 1e-2, 5e-2):

@@ -12,7 +12,15 @@ from strainwave.diagnose.detection import needed_signal_to_noise
 from strainwave.diagnose.detection_limit import ARCMINUTE, COLUMN, DetectionLimit, detection_limit
 from strainwave.diagnose.order_lines import order_lines
 
-from tests.detection_limits import Case, bound_ratio, cases, measured_limit, signature_drive
+from tests.detection_limits import (
+    Case,
+    PrintedLimit,
+    bound_ratio,
+    cases,
+    measured_limit,
+    printed_limits,
+    signature_drive,
+)
 
 RECORD = {"speed": 10.0, "duration": 10.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}
 
@@ -52,6 +60,32 @@ def test_an_unloaded_slow_run_is_insensitive_and_a_loaded_one_is_not() -> None:
     assert "No alarm means nothing" in unloaded.remarks[0]
     assert not loaded.insensitive
     assert unloaded.amplitude > 100.0 * loaded.amplitude
+
+
+def test_a_load_that_turns_the_drive_back_is_refused() -> None:
+    with pytest.raises(
+        ValueError, match=r"turns its input by -.* rad in 20 s, loaded with 1e\+06 N.m; speed = 10 rad/s makes 200"
+    ):
+        planned(1e6)
+
+
+def test_the_page_has_the_tables_of_load_speed_and_duration() -> None:
+    varied = [each.varied for each in printed_limits()]
+    assert [varied.count(name) for name in ("load_torque", "speed", "duration")] == [5, 10, 4]
+
+
+@pytest.mark.parametrize(
+    "printed",  # those that take the least time; `python -m tests.detection_limits` computes all
+    [
+        each
+        for each in printed_limits()
+        if (each.varied, each.value) in (("load_torque", 0.0), ("load_torque", 40.0), ("speed", 50.0), ("duration", 5.0))
+    ],
+    ids=lambda each: f"{each.varied} {each.value:g}, {each.load_torque:g} N.m",
+)
+def test_a_limit_is_the_one_that_the_page_prints(printed: PrintedLimit) -> None:
+    found = printed.computed()
+    assert printed.is_met_by(found), found.arcminutes
 
 
 @pytest.mark.parametrize("name", ["space-pointing-joint", "position-drive", "two-inertia-gear, PI"])
