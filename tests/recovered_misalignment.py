@@ -2,13 +2,15 @@
 
 Each unit has other friction, stiffness, inertia, load and torque constant, drawn by what the set knows of them, other noise and
 another misalignment: an eccentricity, a tilt, or both. The diagnosis has the numbers of the nominal drive and their spreads.
+With `--spread 2` the units scatter twice as far as the set states, and the diagnosis assumes as much. With `--assumed 1` it
+assumes what the set states.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ from strainwave.diagnose.geometry import Geometry, PossibleDrives, drawn_changes
 from strainwave.diagnose.recovery import Recovered
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.tuning.drawn import PARTS, spread_of
 
 UNITS, SEED = 200, 1000  # the diagnosis draws its drives with another seed
 NOISE = 0.02  # A, root mean square of the noise of the recorded current, besides that in the loops
@@ -62,16 +65,41 @@ class Unit:
         )
 
 
+def widened(gear_set: GearSet, factor: float) -> GearSet:
+    """Return a set whose numbers have a larger spread."""
+    sources = {
+        path: replace(entry, spread=factor * spread_of(gear_set, part))
+        for part in PARTS
+        for path, entry in gear_set.sources.items()
+        if path == part or path.startswith(f"{part}.")
+    }
+    return gear_set.replace(sources={**gear_set.sources, **sources})
+
+
 def units(
-    gear_set: GearSet, ramp: ActuatorRamp, count: int, combine: str = "max", drives: PossibleDrives | None = None
+    gear_set: GearSet,
+    ramp: ActuatorRamp,
+    count: int,
+    combine: str = "max",
+    drives: PossibleDrives | None = None,
+    seed: int = SEED,
 ) -> Iterator[Unit]:
-    """Yield drawn units, each with a misalignment that the diagnosis does not know."""
+    """Yield drawn units, each with a misalignment that the diagnosis does not know.
+
+    Args:
+        gear_set: by whose spreads the units are drawn
+        ramp: the run, of the nominal drive
+        count: number of units
+        combine: how the lobes share
+        drives: that the diagnosis takes for possible; by default those of the set
+        seed: of all that is drawn
+    """
     known = drives or PossibleDrives.of(gear_set, ramp)
-    chance = np.random.default_rng(SEED)
+    chance = np.random.default_rng(seed)
     law, _ = geometry(ramp.drive)
     law = law.replace(combine=combine)
     seeds = noises(ramp.drive, "seed")
-    for unit, change in enumerate(drawn_changes(gear_set, ramp, count, SEED)):
+    for unit, change in enumerate(drawn_changes(gear_set, ramp, count, seed)):
         kind = KINDS[unit % len(KINDS)]
         wrong = misaligned(law, kind, chance)
         own = {path: float(2 + unit * len(seeds) + place) for place, path in enumerate(seeds)}
@@ -127,10 +155,16 @@ def main() -> None:
     parser.add_argument("--drive", default="tilt-actuator-lumped")
     parser.add_argument("--stroke", type=float, default=90.0, help="deg")
     parser.add_argument("--time", type=float, default=5.0, help="s")
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--spread", type=float, default=1.0, help="of the units, over that of the set (1)")
+    parser.add_argument(
+        "--assumed", type=float, help="spread that the diagnosis assumes, over that of the set; that of the units"
+    )
     asked = parser.parse_args()
     gear_set = GearSet.read(asked.drive)
     ramp = ActuatorRamp.of(gear_set.drive, float(np.radians(asked.stroke)), asked.time)
-    found = list(units(gear_set, ramp, asked.units))
+    drives = PossibleDrives.of(widened(gear_set, asked.spread if asked.assumed is None else asked.assumed), ramp)
+    found = list(units(widened(gear_set, asked.spread), ramp, asked.units, drives=drives, seed=asked.seed))
     print(table(found))
     print(found[0].result.words())
 
