@@ -40,7 +40,7 @@ class DatasetFolder:
 
     def done(self) -> int:
         """Return how many shards are complete."""
-        with suppress(FileNotFoundError):
+        with suppress(FileNotFoundError, NotADirectoryError):  # `begin` refuses a file in place of the folder
             return sum(entry.name.startswith("shard-") for entry in os.scandir(self.path / "shards"))
         return 0
 

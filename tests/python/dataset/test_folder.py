@@ -138,6 +138,13 @@ def test_another_plan_is_refused_in_the_same_folder(whole: tuple[Path, Path], tm
     assert hashes(whole[1]) == before
 
 
+def test_a_file_in_place_of_the_folder_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "data").write_text("mine")
+    with pytest.raises(FileExistsError, match="data is a file where a folder is to be made; give another name"):
+        make(write(tmp_path, SMALL), tmp_path / "data")
+    assert (tmp_path / "data").read_text() == "mine"
+
+
 def test_a_folder_with_other_files_is_refused(tmp_path: Path) -> None:
     plan = write(tmp_path, SMALL)
     (tmp_path / "other").mkdir()
