@@ -1,11 +1,14 @@
-"""Builds the documentation: the pages of this folder, and a theory page for each family of models from its own words.
+"""Builds the documentation: the pages of this folder, pictures of examples, and a theory page for each family of models.
 
 python docs/build.py FOLDER
 """
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -15,6 +18,7 @@ from sphinx.cmd.build import main as sphinx
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 SOURCE = ROOT / "build" / "docs"
+SHOWN = re.compile(r"\]\(drawn/(\d\d_\w+)/\w+\.png\)")  # a picture that an example draws
 
 
 def gather() -> None:
@@ -25,6 +29,17 @@ def gather() -> None:
         text = (ROOT / page).read_text(encoding="utf-8")
         (SOURCE / page.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
     theory.write(SOURCE / "theory")
+    draw()
+
+
+def draw() -> None:
+    """Run each example whose picture a page shows, in the folder `drawn/` and its name."""
+    pages = [page.read_text(encoding="utf-8") for page in SOURCE.glob("*.md")]
+    for name in sorted({name for page in pages for name in SHOWN.findall(page)}):
+        folder = SOURCE / "drawn" / name
+        folder.mkdir(parents=True)
+        example = [sys.executable, str(ROOT / "examples" / f"{name}.py")]
+        subprocess.run(example, cwd=folder, env=os.environ | {"MPLBACKEND": "agg"}, stdout=subprocess.DEVNULL, check=True)
 
 
 def main(out: str) -> int:

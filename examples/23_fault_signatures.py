@@ -1,17 +1,17 @@
 """Signatures of faults: the signal that each fault of the package changes, over its severity, in a joint of the catalogue.
 
-Dashed is the healthy joint; grey is what noise and sensors hide. Look at the severity at which a curve leaves the grey band,
-and at the first misalignment: its order 2 is against that of the healthy gear, so that the line falls at first.
+Dashed is the healthy joint, grey what noise and sensors hide. Look at the severity at which a curve leaves the grey band.
 """
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
 from strainwave import fault
 
-speed, load, noise, rate = 25.0, 40.0, 0.05, 1000.0  # rad/s of the input, N.m at the output, A rms of a sample, samples per s
+speed, load, noise, rate = 25.0, 40.0, 0.05, 1000.0  # rad/s of the input, N.m at the output, A of a sample, samples per s
 loops = {"position_gain": 20.0, "speed_proportional": 1.5, "speed_integral": 30.0, "speed_feedforward": 1.0}
 inner = {"current_proportional": 2.0, "current_integral": 1000.0, "current_limit": 40.0, "voltage_limit": 27.0}
 joint = sw.Drive(
@@ -23,7 +23,7 @@ joint = sw.Drive(
 )
 LINE, MEAN, VOLTAGE, REST, TWIST = "current [mA]", "mean current [A]", "voltage / current [Ω]", "offset [′]", "twist [′]"
 severities = [0.0, 0.25, 0.5, 1.0]
-faults = {  # the fault at severity 1, its signal, the orders of a line, and the turns of the input in a record
+faults: dict[str, tuple[Any, str, tuple[float, ...], int]] = {  # signal, orders of a line, turns recorded
     "misalignment, 30 µm": (fault.Misalignment(housing_direction=np.pi / 4.0), LINE, (2.0, 4.0), 12),
     "misalignment, 0.43°": (fault.Misalignment(housing_eccentricity=0.0, housing_tilt_x=7.5e-3), LINE, (2.0, 4.0), 12),
     "tooth wear, wave of 0.5′": (fault.ToothWear(play=0.0), LINE, (2.02, 2.0), 50),

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from scipy import signal
+from strainwave import _core
 
 ROOT = Path(__file__).resolve().parents[2] / "examples"
 SCRIPTS = sorted(ROOT.glob("*.py"))
@@ -451,16 +452,53 @@ def test_friction_by_the_measured_motion_creeps_where_others_stick(gallery: Call
         assert (rows[np.array(speeds) > 1.25 * critical, 0] == 0.0).all()
 
 
-def test_lines_of_faults_grow_with_the_severity_to_their_closed_forms(gallery: Callable[[str], dict[str, Any]]) -> None:
-    """Order n of an error A shows T n A / K_t, here with the waves 4 e_1 / (3 pi) and 4 e_1 / (15 pi) of a misalignment."""
+def table_of(page: str, columns: int) -> list[list[str]]:
+    """Return the rows of all tables of a page that have so many columns."""
+    text = (ROOT.parent / "docs" / page).read_text(encoding="utf-8")
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
+    return [row for row in rows if len(row) == columns]
+
+
+def test_the_page_of_signatures_has_the_numbers_of_its_example(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Each number of the table within 2 % of the example, or half of its last digit (0.05 mA, 0.005 of a severity)."""
     found = gallery("23")
-    per_displacement = np.tan(np.radians(20.0)) / 25e-3  # rad/m
-    amplitudes = {
-        ("misalignment", 2.0): 20.0 * 2.0 * per_displacement * 4.0 * 3e-5 / (3.0 * np.pi) / 0.05,
-        ("misalignment", 4.0): 20.0 * 4.0 * per_displacement * 4.0 * 3e-5 / (15.0 * np.pi) / 0.05,
-        ("worn teeth", 2.02): 20.0 * 2.02 * 3e-4 / 0.05,
-    }
-    for line, full in amplitudes.items():
-        assert found["found"][line] == pytest.approx(full * found["severities"], rel=0.02, abs=1e-5)
-    for line, measured in found["found"].items():
-        assert measured == pytest.approx(measured[-1] * found["severities"], rel=0.03, abs=1e-5), line
+    expected = []
+    for name, (_, measured, orders, turns) in found["faults"].items():
+        what = measured.partition(" [")[0]
+        floor = found["hidden"].get(measured, found["highest"] / np.sqrt(max(turns, 1)))
+        for order, values in zip(orders or [None], found["found"][name].T, strict=True):
+            change = np.abs(values - values[0])
+            seen = next((k for k in range(1, 4) if change[k] > floor), None)  # a line between two severities of the example
+            share = None if seen is None else (floor - change[seen - 1]) / (change[seen] - change[seen - 1])
+            severity = None if seen is None or share is None else np.interp(seen - 1 + share, range(4), found["severities"])
+            expected.append((name, f"{what}, order {order:.4g}" if order else what, values[0], values[-1], severity))
+    rows = [row for row in table_of("fault-signatures.md", 5) if row[0] in found["faults"] and "none" not in row[1]]
+    assert [(row[0], row[1]) for row in rows] == [(name, what) for name, what, *_ in expected]
+    for (_, _, healthy, faulty, shown), (name, what, *numbers, severity) in zip(rows, expected, strict=True):
+        for text, number in zip((healthy, faulty), numbers, strict=True):
+            assert float(text.split()[0]) == pytest.approx(number, rel=0.02, abs=0.05 if " mA" in text else 1e-6), (name, what)
+        assert shown == "does not change" if severity is None else float(shown) == pytest.approx(severity, abs=0.006), name
+
+
+def test_every_fault_of_the_package_has_a_signature(gallery: Callable[[str], dict[str, Any]]) -> None:
+    shown = {type(each).__name__ for each, *_ in gallery("23")["faults"].values()}
+    assert shown == {model.__name__ for model in _core.fault_families["fault"].values()}
+
+
+def test_lines_of_faults_have_their_closed_forms(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Order n of an error shows T n A / K_t. A bearing shows 0.2 of the friction at the input."""
+    found, constant = gallery("23"), 1.5 * 4 * 0.01
+    assert found["found"]["misalignment, 30 µm"][-1, 1] == pytest.approx(40e3 * 4.0 * 3.707e-5 / constant, rel=0.06)
+    assert found["found"]["tooth wear, wave of 0.5′"][-1, 0] == pytest.approx(40e3 * 2.02 * 1.5e-4 / constant, rel=0.06)
+    friction = 0.09005 + 25.0 * 6.821e-4
+    assert found["found"]["bearing, 20 % of the friction"][-1, 0] == pytest.approx(1e3 * 0.2 * friction / constant, rel=0.03)
+    for name in ("tooth wear, wave of 0.5′", "bearing, 20 % of the friction", "cogging, 5 mN·m"):
+        rise = found["found"][name][:, 0] - found["found"][name][0, 0]
+        assert rise == pytest.approx(rise[-1] * np.array(found["severities"]), rel=0.03, abs=0.5), name
+
+
+def test_spectra_have_the_orders_of_their_faults(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Lines above 1.5 times what noise reaches, besides order 2 of the healthy gear."""
+    found = gallery("24")
+    lines = [[round(float(found["order"][k]), 2) for k in peaks] for peaks in found["peaks"].values()]
+    assert lines == [[2.0, 4.0, 6.0, 8.0], [2.0, 2.02], [2.0, 2.02, 4.04, 6.06, 8.08], [2.0, 10.41]]
