@@ -4,11 +4,11 @@ Units are drawn from what the catalogue leaves open of a CSG-25-100: stiffness, 
 and torque constant. Each has its own baseline of six days; friction and load differ from day to day. Three faults grow in each
 unit: a misalignment, a crack and a bearing. Load, noise and length of the record vary.
 
-Detectors: the comparison of `strainwave diagnose` with its own stated false-alarm rate, at the orders that it names without a
-search, the bearing asked for; and two simple ones, the relative change of the rms of the current, and of its rms without the
-mean. Their thresholds are those that one in a thousand healthy records of the training units exceeds under the training
-conditions. Reported are records of other units, under the training conditions and under others. Intervals are Wilson's, of
-95 %. Each unit has each fault once.
+Detectors: the comparison of `strainwave diagnose` with its own stated false-alarm rate, at the orders that it names and those
+of a crack and of the bearing, which are asked for; under the first condition also the whole diagnosis, which searches for lines
+itself; and two simple ones, the relative change of the rms of the current, and of its rms without the mean. Thresholds of these
+are what one in a thousand healthy records of the training units exceeds under the training conditions. Reported are records of
+other units, under the training conditions and under others. Intervals are Wilson's, of 95 %. Each unit has each fault once.
 
 `--out FOLDER` writes `detection.png` and `detection.json` there.
 """
@@ -33,7 +33,7 @@ import strainwave as sw  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 from strainwave.dataset.faults import changes, prepared  # noqa: E402
 from strainwave.diagnose.baseline import Baseline, baseline_of, compared  # noqa: E402
-from strainwave.diagnose.diagnosis import Question, named_orders  # noqa: E402
+from strainwave.diagnose.diagnosis import Question, diagnosed, named_orders  # noqa: E402
 from strainwave.diagnose.refusals import JointRecording, usable  # noqa: E402
 from strainwave.diagnose.replicates import joint_motion  # noqa: E402
 from strainwave.parameters import every  # noqa: E402
@@ -43,13 +43,14 @@ Array = NDArray[np.float64]
 
 FALSE_ALARM = 1e-3
 RATIO = 100.0
-BEARING_ORDER = 10.41227
+ASKED = (6.06, 8.08, 10.41227)  # orders of a crack, besides those that are named, and of the bearing
 RUN_IN, LONGEST = 1.5, 16.0  # s before a record, and of the longest one
 STEP, SAMPLE = 5e-4, 4e-3  # s, of the simulation and of a record
 BASELINE_DAYS, HEALTHY_DAYS, TRAINING_DAYS = 6, 5, 25
 FRICTION_BY_DAY, LOAD_BY_DAY, MOTOR_INERTIA = 0.1, 0.05, 0.1  # relative ranges, either way
 LOAD_PATHS = ("load.angle[0]", "load.angle[1]", "load.held_torque[0]", "load.held_torque[1]")
 FRICTION_PATHS = tuple(f"gear.friction_input.law.{name}" for name in ("coulomb", "breakaway", "viscous"))
+SEARCH = "diagnose, nothing asked"
 DETECTORS = ("diagnose", "rms without mean", "rms")
 FAULTS: Mapping[str, tuple[Any, tuple[float, ...]]] = {
     "misalignment": (sw.fault.Misalignment(), (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)),
@@ -136,7 +137,7 @@ class Joint:
         whole = gear_set()
         faults = [each for each, _ in FAULTS.values()]
         self.drive = prepared(whole.drive, faults)
-        self.question = Question(whole, ratio=RATIO, orders=(BEARING_ORDER,), false_alarm=FALSE_ALARM)
+        self.question = Question(whole, ratio=RATIO, orders=ASKED, false_alarm=FALSE_ALARM)
         self.chance = np.random.default_rng(seed)
         drawn = {path: values for path, values in drawn_gears(whole, units, seed).items() if path not in LOAD_PATHS}
         drawn["motor.inertia"] = 1e-4 * (1.0 + MOTOR_INERTIA * self.chance.uniform(-1.0, 1.0, units))
@@ -208,6 +209,12 @@ class Unit:
         ripple, rms = float(np.std(current)) / self.ripple, float(np.sqrt(np.mean(current**2))) / self.rms
         return bool(comparison.alarms), abs(ripple - 1.0) > thresholds[0], abs(rms - 1.0) > thresholds[1]
 
+    def searched(self, records: Sequence[tuple[Array, Array]]) -> list[bool]:
+        """Return the alarms of the whole diagnosis, which searches for lines and is asked for no order."""
+        own = [replace(self.recording(*self.noisy(record)), name=f"record {day}") for day, record in enumerate(records)]
+        found = diagnosed(own, replace(self.joint.question, orders=()), baseline=self.recorded)
+        return [run.verdict == "changed" for run in found.runs]
+
 
 def trained(units: int, cases: Sequence[Case], seed: int) -> dict[tuple[float, float], tuple[float, float]]:
     """Return the thresholds of the simple detectors for each noise and length, by units and conditions of the training."""
@@ -260,21 +267,24 @@ def results(
         records = [([next(each) for _ in range(BASELINE_DAYS)], [next(each) for _ in labels]) for _ in range(units)]
         for case in (case for case in cases if case.condition == condition):
             alarms: dict[tuple[str, float], list[tuple[bool, bool, bool]]] = {label: [] for label in labels}
-            left_out = 0
+            left_out, searches = 0, list[list[bool]]()
             for baseline, own in records:
                 unit = Unit(case, baseline, joint, joint.chance)
+                searches += [unit.searched(own)] if case == BASE else []
                 for label, record in zip(labels, own, strict=True):
                     judged = unit.judged(record, thresholds[case.noise, case.length])
                     left_out += judged is None
                     alarms[label].append(judged or (False, False, False))
-            yield Result(
-                case,
-                {
-                    label: {name: Count(sum(row[k] for row in rows), len(rows)) for k, name in enumerate(DETECTORS)}
-                    for label, rows in alarms.items()
-                },
-                left_out,
-            )
+            found = {
+                label: {name: Count(sum(row[k] for row in rows), len(rows)) for k, name in enumerate(DETECTORS)}
+                for label, rows in alarms.items()
+            }
+            if searches:
+                for label, counts in found.items():
+                    places = [place for place, each in enumerate(labels) if each == label]
+                    alarms_found = [row[place] for row in searches for place in places]
+                    counts[SEARCH] = Count(sum(alarms_found), len(alarms_found))
+            yield Result(case, found, left_out)
 
 
 def severity_for(result: Result, fault: str, detector: str, probability: float = 0.9) -> float:
@@ -330,14 +340,14 @@ def table(found: Sequence[Result]) -> str:
             sizes = [severity_for(result, fault, each) for each in DETECTORS]
             cells = [f"> {severities[-1]:g}" if np.isinf(each) else f"{each:.2g}" for each in sizes]
             lines.append(f"| {fault} | {result.case.label} | {' | '.join(cells)} |")
-    lines += ["", "| fault | severity | " + " | ".join(f"probability: {name}" for name in DETECTORS) + " |"]
-    lines.append("|---|---|" + "---|" * len(DETECTORS))
+    lines += ["", "| fault | severity | " + " | ".join(f"probability: {name}" for name in (*DETECTORS, SEARCH)) + " |"]
+    lines.append("|---|---|" + "---|" * (len(DETECTORS) + 1))
     base = next(each for each in found if each.case == BASE)
-    for fault, (_, severities) in FAULTS.items():
+    for fault, severities in {"": (0.0,), **{name: each for name, (_, each) in FAULTS.items()}}.items():
         for severity in severities:
             counts = base.found[fault, severity]
             cells = [f"{each.share:.2f} ({each.interval[0]:.2f} to {each.interval[1]:.2f})" for each in counts.values()]
-            lines.append(f"| {fault} | {severity:g} | {' | '.join(cells)} |")
+            lines.append(f"| {fault or 'healthy'} | {severity:g} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
@@ -361,7 +371,7 @@ def draw(found: Sequence[Result], folder: Path) -> None:
                 }
                 for detector, style in styles.items():
                     counts = [result.found[fault, each][detector] for each in severities]
-                    if detector == "diagnose":
+                    if detector == "diagnose" and sweep == "condition":
                         low, high = np.array([each.interval for each in counts]).T
                         axes.fill_between(severities, low, high, color=f"C{number}", alpha=0.15, lw=0)
                     name = label.get(sweep, f"held out: units{', condition' * case.is_held_out}")
@@ -369,23 +379,29 @@ def draw(found: Sequence[Result], folder: Path) -> None:
                         severities, [each.share for each in counts], style, color=f"C{number}", marker=".",
                         label=name if detector == "diagnose" else None,
                     )  # fmt: skip
+                if sweep == "condition" and SEARCH in result.found[fault, severities[0]]:
+                    shares = [result.found[fault, each][SEARCH].share for each in severities]
+                    axes.semilogx(severities, shares, color="0.3", marker="x", label=SEARCH.partition(", ")[2])
                 if fault == "misalignment":
                     axes.axvline(planned(case), color=f"C{number}", lw=1.0, ls="-.")
             axes.set(title=f"{fault}, by {sweep}", xlabel="severity", xlim=(severities[0], severities[-1]), ylim=(-0.02, 1.02))
+            axes.set_xticks(severities, [f"{each:g}" for each in severities])
+            axes.minorticks_off()
             axes.grid(alpha=0.3)
             axes.legend(fontsize="small", loc="upper left")
         row[0].set_ylabel("detection probability")
-    figure.suptitle("solid: diagnose, with interval of 95 %; dashed: rms without mean; dotted: rms; dash-dotted: planned limit")
+    figure.suptitle("solid: diagnose (band: 95 %); dashed: rms without mean; dotted: rms; dash-dotted: planned limit")
     figure.savefig(folder / "detection.png", dpi=80)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--units", type=int, default=40, help="units of the training, and as many that are reported (40)")
+    parser.add_argument("--units", type=int, default=20, help="units that are reported (20)")
+    parser.add_argument("--training", type=int, default=40, help="units of the training (40)")
     parser.add_argument("--out", type=Path, help="folder of the picture and of all counts")
     wanted = parser.parse_args()
     begin = time.process_time()
-    thresholds = trained(wanted.units, CASES, seed=1)
+    thresholds = trained(wanted.training, CASES, seed=1)
     found = []
     for result in results(wanted.units, CASES, thresholds, seed=2):
         found.append(result)
