@@ -22,6 +22,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -180,8 +181,7 @@ class Unit:
         noisy = [self.noisy(each) for each in baseline]
         self.rms = float(np.mean([np.sqrt(np.mean(current**2)) for _, current in noisy]))
         self.ripple = float(np.mean([np.std(current) for _, current in noisy]))
-        self.recorded = [self.recording(*each) for each in noisy]
-        self.healthy: Baseline | None = None
+        self.records = noisy
 
     def noisy(self, record: tuple[Array, Array]) -> tuple[Array, Array]:
         samples = round(self.case.length / SAMPLE)
@@ -199,15 +199,23 @@ class Unit:
 
     def judged(self, record: tuple[Array, Array], thresholds: Sequence[float]) -> tuple[bool, bool, bool] | None:
         """Return the alarm of each detector; None if the diagnosis compares nothing."""
-        if self.healthy is None:
-            orders = [each.order for each in named_orders(self.recorded[0], self.joint.question)]
-            self.healthy = baseline_of([joint_motion(each) for each in self.recorded], orders)
         angle, current = self.noisy(record)
         comparison = compared(self.healthy, joint_motion(self.recording(angle, current)), false_alarm=FALSE_ALARM)
         if not comparison.changes:
             return None
         ripple, rms = float(np.std(current)) / self.ripple, float(np.sqrt(np.mean(current**2))) / self.rms
         return bool(comparison.alarms), abs(ripple - 1.0) > thresholds[0], abs(rms - 1.0) > thresholds[1]
+
+    @cached_property
+    def recorded(self) -> list[JointRecording]:
+        """Recordings of the baseline."""
+        return [self.recording(*each) for each in self.records]
+
+    @cached_property
+    def healthy(self) -> Baseline:
+        """Replicates of the baseline at the orders that are named or asked for."""
+        orders = [each.order for each in named_orders(self.recorded[0], self.joint.question)]
+        return baseline_of([joint_motion(each) for each in self.recorded], orders)
 
     def searched(self, records: Sequence[tuple[Array, Array]]) -> list[bool]:
         """Return the alarms of the whole diagnosis, which searches for lines and is asked for no order."""
@@ -315,16 +323,18 @@ def planned(case: Case) -> float:
 
 def table(found: Sequence[Result]) -> str:
     """Return the tables as Markdown."""
-    lines = ["| held out | record | healthy records | " + " | ".join(f"alarms: {name}" for name in DETECTORS) + " |"]
-    lines.append("|---|---|---|" + "---|" * len(DETECTORS))
+    lines = [
+        "| held out | record | healthy records | " + " | ".join(f"alarms: {name}" for name in DETECTORS) + " | not compared |"
+    ]
+    lines.append("|---|---|---|" + "---|" * (len(DETECTORS) + 1))
     groups = {"units": [each for each in found if not each.case.is_held_out]}
     groups["units and condition"] = [each for each in found if each.case.is_held_out]
     for name, group in groups.items():
         for result in group:
             counts = result.found["", 0.0]
-            cells = [str(counts[each].alarms) for each in DETECTORS]
-            lines.append(f"| {name} | {result.case.label} | {counts[DETECTORS[0]].records} | {' | '.join(cells)} |")
-    for name, group in groups.items():
+            cells = [str(counts[DETECTORS[0]].records), *(str(counts[each].alarms) for each in DETECTORS)]
+            lines.append(f"| {name} | {result.case.label} | {' | '.join(cells)} | {result.not_compared} |")
+    for name, group in ((name, group) for name, group in groups.items() if group):
         total = {each: sum(result.found["", 0.0][each].alarms for result in group) for each in DETECTORS}
         count = sum(result.found["", 0.0][DETECTORS[0]].records for result in group)
         cells = [
@@ -332,7 +342,7 @@ def table(found: Sequence[Result]) -> str:
             f"{Count(total[each], count).interval[1]:.1e}"
             for each in DETECTORS
         ]
-        lines.append(f"| {name} | all: rate with interval | {count} | {' | '.join(cells)} |")
+        lines.append(f"| {name} | all: rate with interval | {count} | {' | '.join(cells)} | |")
     lines += ["", "| fault | record | " + " | ".join(f"severity for 0.9: {name}" for name in DETECTORS) + " |"]
     lines.append("|---|---|" + "---|" * len(DETECTORS))
     for fault, (_, severities) in FAULTS.items():
