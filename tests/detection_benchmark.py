@@ -406,12 +406,13 @@ def draw(found: Sequence[Result], folder: Path) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--units", type=int, default=20, help="units that are reported (20)")
-    parser.add_argument("--training", type=int, default=40, help="units of the training (40)")
+    parser.add_argument("--units", type=int, default=16, help="units that are reported (16)")
+    parser.add_argument("--training", type=int, default=20, help="units of the training (20)")
     parser.add_argument("--out", type=Path, help="folder of the picture and of all counts")
     wanted = parser.parse_args()
     begin = time.process_time()
     thresholds = trained(wanted.training, CASES, seed=1)
+    print(f"training: {time.process_time() - begin:.0f} s", file=sys.stderr)
     found = []
     for result in results(wanted.units, CASES, thresholds, seed=2):
         found.append(result)

@@ -502,3 +502,11 @@ def test_spectra_have_the_orders_of_their_faults(gallery: Callable[[str], dict[s
     found = gallery("24")
     lines = [[round(float(found["order"][k]), 2) for k in peaks] for peaks in found["peaks"].values()]
     assert lines == [[2.0, 4.0, 6.0, 8.0], [2.0, 2.02], [2.0, 2.02, 4.04, 6.06, 8.08], [2.0, 10.41]]
+
+
+def test_a_comparison_with_a_baseline_finds_a_crack_of_half_the_severity(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """In every unit, and no crack in a healthy one. The simple detector finds it too, with alarms of healthy units."""
+    compared, simple = (np.sum(alarms, axis=0) for alarms in gallery("25")["found"].values())
+    assert (compared[0], compared[-1]) == (0, 8)
+    assert simple[-1] == 8
+    assert simple[0] > 0  # as the page says: twelve days are too few for a threshold
