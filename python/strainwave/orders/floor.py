@@ -37,7 +37,7 @@ class Floor:
         return np.exp(np.interp(folded, self.place, np.log(self.level)))
 
     def whitened(self, series: Array) -> Array:
-        """Return the series over the root of its floor: white, of variance 1, if it is noise."""
+        """Return series over the root of the floor, shape (n,) or (n, k): white, of variance 1, if they are noise."""
         return self._divided(series, 0.5)
 
     def weighed(self, series: Array) -> Array:
@@ -45,10 +45,11 @@ class Floor:
         return self._divided(series, 1.0)
 
     def _divided(self, series: Array, power: float) -> Array:
+        from scipy.fft import irfft, rfft
+
         count = len(series)
-        frequency: Array = np.fft.rfftfreq(count).astype(np.float64)
-        spectrum = np.fft.rfft(series) / self.at(frequency) ** power
-        divided: Array = np.fft.irfft(spectrum, count)
+        level = self.at(np.fft.rfftfreq(count)) ** power
+        divided: Array = irfft(rfft(series, axis=0) / (level if series.ndim == 1 else level[:, None]), count, axis=0)
         return divided
 
 
