@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry, noises
-from strainwave.diagnose.geometry import Geometry, PossibleDrives, drawn_changes, misalignment_from_current
-from strainwave.diagnose.recovery import Recovered
+from strainwave.diagnose.geometry import Geometry, misalignment_from_current
+from strainwave.diagnose.inversion import MisalignmentEstimate
+from strainwave.diagnose.possible_drives import PossibleDrives, drawn_changes
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.tuning.drawn import PARTS, spread_of
@@ -45,7 +46,7 @@ class Unit:
         return size, (turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi
 
     @property
-    def end(self) -> Recovered:
+    def end(self) -> MisalignmentEstimate:
         """Estimate of the member of the class that the unit has: as a tilt, if it has nothing else."""
         return self.result.ends[self.kind == "tilt"]
 
@@ -59,10 +60,7 @@ class Unit:
     @property
     def inside_by_noise(self) -> bool:
         """True if truth is in the ellipse of the noise of the record alone, as if the nominal drive were right."""
-        best = self.result.estimate
-        return Recovered("current", best.combine, best.m, self.result.noise_covariance, best.degrees, best.misfit).contains(
-            self.m
-        )
+        return replace(self.result.estimate, covariance=self.result.noise_covariance).contains(self.m)
 
 
 def widened(gear_set: GearSet, factor: float) -> GearSet:

@@ -74,7 +74,7 @@ ELSEWHERE = {
         "analysis/steady.py": STEADY_RUNNING,
         "identification/dynamics/log.py": "harmonics found in a log are of this form",
         "studies/pure_error.py": "the assumed curve of the study of misalignment",
-        "diagnose/recovery.py": "an error of every order, by which a drive is probed",
+        "diagnose/inversion.py": "an error of every order, by which a drive is probed",
         "diagnose/detection_limit.py": "an error of one order, by which a drive is probed",
     },
     "Misalignment": {"diagnose/actuator_ramp.py": "the law that its study is about"},

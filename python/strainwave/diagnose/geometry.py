@@ -9,42 +9,41 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.diagnose.actuator_ramp import ERROR, RUN_IN, ActuatorRamp, geometry
-from strainwave.diagnose.reaction import CurrentPerError, current_per_error
-from strainwave.diagnose.recovery import (
+from strainwave.diagnose.actuator_ramp import RUN_IN, ActuatorRamp
+from strainwave.diagnose.detection import needed_signal_to_noise
+from strainwave.diagnose.inversion import (
     COMBINE,
     MICRON,
     ORDERS,
-    PROBE,
-    SMALL,
-    Recovered,
-    Seen,
-    beside,
+    MeasuredOrders,
+    MisalignmentEstimate,
+    covariance_by,
+    displaced,
     harmonics,
-    look,
-    none_and_probe,
-    placed,
-    solved,
+    inverted,
+    less_run,
+    measured_orders,
+    stacked,
+    tilted,
+    to_point,
 )
+from strainwave.diagnose.possible_drives import TREND_DEGREES, PossibleDrives
+from strainwave.diagnose.reaction import CurrentPerError
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
-from strainwave.orders.order_spectrum import order_amplitudes
-from strainwave.parameters import every
-from strainwave.tuning.drawn import drawn_gears
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SHARES_OF_TILT = 11  # between eccentricity alone and tilt alone, at which the region of m is evaluated
-POSSIBLE_DRIVES = 64  # drawn: determines a standard deviation to 9 %
-TREND_DEGREES = 2  # of the polynomial of the current over the angle, by which a record chooses among the drawn drives
 MAX_TREND_SIGMA = 4.0  # a trend further from those of the drawn drives contradicts the set
 REFERENCE_ERROR = np.radians(1.0 / 60.0)  # rad: amplitude of an error that a run has to show, or it is insensitive
 REFERENCE_ORDER = 2.0  # at which strain wave gears have most of their error
@@ -56,11 +55,7 @@ LOBES = {
     "max": "the lobe further out carries",
 }
 MAX_MISFIT = 8.0  # mean square of the residual of the orders over that of noise and model; by chance 1 record in 10^4 has more
-MIN_RELATIVE_ORDER = 0.01  # of the largest order of a law: smaller ones are those of rounding
-STARTS = ((1.0, 0.0), (1.1, 0.4), (1.1, -0.4), (1.6, 0.8), (1.6, -0.8))  # initial m over a first estimate, and c_x over m
-GOOD_MISFIT = 2.0  # no further start is tried
 PENALTY_PER_PARAMETER = 6.0  # of a sum of squares: chance alone gains as much in 1 of 70 records
-SMALL_TILT = 1e-5  # rad: by which the eccentricity per tilt is taken
 SILENT = "e2 and alpha alone change no harmonic and are not identifiable from this record"
 
 
@@ -126,10 +121,10 @@ class Geometry:
         doubts: contradictions between record and set
     """
 
-    estimate: Recovered
+    estimate: MisalignmentEstimate
     tilt_shift: Array
     noise_covariance: Array
-    others: Mapping[str, tuple[Recovered, Recovered]]
+    others: Mapping[str, tuple[MisalignmentEstimate, MisalignmentEstimate]]
     amplitude: float
     detected: bool
     sensitivity: Sensitivity
@@ -138,7 +133,7 @@ class Geometry:
     doubts: tuple[str, ...]
 
     @property
-    def ends(self) -> tuple[Recovered, Recovered]:
+    def ends(self) -> tuple[MisalignmentEstimate, MisalignmentEstimate]:
         """Estimates if all of m is an eccentricity, and if all of it is a tilt; every sum of both lies between."""
         return self.estimate, as_tilt(self.estimate, self.tilt_shift)
 
@@ -186,17 +181,20 @@ class Geometry:
         return " ".join(lines)
 
 
-def in_words(eccentricity: Recovered, tilt: Recovered, height: float) -> str:
+def in_words(eccentricity: MisalignmentEstimate, tilt: MisalignmentEstimate, height: float) -> str:
     """Return the geometries that make the same harmonics, from the estimates as an eccentricity and as a tilt."""
     size, turn = eccentricity.half_widths
     direction = float(np.degrees(eccentricity.direction)) % 360.0
+    has_offset = eccentricity.combine == "max"
     way = f"{_between(direction, float(np.degrees(turn)))} deg"
-    way += f" (or {(direction + 180.0) % 360.0:.0f} deg, which makes the same)"
+    way += f" (or {(direction + 180.0) % 360.0:.0f} deg{', with -c_x' if has_offset else ''}, which makes the same)"
     angles = (float(np.degrees(np.arctan2(value, height))) for value in (tilt.size, tilt.half_widths[0]))
+    c_x = eccentricity.c_x / MICRON, eccentricity.interval_factor * eccentricity.c_x_sigma / MICRON
+    generator = f", and the generator is c_x = {_between(*c_x)} um off its shaft along the major axis" if has_offset else ""
     return (
         f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of "
-        f"the housing of {_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta "
-        f"(95 %, if {LOBES[eccentricity.combine]})"
+        f"the housing of {_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta"
+        f"{generator} (95 %, if {LOBES[eccentricity.combine]})"
     )
 
 
@@ -207,130 +205,9 @@ def _between(value: float, half: float) -> str:
     return f"{value:.{places}f} ± {half:.{places}f}"
 
 
-def as_tilt(estimate: Recovered, tilt_shift: Array) -> Recovered:
+def as_tilt(estimate: MisalignmentEstimate, tilt_shift: Array) -> MisalignmentEstimate:
     """Return the estimate less the shift that a tilt makes in second order."""
     return replace(estimate, m=(estimate.m[0] - float(tilt_shift[0]), estimate.m[1] - float(tilt_shift[1])))
-
-
-@dataclass(frozen=True)
-class PossibleDrives:
-    """Drives that a set may be, in one run: current per error, current without error, and trend of the current.
-
-    Attributes:
-        ramp: run, with the nominal drive
-        straight: recording of the nominal drive without error, after the run-in
-        nominal: current per error of the nominal drive [A/rad], shape (4,)
-        gains: current per error of each drawn drive [A/rad], shape (members, 4)
-        ripple: orders of the current of each drawn drive without error, less those of the nominal one [A], shape (members, 4)
-        trends: polynomial of the current over the angle, of each drawn drive [A], shape (members, 3)
-        parts: current per error of the nominal drive, separated
-        law: `Misalignment` of the drive, straight
-    """
-
-    ramp: ActuatorRamp
-    straight: Recording
-    nominal: Complex
-    gains: Complex
-    ripple: Complex
-    trends: Array
-    parts: CurrentPerError
-    law: Any
-
-    @classmethod
-    def of(cls, gear_set: GearSet | Drive, ramp: ActuatorRamp, members: int = POSSIBLE_DRIVES, seed: int = 0) -> PossibleDrives:
-        """Run the nominal drive and drawn ones, each without error and with a small error of all orders.
-
-        Args:
-            gear_set: the drive with the sources and spreads of its numbers; those of a bare `Drive` count as assumed
-            ramp: the run, of that drive
-            members: how many drives are drawn
-            seed: of the draws
-        """
-        changes = drawn_changes(gear_set, ramp, members, seed)
-        both = [
-            {**change, **{f"{ERROR}.amplitude[{place}]": size for place in range(len(ORDERS))}}
-            for change in ({}, *changes)
-            for size in (0.0, PROBE)
-        ]
-        quiet = ramp.without_noise()
-        runs = quiet.with_error(none_and_probe()).many(both, ["current"])
-        settled = [quiet.settled(runs.member(place)) for place in range(len(both))]
-        lines = np.array([_lines(run) for run in settled])
-        none, probe = lines[0::2], lines[1::2]
-        gains = (probe - none) / PROBE
-        trends = np.array([trend(run)[0] for run in settled[2::2]])
-        law, _ = geometry(ramp.drive)
-        return cls(ramp, settled[0], gains[0], gains[1:], none[1:] - none[0], trends, current_per_error(ramp), law)
-
-    def like(self, recording: Recording) -> tuple[Complex, Complex, Array]:
-        """Return gains and ripple of the drives whose current has the trend of a record, and how far the trend is off.
-
-        Gain and ripple of each drawn drive are moved along their regression over the trend, to the trend of the record.
-
-        Returns:
-            Gains, shape (members, 4); ripple, shape (members, 4); distance of the trend of the record from the mean of the
-            drawn drives, in standard deviations, shape (3,).
-        """
-        here, sigma = trend(recording)
-        chance = np.random.default_rng(0)
-        seen = self.trends + sigma * chance.standard_normal(self.trends.shape)
-        scale = np.maximum(seen.std(axis=0, ddof=1), 1e-9)
-        off = (here - seen.mean(axis=0)) / scale
-        design = np.column_stack([np.ones(len(seen)), (seen - here) / scale])
-        relative = np.log(self.gains / self.nominal)
-        gains = self.nominal * np.exp(_moved(design, relative))
-        return gains, _moved(design, self.ripple), off
-
-    def gain_of_size(self, law: Any) -> Complex:
-        """Return the current per error of the nominal drive with a misalignment, over that with a small error, shape (4,).
-
-        The torque through the gear swings with the error, so that the reaction has a part with its square. Orders that the law
-        does not have are not changed.
-        """
-        quiet = self.ramp.without_noise().with_error(law)
-        run = quiet.settled(quiet.many([{f"{ERROR}.housing_eccentricity": law.housing_eccentricity}], ["current"]).member(0))
-        orders = harmonics(law)
-        has = np.abs(orders) > MIN_RELATIVE_ORDER * np.abs(orders).max()
-        ratio = (_lines(run) - _lines(self.straight)) / np.where(has, orders, 1.0) / self.nominal
-        return np.where(has, ratio, 1.0 + 0.0j)
-
-
-def _moved(design: Array, values: Complex) -> Complex:
-    """Return values of drawn drives, moved to where all columns of the design but the first are zero.
-
-    What is left of the regression is enlarged by the degrees of freedom that it took.
-    """
-    found, *_ = np.linalg.lstsq(design.astype(complex), values, rcond=1e-6)
-    rest = values - design @ found
-    members, terms = design.shape
-    moved: Complex = found[0] + rest * np.sqrt((members - 1.0) / (members - terms))
-    return moved
-
-
-def drawn_changes(gear_set: GearSet | Drive, ramp: ActuatorRamp, members: int, seed: int) -> list[dict[str, float]]:
-    """Return what each of some drives that a set may be changes of the nominal one; their kinematic errors are not drawn."""
-    whole = GearSet.of(gear_set, name="drive", source="assumed") if isinstance(gear_set, Drive) else gear_set
-    own = every(ramp.drive)
-    draws = {
-        path: values for path, values in drawn_gears(whole, members, seed).items() if not path.startswith(ERROR) and path in own
-    }
-    return [{path: float(values[member]) for path, values in draws.items()} for member in range(members)]
-
-
-def trend(recording: Recording) -> tuple[Array, Array]:
-    """Return the polynomial of the current over the angle, in Legendre's terms [A], and its standard deviations by noise.
-
-    The orders are fitted with it, so that none changes the polynomial of a record that has no whole number of revolutions.
-    """
-    angle, current = recording.values("input_angle", "rad"), recording.values("current", "A")
-    terms = np.polynomial.legendre.legvander(2.0 * (angle - angle.min()) / np.ptp(angle) - 1.0, TREND_DEGREES)
-    waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
-    design = np.column_stack([terms, *waves])
-    found: Any = np.linalg.lstsq(design, current, rcond=None)[0]
-    white = float(np.std(np.diff(current - design @ found)) / np.sqrt(2.0))
-    covariance: Any = np.linalg.inv(design.T @ design)
-    kept = TREND_DEGREES + 1
-    return found[:kept], white * np.sqrt(np.diag(covariance)[:kept])
 
 
 def ramp_of(recording: Recording, drive: Drive) -> ActuatorRamp:
@@ -377,17 +254,20 @@ def misalignment_from_current(
     begin = float(recording.values("time", "s")[0])
     settled = recording.between(begin + known.ramp.duration * RUN_IN, begin + known.ramp.duration)
     gains, ripple, off = known.like(settled)
-    seen = look(beside(settled, known.straight, "current"), "current")
-    masked = Seen(seen.at - ripple.mean(axis=0), np.hypot(seen.noise, _spread(ripple)), seen.degrees)
-    found = {combine: _estimate(masked, seen.noise, ripple, gains, known.law.replace(combine=combine)) for combine in COMBINE}
+    orders = measured_orders(less_run(settled, known.straight, "current"), "current")
+    measured = replace(orders, values=orders.values - ripple.mean(axis=0), noise=np.hypot(orders.noise, _spread(ripple)))
+    found = {
+        combine: _estimate(measured, orders.noise, ripple, gains, known.law.replace(combine=combine)) for combine in COMBINE
+    }
     teeth_part = 0.5 * float(known.law.major_radius - known.law.minor_radius)
     possible = {combine: each for combine, each in found.items() if each.estimate.size < teeth_part} or found
     best = min(possible, key=lambda combine: found[combine].penalised)
     limit = MAX_MISFIT_RATIO * max(found[best].estimate.misfit, 1.0)
     for combine in [each for each in possible if found[each].estimate.misfit < limit]:
         law = known.law.replace(combine=combine)
-        larger = gains * known.gain_of_size(placed(law, found[combine].estimate.m, found[combine].c_x))
-        found[combine] = possible[combine] = _estimate(masked, seen.noise, ripple, larger, law)
+        first = found[combine].estimate
+        larger = gains * known.gain_of_size(displaced(law, first.m, first.c_x))
+        found[combine] = possible[combine] = _estimate(measured, orders.noise, ripple, larger, law)
     others = {
         combine: (each.estimate, as_tilt(each.estimate, each.tilt_shift))
         for combine, each in possible.items()
@@ -398,9 +278,9 @@ def misalignment_from_current(
         found[best].tilt_shift,
         found[best].of_noise,
         others,
-        float(np.abs(masked.at).max()),
-        _detected(masked),
-        _sensitivity(masked, gains, known.parts, reference_error),
+        float(np.abs(measured.values).max()),
+        measured.false_alarm < FALSE_ALARM,
+        _sensitivity(measured, gains, known.parts, reference_error),
         known.parts,
         float(known.law.offset),
         (*_doubts(off), *_doubts_of_fit(found[best].estimate)),
@@ -409,8 +289,15 @@ def misalignment_from_current(
 
 @dataclass(frozen=True)
 class _Estimate:
-    estimate: Recovered
-    c_x: float
+    """Estimate of one way of sharing, with what its words need.
+
+    Attributes:
+        estimate: with the covariance of noise and model
+        tilt_shift: of m, if all of it is a tilt [m], shape (2,)
+        of_noise: covariance of m by noise alone [m^2], shape (2, 2)
+    """
+
+    estimate: MisalignmentEstimate
     tilt_shift: Array
     of_noise: Array
 
@@ -421,79 +308,27 @@ class _Estimate:
         return self.estimate.misfit * (2 * len(ORDERS) - parameters) + PENALTY_PER_PARAMETER * parameters
 
 
-def _estimate(masked: Seen, noise: Array, ripple: Complex, gains: Complex, law: Any) -> _Estimate:
+def _estimate(measured: MeasuredOrders, noise: Array, ripple: Complex, gains: Complex, law: Any) -> _Estimate:
     """Return m with the covariance of noise and model, the shift of a tilt, and the covariance of noise alone."""
     gain = np.exp(np.log(gains / gains[0]).mean(axis=0)) * gains[0]
-    model_noise = np.abs(masked.at) * _spread(gains / gain - 1.0)
-    weights = Seen(masked.at, np.hypot(masked.noise, model_noise), masked.degrees)
-    first = solved(masked.at / gain, weights, gain, "current", law)
-    point, misfit = _with_offset(first, masked.at / gain, weights.noise / np.abs(gain), law)
-    m, c_x = (float(point[0]), float(point[1])), float(point[2])
-    slopes = _slopes(law, point)
-    sigma = np.concatenate([weights.noise / np.abs(gain)] * 2)
-    to_m = (np.linalg.pinv(slopes / sigma[:, None]) / sigma)[:2]
-    of_noise: Array = (to_m * np.concatenate([noise / np.abs(gain)] * 2) ** 2) @ to_m.T
-    points = _stacked((masked.at + ripple.mean(axis=0) - ripple) / gains) @ to_m.T
+    model_noise = np.abs(measured.values) * _spread(gains / gain - 1.0)
+    error = replace(measured, noise=np.hypot(measured.noise, model_noise)).over(gain)
+    point, misfit = inverted(error, law, with_offset=True)
+    matrix = to_point(error, law, point)
+    of_noise = covariance_by(matrix, noise / np.abs(gain))
+    points = stacked((measured.values + ripple.mean(axis=0) - ripple) / gains) @ matrix.T
     members = len(gains)
     of_model: Array = np.cov(points.T) * (1.0 + 1.0 / members)
     degrees = members - 2 - TREND_DEGREES
-    if np.trace(of_noise) > np.trace(of_model):
-        degrees = min(degrees, masked.degrees)
-    shift: Array = to_m @ _stacked(harmonics(tilted(placed(law, (0.0, 0.0), c_x), m)) - harmonics(placed(law, m, c_x)))
-    estimate = Recovered("current", law.combine, m, of_noise + of_model, degrees, misfit)
-    return _Estimate(estimate, c_x, shift, of_noise)
-
-
-def _with_offset(first: Recovered, asked: Complex, sigma: Array, law: Any) -> tuple[Array, float]:
-    """Return m and the place c_x of the generator on its shaft [m], shape (3,), and the misfit.
-
-    Where the lobe further out carries, c_x beside m moves the error from orders 2 and 4 to orders 1 and 3. Else it is zero.
-    """
-    start = np.array([*first.m, 0.0])
-    if law.combine != "max":
-        return start, first.misfit
-    from scipy.optimize import least_squares
-
-    def gap(point: Array) -> Array:
-        return _stacked((_harmonics_at(law, MICRON * point) - asked) / sigma)
-
-    unit = max(first.size / MICRON, 0.1)
-    far = 0.4 * float(law.minor_radius) / MICRON
-    freedom = 2 * len(ORDERS) - 3
-    best: Any = None
-    for larger, share in STARTS:
-        begin = np.clip(np.array([*(larger * start[:2] / MICRON), share * larger * unit]), -0.9 * far, 0.9 * far)
-        fit: Any = least_squares(gap, begin, bounds=(-far, far), x_scale=unit)
-        best = fit if best is None or fit.cost < best.cost else best
-        if 2.0 * best.cost / freedom < GOOD_MISFIT:
-            break
-    return MICRON * best.x, 2.0 * float(best.cost) / freedom
-
-
-def _harmonics_at(law: Any, point: Array) -> Complex:
-    x, y, c_x = (float(each) for each in point)
-    return harmonics(placed(law, (x, y), c_x))
-
-
-def _slopes(law: Any, point: Array) -> Array:
-    """Return the slopes of all orders over m, and over c_x where the lobe further out carries, shape (8, 2) or (8, 3)."""
-    steps = SMALL * np.eye(3)[: 3 if law.combine == "max" else 2]
-    sides = [(_harmonics_at(law, point + step), _harmonics_at(law, point - step)) for step in steps]
-    return np.array([_stacked(after - before) / (2.0 * SMALL) for after, before in sides]).T
-
-
-def _stacked(values: Complex) -> Array:
-    """Return real parts, then imaginary parts, along the last axis."""
-    return np.concatenate([values.real, values.imag], axis=-1)
-
-
-def tilted(law: Any, m: tuple[float, float]) -> Any:
-    """Return the law with the tilt of the housing that is equivalent to m [m] in first order."""
-    names = ("housing_tilt_x", "housing_tilt_y")
-    straight = law.replace(housing_eccentricity=0.0, **dict.fromkeys(names, 0.0))
-    ways = np.array([straight.replace(**{name: SMALL_TILT}).eccentricity for name in names]).T / SMALL_TILT
-    angles = np.linalg.solve(ways, np.array(m))
-    return straight.replace(**dict(zip(names, angles.tolist(), strict=True)))
+    if np.trace(of_noise[:2, :2]) > np.trace(of_model[:2, :2]):
+        degrees = min(degrees, measured.degrees)
+    x, y, *offset = point.tolist()
+    bent = harmonics(tilted(displaced(law, (0.0, 0.0), *offset), (x, y))) - harmonics(displaced(law, (x, y), *offset))
+    shift: Array = matrix[:2] @ stacked(bent)
+    covariance = of_noise + of_model
+    own = {"c_x": offset[0], "c_x_sigma": float(np.sqrt(covariance[2, 2]))} if offset else {}
+    estimate = MisalignmentEstimate("current", law.combine, (x, y), covariance[:2, :2], degrees, misfit, **own)
+    return _Estimate(estimate, shift, of_noise[:2, :2])
 
 
 def _spread(values: Complex) -> Array:
@@ -501,35 +336,12 @@ def _spread(values: Complex) -> Array:
     return np.asarray(np.std(values, axis=0, ddof=1) / np.sqrt(2.0), dtype=float)
 
 
-def _detected(seen: Seen) -> bool:
-    """Return True if noise alone makes order lines as large with a probability below `FALSE_ALARM`."""
-    from scipy.stats import f
-
-    each = np.abs(seen.at) ** 2 / (2.0 * seen.noise**2)
-    return bool(each.max() > f.isf(FALSE_ALARM / len(ORDERS), 2, seen.degrees))
-
-
-def _sensitivity(masked: Seen, gains: Complex, parts: CurrentPerError, error: float) -> Sensitivity:
+def _sensitivity(measured: MeasuredOrders, gains: Complex, parts: CurrentPerError, error: float) -> Sensitivity:
     place = ORDERS.index(REFERENCE_ORDER)
     current = error * float(np.abs(gains[:, place].mean()))
-    resolved = least_amplitude() * float(masked.noise[place])
+    resolved = needed_signal_to_noise(DETECTION, FALSE_ALARM, inf) * float(measured.noise[place])
     per_torque = error * abs(complex(parts.per_torque[place]))
     return Sensitivity(error, REFERENCE_ORDER, current, resolved, parts.torque, resolved / per_torque)
-
-
-def least_amplitude() -> float:
-    """Return the amplitude that is detected with probability `DETECTION`, in standard deviations of an order line.
-
-    The size of a line of noise is that of Rayleigh, with a signal that of Rice.
-
-    >>> round(least_amplitude(), 2)
-    4.88
-    """
-    from scipy.optimize import brentq
-    from scipy.stats import ncx2
-
-    threshold = -2.0 * np.log(FALSE_ALARM)
-    return float(brentq(lambda amplitude: ncx2.sf(threshold, 2, amplitude**2) - DETECTION, 0.1, 20.0))
 
 
 def _doubts(off: Array) -> list[str]:
@@ -543,7 +355,7 @@ def _doubts(off: Array) -> list[str]:
     ]
 
 
-def _doubts_of_fit(estimate: Recovered) -> list[str]:
+def _doubts_of_fit(estimate: MisalignmentEstimate) -> list[str]:
     if estimate.misfit < MAX_MISFIT:
         return []
     return [
@@ -551,9 +363,3 @@ def _doubts_of_fit(estimate: Recovered) -> list[str]:
         f"{estimate.misfit:.3g} times that of noise and model. Errors of teeth, a ripple of friction or of the motor, or an e2 "
         "beside m explain such orders"
     ]
-
-
-def _lines(run: Recording) -> Complex:
-    found = order_amplitudes(run, "current", ORDERS)
-    values: Complex = found.amplitude * np.exp(1j * found.phase)
-    return values

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
-from strainwave.diagnose.recovery import ORDERS, PROBE, none_and_probe
+from strainwave.diagnose.actuator_ramp import ActuatorRamp
+from strainwave.diagnose.inversion import ORDERS, answer_per_error, runs_with_probe
 from strainwave.orders.order_spectrum import order_amplitudes
 
 Array = NDArray[np.float64]
@@ -156,18 +156,5 @@ def current_per_error(ramp: ActuatorRamp) -> CurrentPerError:
 
 def _gain_and_torque(ramp: ActuatorRamp) -> tuple[Complex, float]:
     """Return current per error at each order [A/rad], and the mean torque through the gear [N.m]."""
-    quiet = ramp.without_noise().with_error(none_and_probe())
-    changes = [{f"{ERROR}.amplitude[{place}]": size for place in range(len(ORDERS))} for size in (0.0, PROBE)]
-    runs = quiet.many(changes, ["current", "torque"])
-    straight, probed = (_phasors(quiet.settled(runs.member(place))) for place in (0, 1))
-    return (probed - straight) / PROBE, _mean(quiet.settled(runs.member(0)), "torque")
-
-
-def _phasors(run: Any) -> Complex:
-    found = order_amplitudes(run, "current", ORDERS)
-    values: Complex = found.amplitude * np.exp(1j * found.phase)
-    return values
-
-
-def _mean(run: Any, column: str) -> float:
-    return order_amplitudes(run, column, ORDERS).mean
+    ((straight, probed),) = runs_with_probe(ramp, [{}], ["current", "torque"])
+    return answer_per_error(straight, probed, "current"), order_amplitudes(straight, "torque", ORDERS).mean

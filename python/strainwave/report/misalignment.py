@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from strainwave.diagnose.actuator_ramp import INPUT, LOOPS, OUTPUT
-from strainwave.diagnose.recovery import COMBINE
+from strainwave.diagnose.inversion import COMBINE
 from strainwave.report import misalignment_drawings as drawings
 from strainwave.report import misalignment_figures as plots
 from strainwave.report.misalignment_claims import ARCMIN, Claim, arcmin, claims, frequency, microns, percent, silence

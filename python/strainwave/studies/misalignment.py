@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.diagnose.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp, geometry, in_series, noises
-from strainwave.diagnose.recovery import COMBINE, Model, Recovered, corrected, recover, refined
+from strainwave.diagnose.inversion import COMBINE, MisalignmentEstimate
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -26,6 +26,7 @@ from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 from strainwave.simulation.ensemble import Ensemble
 from strainwave.simulation.signals import outputs
 from strainwave.studies.pure_error import PureError, pure_error
+from strainwave.studies.recovery import Model, corrected, recover, refined
 
 Array = NDArray[np.float64]
 
@@ -123,8 +124,8 @@ class Recovery:
     column: str
     noise: float
     law: Any
-    first: Mapping[str, Recovered]
-    trials: tuple[Recovered, ...]
+    first: Mapping[str, MisalignmentEstimate]
+    trials: tuple[MisalignmentEstimate, ...]
 
     @property
     def m(self) -> tuple[float, float]:
@@ -133,7 +134,7 @@ class Recovery:
         return float(x), float(y)
 
     @property
-    def best(self) -> Recovered:
+    def best(self) -> MisalignmentEstimate:
         """What the first record tells, once it was refined."""
         return self.trials[0]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
-from strainwave.diagnose.recovery import COMBINE, MICRON, placed
+from strainwave.diagnose.inversion import COMBINE, MICRON, displaced
 from strainwave.files.recording import Recording
 
 Array = NDArray[np.float64]
@@ -103,7 +103,7 @@ def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:
 
     def model(point: Array) -> Array:
         c_x = MICRON * float(point[2]) if free == 3 else 0.0
-        errors: Array = placed(law, (MICRON * float(point[0]), MICRON * float(point[1])), c_x).error(angle)
+        errors: Array = displaced(law, (MICRON * float(point[0]), MICRON * float(point[1])), c_x).error(angle)
         return errors - turn_mean(angle, errors)
 
     def gap(point: Array) -> Array:
@@ -122,7 +122,7 @@ def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:
     variance = float(np.mean(curve**2))
     told = dict(zip(("m_x", "m_y", "c_x"), (MICRON * found).tolist(), strict=False))
     return ErrorFit(
-        law=placed(law, (told["m_x"], told["m_y"]), told.get("c_x", 0.0)),
+        law=displaced(law, (told["m_x"], told["m_y"]), told.get("c_x", 0.0)),
         told=told,
         curve=model(found),
         rms=float(np.sqrt(np.mean(rest**2))),

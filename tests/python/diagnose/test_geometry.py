@@ -9,15 +9,10 @@ import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
 from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
-from strainwave.diagnose.geometry import (
-    Geometry,
-    PossibleDrives,
-    least_amplitude,
-    misalignment_from_current,
-    ramp_of,
-    tilted,
-    trend,
-)
+from strainwave.diagnose.detection import needed_signal_to_noise
+from strainwave.diagnose.geometry import DETECTION, FALSE_ALARM, Geometry, misalignment_from_current, ramp_of
+from strainwave.diagnose.inversion import displaced, tilted
+from strainwave.diagnose.possible_drives import PossibleDrives, trend
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 
@@ -64,6 +59,19 @@ def test_how_the_lobes_share_follows_from_the_orders(combine: str, drives: Possi
     assert found.estimate.combine == combine
     assert found.contains(law.eccentricity)
     assert not found.contains((1.2 * law.eccentricity[0], law.eccentricity[1]))
+
+
+def test_the_place_of_the_generator_on_its_shaft_is_reported_with_its_interval(drives: PossibleDrives) -> None:
+    law = displaced(LAW.replace(combine="max"), (12e-6, 5e-6), 4e-6)
+    found = diagnosed(law, drives)
+    estimate = found.estimate
+    sign = np.sign(np.dot(estimate.m, (12e-6, 5e-6)))  # -m and -c_x make the same orders
+    half = estimate.interval_factor * estimate.c_x_sigma
+    assert sign * estimate.c_x == pytest.approx(4e-6, abs=half)
+    assert half < 1e-6
+    assert "the generator is c_x = " in found.words()
+    lone = diagnosed(LAW.replace(combine="single", housing_eccentricity=14e-6), drives)
+    assert "c_x" not in lone.words()
 
 
 def test_a_tilt_is_told_as_the_eccentricity_that_it_is_equivalent_to(drives: PossibleDrives) -> None:
@@ -132,7 +140,8 @@ def test_the_least_amplitude_is_detected_as_often_as_stated() -> None:
     noise = chance.standard_normal((2, 200_000))
     threshold = np.sqrt(-2.0 * np.log(1e-3))
     assert np.mean(np.hypot(*noise) > threshold) == pytest.approx(1e-3, rel=0.25)
-    assert np.mean(np.hypot(noise[0] + least_amplitude(), noise[1]) > threshold) == pytest.approx(0.9, abs=0.004)
+    least = needed_signal_to_noise(DETECTION, FALSE_ALARM, np.inf)
+    assert np.mean(np.hypot(noise[0] + least, noise[1]) > threshold) == pytest.approx(0.9, abs=0.004)
 
 
 def test_a_trend_is_not_changed_by_orders_and_its_deviation_is_that_of_noise() -> None:

@@ -9,8 +9,8 @@ import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
 from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
+from strainwave.diagnose.inversion import displaced, harmonics
 from strainwave.diagnose.reaction import CurrentPerError, current_per_error, parts_over_load
-from strainwave.diagnose.recovery import harmonics, placed
 from strainwave.orders.order_spectrum import order_amplitudes
 
 from tests.signature_drive import AMPLITUDE, ORDER, ideal_current, signature_ramp
@@ -44,7 +44,7 @@ def test_the_signature_of_a_held_input_is_that_of_the_closed_form(load: float, p
 def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(parts: CurrentPerError) -> None:
     """64.7 mA by J Omega^2 k / (k - J Omega^2) / (N K_t), 82 mA by n T / K_t; a loop multiplies both, and they are phasors."""
     law, _ = geometry(RAMP.drive)
-    error = float(np.abs(harmonics(placed(law.replace(combine="max"), (E1, 0.0)))[1]))
+    error = float(np.abs(harmonics(displaced(law.replace(combine="max"), (E1, 0.0)))[1]))
     motor: Any = RAMP.drive.motor
     gear: Any = RAMP.drive.gear
     load: Any = RAMP.drive.load
@@ -55,8 +55,8 @@ def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(pa
     assert abs(parts.reaction[1]) == pytest.approx(2.0 * parts.torque / motor.torque_constant, rel=0.05)
     total = [1e3 * error * abs(part[1]) for part in (parts.total, parts.inertial, parts.reaction)]
     assert_allclose(total, [92.0, 66.0, 85.0], atol=1.0)
-    simulated, _ = order_2(RAMP.without_noise(), placed(law.replace(combine="max"), (E1, 0.0)))
-    none, _ = order_2(RAMP.without_noise(), placed(law.replace(combine="max"), (0.0, 0.0)))
+    simulated, _ = order_2(RAMP.without_noise(), displaced(law.replace(combine="max"), (E1, 0.0)))
+    none, _ = order_2(RAMP.without_noise(), displaced(law.replace(combine="max"), (0.0, 0.0)))
     assert 1e3 * abs(simulated - none) == pytest.approx(total[0], rel=0.01)
     wrong = parts.if_all_were_reaction(2.0)
     assert (abs(wrong), np.degrees(np.angle(wrong))) == (pytest.approx(1.08, abs=0.02), pytest.approx(44.0, abs=2.0))
@@ -65,10 +65,10 @@ def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(pa
 
 def test_two_loads_determine_the_error_though_the_output_inertia_is_not_known(parts: CurrentPerError) -> None:
     law, _ = geometry(RAMP.drive)
-    error = harmonics(placed(law, (E1, 0.0)))[1]
+    error = harmonics(displaced(law, (E1, 0.0)))[1]
     heavier = RAMP.drive.replace({"load.inertia": 0.7})
     ramp = ActuatorRamp.of(heavier, RAMP.stroke, RAMP.duration).without_noise()
-    lines, torque = zip(*(order_2(ramp.loaded(load), placed(law, (E1, 0.0))) for load in (0.0, 15.0)), strict=True)
+    lines, torque = zip(*(order_2(ramp.loaded(load), displaced(law, (E1, 0.0))) for load in (0.0, 15.0)), strict=True)
     found = parts_over_load(lines, torque, [1e-3, 1e-3])
     by_slope = abs(found.per_torque / parts.per_torque[1] / error)
     by_one_load = abs(lines[0] / parts.total[1] / error)

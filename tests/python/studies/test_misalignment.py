@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.diagnose.actuator_ramp import ASSUMED, ERROR, INPUT, OUTPUT, ActuatorRamp, geometry, in_series, noises
-from strainwave.diagnose.recovery import harmonics, placed
+from strainwave.diagnose.inversion import displaced, harmonics
 from strainwave.native import kernels
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import Levels, passed, recovered, share_by_ideal_loop, swept
@@ -171,7 +171,7 @@ def test_what_was_put_in_comes_back_within_its_interval(ramp: ActuatorRamp, monk
 
 
 def test_a_place_of_the_shaft_is_the_vector_that_harmonics_tell() -> None:
-    law = placed(ASSUMED, (3e-6, -4e-6), c_x=-2e-6)
+    law = displaced(ASSUMED, (3e-6, -4e-6), c_x=-2e-6)
     assert law.eccentricity == pytest.approx((3e-6, -4e-6))
     assert harmonics(law)[0] == pytest.approx(PER_METRE * (-1j * 3e-6 + 4e-6), rel=1e-3)  # -(m_x cos + m_y sin)
     assert law.generator_eccentricity == 2e-6

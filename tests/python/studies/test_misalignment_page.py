@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.diagnose.recovery import placed
+from strainwave.diagnose.inversion import displaced
 from strainwave.native import kernels
 from strainwave.report.misalignment import misalignment_report, summary
 from strainwave.report.misalignment_claims import CONFIRMED, CORRECTED, IN_PART, claims
@@ -35,7 +35,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("measured")
     (folder / "own <b>&.csv").write_text("time [s],torque [N.m],current [A]\n5,0,0\n6,8,1.2\n8,17,2.1\n")
     angle = np.linspace(0.0, 2.0 * np.pi, 73)
-    curve = placed(LAW.replace(combine="max"), (30e-6, 10e-6)).error(angle)
+    curve = displaced(LAW.replace(combine="max"), (30e-6, 10e-6)).error(angle)
     columns = {"input_angle": np.degrees(angle), "kinematic_error": curve}
     sw.Recording(columns, {"input_angle": "deg", "kinematic_error": "rad"}).to_csv(folder / "curve.csv")
     return folder
@@ -171,7 +171,7 @@ def test_a_curve_of_the_law_itself_is_found_again(found: MisalignmentStudy) -> N
 def test_a_fit_finds_what_a_curve_tells(combine: str) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     law = LAW.replace(combine=combine)
-    curve = placed(law, (12e-6, -9e-6), c_x=3e-6 if combine == "max" else 0.0).error(angle)
+    curve = displaced(law, (12e-6, -9e-6), c_x=3e-6 if combine == "max" else 0.0).error(angle)
     fit = fitted(angle, curve - turn_mean(angle, curve), law)
     sign = 1.0 if combine == "single" or fit.told["m_x"] > 0.0 else -1.0
     assert [sign * fit.told["m_x"], sign * fit.told["m_y"]] == pytest.approx([12e-6, -9e-6], rel=1e-5)

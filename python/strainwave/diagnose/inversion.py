@@ -1,0 +1,299 @@
+"""Inversion of the orders of a column: misalignment m = e1 + h beta of the wave generator, with its covariance.
+
+The orders of a column over what the drive answers per kinematic error are the orders of the error. `Misalignment` predicts
+these from m, and from the place c_x of the generator on its shaft if the lobe further out carries. Least squares invert this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import kinematic_error
+from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
+from strainwave.diagnose.detection import CONFIDENCE, false_alarm_of
+from strainwave.files.recording import Recording
+from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+COMBINE = ("single", "mean", "max")
+MICRON = 1e-6
+ORDERS = (1.0, 2.0, 3.0, 4.0)
+MAX_NOISE_LINES = 8  # on each side of an order, from which its noise is estimated; the next one contains half of the order
+HANN_NOISE_POWER = 1.5  # power of noise in a line through a Hann window over that without
+PROBE_AMPLITUDE = 2e-5  # rad, of each order of the error with which a drive is run
+SLOPE_STEP = 1e-8  # m, by which slopes of the orders are taken
+TILT_STEP = 1e-5  # rad, by which the eccentricity per tilt is taken
+MAX_RADIUS_SHARE = 0.4  # of the minor radius [1]: bound of m and c_x
+STARTS = ((1.0, 0.0), (1.1, 0.4), (1.1, -0.4), (1.6, 0.8), (1.6, -0.8))  # initial m over a first estimate, and c_x over m
+GOOD_MISFIT = 2.0  # no further start is tried
+
+
+@dataclass(frozen=True)
+class MeasuredOrders:
+    """Orders of a column, or of the kinematic error.
+
+    Attributes:
+        values: amplitude and phase of each order as a sine of the input angle [unit], shape (4,)
+        noise: standard deviation of the real and of the imaginary part of each [unit], shape (4,)
+        degrees: of freedom of the noise of an order
+    """
+
+    values: Complex
+    noise: Array
+    degrees: int
+
+    def over(self, gain: Complex) -> MeasuredOrders:
+        """Return the orders of the error that makes these, from the answer per error of each order."""
+        return MeasuredOrders(self.values / gain, self.noise / np.abs(gain), self.degrees)
+
+    @property
+    def false_alarm(self) -> float:
+        """Probability that noise alone makes an order as large as the largest one."""
+        evidence = float(np.max(np.abs(self.values) ** 2 / (2.0 * self.noise**2)))
+        return false_alarm_of(evidence, 2, self.degrees, len(ORDERS))
+
+
+@dataclass(frozen=True)
+class MisalignmentEstimate:
+    """Misalignment that the orders of a column determine.
+
+    Attributes:
+        column: from which it was estimated
+        combine: way in which the lobes share, as assumed
+        m: estimate [m]; if the lobe further out carries, or both alike, m and -m make the same orders
+        covariance: of m [m^2], shape (2, 2)
+        degrees: of freedom of the noise
+        misfit: mean square of the residual over that of noise; about 1 if `combine` is right
+        c_x: place of the generator on its shaft along the major axis [m], if the lobe further out carries
+        c_x_sigma: its standard deviation [m]; nan if it is not estimated
+    """
+
+    column: str
+    combine: str
+    m: tuple[float, float]
+    covariance: Array
+    degrees: int
+    misfit: float
+    c_x: float = 0.0
+    c_x_sigma: float = np.nan
+
+    @property
+    def size(self) -> float:
+        """Length of m [m]."""
+        return float(np.hypot(*self.m))
+
+    @property
+    def direction(self) -> float:
+        """Direction of m [rad]."""
+        return float(np.arctan2(self.m[1], self.m[0]))
+
+    @property
+    def reach(self) -> float:
+        """Half axes of the ellipse of 95 % confidence over standard deviations."""
+        from scipy.stats import f
+
+        return float(np.sqrt(2.0 * f.ppf(CONFIDENCE, 2, self.degrees)))
+
+    @property
+    def interval_factor(self) -> float:
+        """Half width of an interval of 95 % over a standard deviation."""
+        from scipy.stats import t
+
+        return float(t.ppf(0.5 + 0.5 * CONFIDENCE, self.degrees))
+
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        """Half of the intervals of 95 % of the size [m] and of the direction [rad], each by itself."""
+        along = np.array(self.m) / max(self.size, 1e-12)
+        across = np.array([-along[1], along[0]])
+        size, way = (self.interval_factor * float(np.sqrt(each @ self.covariance @ each)) for each in (along, across))
+        return size, way / max(self.size, 1e-12)
+
+    def contains(self, m: tuple[float, float]) -> bool:
+        """True if a vector lies in the ellipse of 95 % confidence, or its opposite does where both make the same orders."""
+        signs = (1.0,) if self.combine == "single" else (1.0, -1.0)
+        gaps = [np.array(self.m) - sign * np.array(m) for sign in signs]
+        return bool(min(float(gap @ np.linalg.solve(self.covariance, gap)) for gap in gaps) <= self.reach**2)
+
+
+# ---- Orders of a column, and what the drive answers per error -----------------------------------------------------------
+
+
+def phasors(recording: Recording, column: str) -> Complex:
+    """Return amplitude and phase of each order of a column, shape (4,)."""
+    orders = order_amplitudes(recording, column, ORDERS)
+    return _sines(orders.amplitude, orders.phase)
+
+
+def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
+    """Return the orders of a column, and their noise.
+
+    Lines between the orders have noise alone; those near an order determine the noise of that order. They come from a spectrum
+    through a Hann window. It adds half to the power of noise, and the powers of neighbouring lines correlate by 4/9, of next
+    ones by 1/36. So two lines determine it about as well as one without a window.
+    """
+    orders = order_amplitudes(recording, column, ORDERS)
+    spectrum = order_spectrum(recording, column, ORDERS[-1] + 0.5)
+    line = np.rint(spectrum["order"] * orders.revolutions)
+    reach = min(MAX_NOISE_LINES, (orders.revolutions - 2) // 2)
+    apart = [np.abs(line - order * orders.revolutions) for order in ORDERS]
+    near = [spectrum["amplitude"][(distance > 1) & (distance <= reach)] for distance in apart]
+    noise = np.sqrt(np.array([np.mean(lines**2) for lines in near]) / (2.0 * HANN_NOISE_POWER))
+    degrees = round(2.0 * len(near[0]) / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)))
+    return MeasuredOrders(_sines(orders.amplitude, orders.phase), np.maximum(noise, np.finfo(float).tiny), degrees)
+
+
+def less_run(recording: Recording, run: Recording, column: str) -> Recording:
+    """Return a column of a record less that of a run at the same input angle."""
+    angle = recording.values("input_angle", "rad")
+    turned, values = run["input_angle"], run[column]
+    sense = np.sign(turned[-1] - turned[0])
+    difference = recording.values(column, run.unit(column)) - np.interp(sense * angle, sense * turned, values)
+    return Recording({"input_angle": angle, column: difference}, {"input_angle": "rad", column: run.unit(column)})
+
+
+def runs_with_probe(
+    ramp: ActuatorRamp, changes: Sequence[Mapping[str, float]], record: Sequence[str]
+) -> list[tuple[Recording, Recording]]:
+    """Return two runs of each drive after the run-in: without error, and with a small error of all orders.
+
+    Args:
+        ramp: of the nominal drive; its kinematic error and the noise of its sensors are left out
+        changes: numbers in which each drive differs from the nominal one
+        record: columns
+    """
+    law = kinematic_error.Fourier(order=ORDERS, amplitude=[0.0] * len(ORDERS), phase=[0.0] * len(ORDERS))
+    quiet = ramp.without_noise().with_error(law)
+    paths = [f"{ERROR}.amplitude[{place}]" for place in range(len(ORDERS))]
+    members = [{**change, **dict.fromkeys(paths, size)} for change in changes for size in (0.0, PROBE_AMPLITUDE)]
+    runs = quiet.many(members, record)
+    settled = [quiet.settled(runs.member(place)) for place in range(len(members))]
+    return list(zip(settled[0::2], settled[1::2], strict=True))
+
+
+def answer_per_error(straight: Recording, probed: Recording, column: str) -> Complex:
+    """Return the answer of a column per error at each order, from runs without and with the probe [unit / rad], shape (4,)."""
+    answer: Complex = (phasors(probed, column) - phasors(straight, column)) / PROBE_AMPLITUDE
+    return answer
+
+
+# ---- Orders of the law --------------------------------------------------------------------------------------------------
+
+
+def harmonics(law: Any) -> Complex:
+    """Return the orders of a law over a revolution [rad], shape (4,)."""
+    orders = law.harmonics(int(ORDERS[-1]))
+    return _sines(np.array(orders.amplitude), np.array(orders.phase))
+
+
+def displaced(law: Any, m: tuple[float, float], c_x: float = 0.0) -> Any:
+    """Return the law with the shaft at m [m] in the housing and the generator c_x [m] off the shaft along its major axis."""
+    x, y = m
+    return law.replace(
+        housing_eccentricity=float(np.hypot(x, y)),
+        housing_direction=float(np.arctan2(y, x)),
+        generator_eccentricity=abs(c_x),
+        generator_direction=0.0 if c_x >= 0.0 else np.pi,
+    )
+
+
+def tilted(law: Any, m: tuple[float, float]) -> Any:
+    """Return the law with the tilt of the housing that is equivalent to m [m] in first order."""
+    names = ("housing_tilt_x", "housing_tilt_y")
+    straight = law.replace(housing_eccentricity=0.0, **dict.fromkeys(names, 0.0))
+    ways = np.array([straight.replace(**{name: TILT_STEP}).eccentricity for name in names]).T / TILT_STEP
+    angles = np.linalg.solve(ways, np.array(m))
+    return straight.replace(**dict(zip(names, angles.tolist(), strict=True)))
+
+
+def stacked(values: Complex) -> Array:
+    """Return real parts, then imaginary parts, along the last axis."""
+    return np.concatenate([values.real, values.imag], axis=-1)
+
+
+def _sines(amplitude: Array, phase: Array) -> Complex:
+    values: Complex = amplitude * np.exp(1j * phase)
+    return values
+
+
+def _at(law: Any, point: Array) -> Complex:
+    """Return the orders at a point: m, and c_x if it has three numbers [m]."""
+    x, y, *c_x = point.tolist()
+    return harmonics(displaced(law, (x, y), *c_x))
+
+
+# ---- Least squares ------------------------------------------------------------------------------------------------------
+
+
+def inverted(error: MeasuredOrders, law: Any, *, with_offset: bool = False) -> tuple[Array, float]:
+    """Return the point by least squares, each order weighted by its noise, and the mean square of the residual over the noise.
+
+    Args:
+        error: orders of the kinematic error
+        law: `Misalignment`, whose dimensions are kept
+        with_offset: fit c_x too, if the lobe further out carries. Beside m it moves the error from orders 2 and 4 to 1 and 3
+
+    Returns:
+        m, and c_x if it is fitted [m], shape (2,) or (3,); misfit.
+    """
+    first, misfit = _least_squares(error, law, _initial_m(error.values, law), MICRON)
+    if not with_offset or law.combine != "max":
+        return first, misfit
+    unit = max(float(np.hypot(*first)), 0.1 * MICRON)
+    point, misfit = np.append(first, 0.0), np.inf
+    for larger, share in STARTS:
+        found, left = _least_squares(error, law, larger * np.append(first, share * unit), unit)
+        if left < misfit:
+            point, misfit = found, left
+        if misfit < GOOD_MISFIT:
+            break
+    return point, misfit
+
+
+def _least_squares(error: MeasuredOrders, law: Any, start: Array, unit: float) -> tuple[Array, float]:
+    from scipy.optimize import least_squares
+
+    def residual(point: Array) -> Array:
+        return stacked((_at(law, MICRON * point) - error.values) / error.noise)
+
+    far = MAX_RADIUS_SHARE * float(law.minor_radius) / MICRON
+    begin = np.clip(start / MICRON, -0.9 * far, 0.9 * far)
+    scale = max(float(np.abs(begin).max()), 1.0) if len(start) == 2 else unit / MICRON
+    best: Any = least_squares(residual, begin, bounds=(-far, far), x_scale=scale)
+    return MICRON * best.x, 2.0 * float(best.cost) / (2 * len(ORDERS) - len(start))
+
+
+def _initial_m(values: Complex, law: Any) -> Array:
+    """Return m by the first order that the law has, whose size grows with m or its square, and whose phase turns with it."""
+    place = 0 if law.combine == "single" else 1
+    ratio = values[place] / harmonics(displaced(law, (MICRON, 0.0)))[place]
+    size = MICRON * float(np.sqrt(abs(ratio)) if law.combine == "mean" else abs(ratio))
+    way = -float(np.angle(ratio)) / ORDERS[place]
+    return size * np.array([np.cos(way), np.sin(way)])
+
+
+def slopes(law: Any, point: Array) -> Array:
+    """Return the slopes of all orders, real parts then imaginary parts, over the point [rad/m], shape (8, 2) or (8, 3)."""
+    steps = SLOPE_STEP * np.eye(len(point))
+    ways = [stacked(_at(law, point + step) - _at(law, point - step)) / (2.0 * SLOPE_STEP) for step in steps]
+    return np.array(ways).T
+
+
+def to_point(error: MeasuredOrders, law: Any, point: Array) -> Array:
+    """Return the matrix that gives the change of the point by a small change of the orders, shape (2, 8) or (3, 8)."""
+    sigma = np.tile(error.noise, 2)
+    matrix: Array = np.linalg.pinv(slopes(law, point) / sigma[:, None]) / sigma
+    return matrix
+
+
+def covariance_by(matrix: Array, noise: Array) -> Array:
+    """Return the covariance of a point by the noise of the orders [m^2], with the matrix of `to_point`."""
+    covariance: Array = (matrix * np.tile(noise, 2) ** 2) @ matrix.T
+    return covariance
