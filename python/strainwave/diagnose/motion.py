@@ -10,15 +10,14 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.files.recording import Recording, check_recording
-from strainwave.files.units import convert
 from strainwave.messages import quoted
-from strainwave.orders.turning import evenly, unwrapped
+from strainwave.orders.turning import evenly_turning, unwrapped
 
 Array = NDArray[np.float64]
 
 MIN_REVOLUTIONS = 1.0  # of the shaft, below which no order is determined
 MIN_SPEED_SHARE = 0.1  # of a fast speed [1]: slower samples are left out, since friction turns over there
-MAX_SAMPLES = 2**18  # that are used, the last ones
+MAX_SAMPLES = 2**18  # samples that are fitted, the first ones
 MAX_PHASE_STEP = 0.125 * pi  # rad of the highest order between two averaged samples: an amplitude loses 0.7 %
 MAX_AVERAGED = 64  # samples in one mean
 MAX_RATE = 1e9  # Hz, of samples
@@ -100,15 +99,11 @@ def motion_of(
     """
     check_recording("recording", recording)
     arguments.text("column", column)
-    names = [angle, column, *([load_column] if load_column else [])]
     if rate is not None:
         rate = arguments.number("rate", rate, "Hz", "(]", 0.0, MAX_RATE)
-    record = evenly(recording, names, rate)
-    kept = slice(max(0, len(record) - MAX_SAMPLES), None)
-    turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))[kept]
-    series = record.columns[column][kept]
-    load = record.columns[load_column][kept] if load_column else None
-    measured = record.measured[kept]
+    record = evenly_turning(recording, [angle], [column, *([load_column] if load_column else [])], rate, MAX_SAMPLES)
+    turned, series, measured = record.columns[angle], record.columns[column], record.measured
+    load = record.columns[load_column] if load_column else None
     _check_turns(turned, angle)
     size = _ratio(recording, turned, angle, ratio)
     moves = _senses(turned)

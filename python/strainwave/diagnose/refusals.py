@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
-from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
 from strainwave.orders.ripple import MAX_PHASE_STEP, Side
 from strainwave.orders.shaft_pair import Pair, ratio_of
-from strainwave.orders.turning import evenly, unwrapped
+from strainwave.orders.turning import evenly_turning
 
 Array = NDArray[np.float64]
 
@@ -125,10 +124,9 @@ def _with_shaft_of_input(run: JointRecording) -> JointRecording:
         ValueError: the angles have another ratio than the one given
     """
     names = ("input_angle", "output_angle")
-    record = evenly(run.recording, names, run.rate)
-    turned = [unwrapped(name, convert(record.columns[name], run.recording.unit(name), "rad")) for name in names]
+    record = evenly_turning(run.recording, names, [], run.rate)
     try:
-        pair = Pair(record, *turned)
+        pair = Pair(record, *(record.columns[name] for name in names))
         _, free = ratio_of(pair, None)
     except ValueError as error:
         return replace(run, remarks=(*run.remarks, f"the ratio of both angles is not determined: {error}"))
@@ -151,8 +149,8 @@ def _check_motion(run: JointRecording) -> None:
             f"at rest: {run.angle} moves by {travel:.3g} rad from end to end; at least {MIN_TRAVEL:g} rad is needed; "
             "record a motion"
         )
-    record = evenly(run.recording, [run.angle], run.rate)
-    angle = unwrapped(run.angle, record.columns[run.angle])
+    record = evenly_turning(run.recording, [run.angle], [], run.rate)
+    angle = record.columns[run.angle]
     least_ratio = float(RATIOS[0])
     per_input = run.per_input if np.isfinite(run.per_input) else least_ratio
     assumed = "" if np.isfinite(run.per_input) else f", with the smallest ratio that makers offer, {least_ratio:g}"

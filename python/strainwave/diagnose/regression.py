@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.diagnose.motion import Motion
-from strainwave.orders.floor import Floor, floor_under
+from strainwave.orders.floor import Floor
+from strainwave.orders.smooth_part import MIN_GRAVITY_SPAN, MIN_SENSE_SHARE, floor_without, orthonormal
 
 Array = NDArray[np.float64]
 
@@ -23,12 +24,9 @@ TREND_PERIODS = 4  # half periods in the slow trend
 MIN_TREND_RATIO = 4.0  # periods of the slowest order in the fastest half period of the trend
 MIN_SPREAD = 0.1  # relative spread of load or squared speed [1], from which parts are separated by it
 SPEED_SPREAD = 0.01  # relative spread of the speed [1], from which friction over speed is determined
-MIN_SENSE_SHARE = 0.02  # of the samples [1]: with fewer of a direction it has no part of its own
-MIN_GRAVITY_SPAN = 0.5  # rad of the output: sine and cosine of a smaller motion are the trend
 MAX_SCORES = 2**24  # numbers in the columns of all parts of the neighbours
 MIN_INDEPENDENCE = 1e-3  # of the square of a neighbour's columns [1], that others must leave
 MAX_NOISE_RANGE = 1e6  # largest over least power of the noise
-MAX_CONDITION = 1e10  # of the squared columns, beyond which a direction does not count
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,9 +240,7 @@ def _whitening(series: Array, columns: Array) -> Callable[[Array], Array]:
     The filter is symmetric, so that the product of filtered columns with a filtered series is that of twice filtered columns
     with the series itself.
     """
-    inverse, _, _ = _solved(columns)
-    residual = series - columns @ (inverse @ series)
-    found = floor_under(residual, np.ones(len(series)))
+    found = floor_without(columns, series, np.ones(len(series)))
     level = np.maximum(found.level, found.level.max() / MAX_NOISE_RANGE)
     floor = Floor(found.place, level / level.max(), found.lines)
     return floor.whitened
@@ -297,11 +293,5 @@ def _scores(
 
 def _solved(columns: Array) -> tuple[Array, Array, Array]:
     """Return the pseudo-inverse, the inverse of the squared columns, and an orthonormal basis of the columns."""
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
-    values, vectors = np.linalg.eigh((columns / size).T @ (columns / size))
-    kept = values > values.max() / MAX_CONDITION
-    root = vectors[:, kept] / np.sqrt(values[kept])
-    basis = (columns / size) @ root
-    back = root / size[:, None]
-    return back @ basis.T, back @ back.T, basis
+    basis, made = orthonormal(columns)
+    return made @ basis.T, made @ made.T, basis

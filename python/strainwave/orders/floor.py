@@ -36,6 +36,19 @@ class Floor:
         folded = np.abs(frequency - np.rint(frequency))
         return np.exp(np.interp(folded, self.place, np.log(self.level)))
 
+    def freedom(self, frequency: float) -> float:
+        """Return the degrees of freedom of the level at a frequency [cycles per sample].
+
+        The logarithm of the median of m exponential numbers has the variance 1 / (m ln² 2).
+        """
+        folded = abs(frequency - round(frequency))
+        share = float(np.interp(folded, self.place, np.arange(len(self.place))))
+        before = int(share)
+        after = min(before + 1, len(self.place) - 1)
+        rest = share - before
+        variance = ((1.0 - rest) ** 2 / self.lines[before] + rest**2 / self.lines[after]) / log(2.0) ** 2
+        return 2.0 / float(variance)
+
     def whitened(self, series: Array) -> Array:
         """Return series over the root of the floor, shape (n,) or (n, k): white, of variance 1, if they are noise."""
         return self._divided(series, 0.5)

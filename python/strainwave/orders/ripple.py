@@ -12,12 +12,11 @@ import numpy as np
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS, Candidate, candidates, conclusive, lowest_usable, usable_lines
 from strainwave.orders.lines import MERGE_PERIODS, MIN_PERIODS, Line, LineSearch, Part, find_lines, waves, weighed_fit
-from strainwave.orders.smooth_part import Moving, moving
-from strainwave.orders.turning import Evenly, beginning, evenly, unwrapped
+from strainwave.orders.smooth_part import Moving, shaft_of
+from strainwave.orders.turning import Evenly
 
 Side = Literal["input", "output"]
 
@@ -123,7 +122,9 @@ def ripple(
     false_alarm = arguments.probability("false_alarm", false_alarm)
     size = None if ratio is None else abs(arguments.ratio("ratio", ratio))
     per_input = 1.0 if side == "input" else size or np.nan
-    record, shaft = _moved(recording, column, angle, rate, other_angles or {}, per_input)
+    record, shaft = shaft_of(
+        recording, column, angle, others=other_angles or {}, rate=rate, per_input=per_input, count=MAX_SAMPLES
+    )
     lowest, top = _range(shaft, side, size, highest)
     _check_sampled(shaft, record, side, size, top, angle)
     found = find_lines(shaft, lowest, top, false_alarm)
@@ -150,23 +151,6 @@ def ripple(
         curves=_curves(shaft, found, record, recording.unit(column)),
         remarks=tuple(remarks),
     )
-
-
-def _moved(
-    recording: Recording, column: str, angle: str, rate: float | None, others: Mapping[str, str], per_input: float
-) -> tuple[Evenly, Moving]:
-    """Return a shaft and what drives it, evenly in time, of a long record the beginning; filled rows do not count."""
-    record = beginning(evenly(recording, [column, angle, *others.values()], rate), MAX_SAMPLES)
-    turned = {
-        name: unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in (angle, *others.values())
-    }
-    if float(np.ptp(turned[angle])) == 0.0:
-        raise ValueError(f"{angle} does not change; orders need a shaft that turns: give the angle of one, or record a motion")
-    if float(np.ptp(record.columns[column])) == 0.0:
-        raise ValueError(f"{column} does not change; there is no ripple in it: give the column that was measured")
-    moved = {joint: turned[name] for joint, name in others.items() if float(np.ptp(turned[name])) > 0.0}
-    shaft = moving(turned[angle], record.columns[column], moved, per_input)
-    return record, replace(shaft, weight=np.where(record.measured, shaft.weight, 0.0))
 
 
 def _range(shaft: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan, tau
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.orders.floor import taper
-from strainwave.orders.turning import direction, reach_of, smooth_speed
+from strainwave.files.recording import Recording
+from strainwave.orders.floor import Floor, floor_of, taper
+from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,8 @@ MIN_OWN_SHARE = (
 SMOOTH_SHARE = 0.95  # likewise, from which a column has no ripple of the gear: waves are never quite orthogonal to it
 MIN_WAVE_PERIODS = 3.0  # of a wave in the record
 MIN_GRAVITY_SPAN = 0.5  # rad: sine and cosine of a smaller motion are the trend
+MAX_CONDITION = 1e10  # of squared columns [1], beyond which a direction does not count
+MIN_LEFT_NOISE = 0.1  # share of the noise of a line [1], that columns leave
 BOTH_SENSES = (1.0, -1.0)
 
 
@@ -140,6 +143,73 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
     return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()), basis)
 
 
+def shaft_of(
+    recording: Recording,
+    column: str,
+    angle: str,
+    *,
+    others: Mapping[str, str],
+    rate: float | None,
+    per_input: float,
+    count: int,
+) -> tuple[Evenly, Moving]:
+    """Return the columns of a recording evenly in time, and its shaft with the smooth part; filled rows have no weight.
+
+    Args:
+        recording: with the column, the angles, and `time` if it is known
+        column: torque or current
+        angle: column with the angle of the shaft
+        others: columns with the angles of other joints, by the name of the joint; those that rest are left out
+        rate: samples per second of a recording without time [Hz]
+        per_input: revolutions of the input per revolution of the shaft; nan if it is not known
+        count: samples at most, of a long recording the first ones
+
+    Raises:
+        ValueError: the shaft or the column does not change, or the samples are too few or too uneven
+    """
+    record = evenly_turning(recording, [angle, *others.values()], [column], rate, count)
+    columns = record.columns
+    if float(np.ptp(columns[angle])) == 0.0:
+        raise ValueError(f"{angle} does not change; orders need a shaft that turns: give the angle of one, or record a motion")
+    if float(np.ptp(columns[column])) == 0.0:
+        raise ValueError(f"{column} does not change; there is no ripple in it: give the column that was measured")
+    moved = {joint: columns[name] for joint, name in others.items() if float(np.ptp(columns[name])) > 0.0}
+    shaft = moving(columns[angle], columns[column], moved, per_input)
+    return record, replace(shaft, weight=np.where(record.measured, shaft.weight, 0.0))
+
+
+def least_squares(columns: Array, values: Array) -> Array:
+    """Return the coefficients of columns by least squares; columns are scaled, so that small ones count alike."""
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    found: Array = np.linalg.lstsq(columns / size, values, rcond=1e-8)[0]
+    return (found.T / size).T
+
+
+def orthonormal(columns: Array) -> tuple[Array, Array]:
+    """Return orthonormal columns that span the columns, and the matrix that makes them of these, shapes (n, r) and (k, r)."""
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    values, vectors = np.linalg.eigh((columns.T @ columns) / np.outer(size, size))
+    kept = values > values.max() / MAX_CONDITION
+    made = vectors[:, kept] / np.sqrt(values[kept]) / size[:, None]
+    return columns @ made, made
+
+
+def floor_without(columns: Array, series: Array, weight: Array) -> Floor:
+    """Return the floor of a series without columns, both multiplied by a weight of 1 or less.
+
+    The columns take a share of the noise, too, at low frequencies most of it if the record is short. The floor contains this.
+    """
+    from scipy.fft import rfft
+
+    basis, _ = orthonormal(columns)
+    left = series - basis @ (basis.T @ series)
+    taken = np.sum(np.abs(rfft(basis, axis=0)[1:]) ** 2, axis=1) / len(series)
+    power = np.abs(rfft(left)[1:]) ** 2 / np.maximum(1.0 - taken, MIN_LEFT_NOISE)
+    return floor_of(power / float(weight @ weight), len(series))
+
+
 def _waves(own: Shaft, per_input: float) -> Array:
     """Return sines and cosines of the orders of a gear, in each direction, shape (n, waves)."""
     orders = [order * per_input for order in WAVE_ORDERS if order * per_input * own.revolutions >= MIN_WAVE_PERIODS]
@@ -165,9 +235,7 @@ def _without_ripple(columns: Array, waves: Array, weight: Array) -> Array:
 def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple[Array, Array]:
     """Return the smooth part, and the friction in it."""
     columns = np.concatenate([friction, rest], axis=1)
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
-    found = np.linalg.lstsq(columns / size * weight[:, None], torque * weight, rcond=1e-8)[0] / size
+    found = least_squares(columns * weight[:, None], torque * weight)
     count = friction.shape[1]
     return columns @ found, friction @ found[:count]
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.messages import quoted
 
 Array = NDArray[np.float64]
@@ -85,6 +86,27 @@ def beginning(record: Evenly, count: int) -> Evenly:
     remark = f"the first {count} of {len(record)} samples are used, which is enough for orders"
     columns = {name: values[:count] for name, values in record.columns.items()}
     return replace(record, columns=columns, measured=record.measured[:count], remarks=(*record.remarks, remark))
+
+
+def evenly_turning(
+    recording: Recording, angles: Sequence[str], columns: Sequence[str], rate: float | None, count: int | None = None
+) -> Evenly:
+    """Return columns of a recording evenly in time, of a long one the beginning; angles in rad go on over revolutions.
+
+    Args:
+        recording: with or without the column `time`
+        angles: columns with angles of shafts
+        columns: further ones, in their own units
+        rate: samples per second, where there is no time [Hz]
+        count: samples at most; all of them by default
+
+    Raises:
+        ValueError: as `evenly` and `unwrapped`
+    """
+    record = evenly(recording, [*angles, *columns], rate)
+    record = record if count is None else beginning(record, count)
+    turned = {name: unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in angles}
+    return replace(record, columns={**record.columns, **turned})
 
 
 def _placed(columns: dict[str, Array], time: Array) -> Evenly:
