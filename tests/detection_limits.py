@@ -27,9 +27,10 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy import fft
 from strainwave.diagnose.detection import threshold_of
-from strainwave.diagnose.detection_limit import COLUMN, DetectionLimit, RecordedOrder, Run, detection_limit
+from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
 from strainwave.diagnose.motion import Motion, motion_of
 from strainwave.diagnose.regression import regressions
+from strainwave.diagnose.steady_run import COLUMN, RecordedOrder, SteadyRun
 
 Array = NDArray[np.float64]
 
@@ -67,16 +68,8 @@ class Case:
 
     def record(self, amplitude: float, phase: float = 0.7) -> sw.Recording:
         """A record with an error of this amplitude [rad], without noise of sensors."""
-        quiet = {path: 0.0 for path in sw_numbers(self.drive) if path.startswith("sensors.") and path.endswith(".amplitude")}
-        run = Run(self.drive.replace(quiet), self.speed, self.load_torque, self.duration, self.sample_rate, self.order)
+        run = SteadyRun.of(self.drive, self.speed, self.load_torque, self.duration, self.sample_rate, self.order)
         return run.with_error(amplitude, phase)
-
-
-def sw_numbers(drive: sw.Drive) -> Iterator[str]:
-    """Paths of all numbers of a drive."""
-    from strainwave.parameters import every
-
-    yield from every(drive)
 
 
 def signature_drive(friction: float = 0.03, inertia: float = 1.5e-4, error: bool = False) -> sw.Drive:
@@ -157,7 +150,7 @@ def healthy_motions(units: int, seed: int = 3) -> tuple[Motion, ...]:
     for _ in range(units):
         friction, inertia, faster, load = 1.0 + 0.2 * random.uniform(-1.0, 1.0, 4)
         drive = signature_drive(0.03 * friction, 1.5e-4 * inertia)
-        run = Run(drive, 10.0 * faster, 20.0 * load, 24.0, 250.0, 1.0)
+        run = SteadyRun(drive, 10.0 * faster, 20.0 * load, 24.0, 250.0, 1.0)
         motions.append(motion_of(run.with_error(0.0), COLUMN, max(ORDERS)))
     return tuple(motions)
 

@@ -75,8 +75,9 @@ ELSEWHERE = {
         "identification/dynamics/log.py": "harmonics found in a log are of this form",
         "studies/pure_error.py": "the assumed curve of the study of misalignment",
         "diagnose/inversion.py": "an error of every order, by which a drive is probed",
-        "diagnose/detection_limit.py": "an error of one order, by which a drive is probed",
+        "diagnose/steady_run.py": "an error of one order, by which a drive is probed",
     },
+    "WaveGeneratorBearing": {"commands/diagnose.py": "whose geometry an option has, for the orders of its elements"},
     "Misalignment": {"diagnose/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
         "identification/experiments/stages.py": "whose springs a loop has in series with that of the flexspline",
@@ -152,6 +153,7 @@ ELSEWHERE = {
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
         "drive_model.hpp": MODEL,
+        "diagnose/response.py": "what a joint carries besides its inertia is in the recording",
         "identification/kinds/prepared_log.py": RIGID,
     },
     "StrainWave": {

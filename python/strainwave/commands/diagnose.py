@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
 PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
+BEARING_NUMBERS = (3, 4)  # of an option --bearing, without and with the contact angle
 ALARM_EXIT_CODE = 3  # of the process, if a recording differs from the baseline
 
 
@@ -73,6 +74,13 @@ def diagnose(
     order: Annotated[
         list[str] | None, typer.Option(help="Further order per revolution of the input, as of a bearing; repeat as needed.")
     ] = None,
+    bearing: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="BALLS,BALL_MM,PITCH_MM[,CONTACT_DEG]",
+            help="Geometry of the bearing of the wave generator, whose orders are named, as 23,4.763,46; repeat as needed.",
+        ),
+    ] = None,
     hours: Annotated[str | None, typer.Option(help="Hours of operation at each recording, as 0,120,300.")] = None,
     threshold: Annotated[
         float | None, numeric("Health indicator at which the gear is exchanged; its trend gives the remaining life.")
@@ -94,6 +102,7 @@ def diagnose(
             {
                 "recordings": paths,
                 "--baseline": baseline,
+                "--bearing": bearing,
                 "--ratio": ratio,
                 "--rate": rate,
                 "--hours": hours,
@@ -114,7 +123,7 @@ def diagnose(
 
     files, healthy = measurement_files(paths), measurement_files(baseline or [])
     _check_apart(files.files, healthy.files)
-    question = _question(gear, ratio, rate, order or [], false_alarm, threshold)
+    question = _question(gear, ratio, rate, order or [], bearing or [], false_alarm, threshold)
     by_name = _hours(hours, files.files)
     if geometry and (question.gear_set is None or question.gear_set.motor is None):
         raise ValueError("--geometry needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
@@ -184,12 +193,14 @@ def _question(
     ratio: float | None,
     rate: float | None,
     orders: Sequence[str],
+    bearings: Sequence[str],
     false_alarm: float,
     threshold: float | None,
 ) -> Question:
     from strainwave.arguments import number, probability
     from strainwave.commands.options import number_option
     from strainwave.diagnose.diagnosis import Question
+    from strainwave.diagnose.named_orders import bearing_orders
     from strainwave.files.gear_set import GearSet
     from strainwave.identification.reading.mapping import check_constant
 
@@ -205,7 +216,37 @@ def _question(
             raise ValueError("--ratio and --gear are given; the gear has a ratio: leave --ratio out")
     size = ratio if gear_set is None else float(gear_set.gear.kinematics.ratio)
     further = tuple(number("--order", number_option(each), low=0.0) for each in orders)
-    return Question(gear_set, size, further, false_alarm, threshold=threshold)
+    geometry = tuple(_bearing(each) for each in bearings)
+    kinematics = None if gear_set is None else gear_set.gear.kinematics
+    bearing_orders(geometry, kinematics)  # raises before any file is read
+    return Question(gear_set, size, further, geometry, false_alarm, threshold=threshold)
+
+
+def _bearing(text: str) -> Any:
+    """Return the bearing of the wave generator with the geometry of an option."""
+    from math import radians
+
+    from strainwave import fault
+    from strainwave.number_texts import number_in
+
+    parts = [each.strip() for each in text.split(",")]
+    if len(parts) not in BEARING_NUMBERS:
+        raise ValueError(
+            f"--bearing {text} has {len(parts)} numbers; give balls, diameter of a ball [mm], pitch diameter [mm] and, if it "
+            "is not 0, the contact angle [deg], as 23,4.763,46"
+        )
+    balls, ball, pitch, *contact = (number_in(each) for each in parts)
+    if balls != int(balls):
+        raise ValueError(f"--bearing {text}: balls = {balls:g} must be a whole number")
+    try:
+        return fault.WaveGeneratorBearing(
+            balls=int(balls),
+            ball_diameter=1e-3 * ball,
+            pitch_diameter=1e-3 * pitch,
+            contact_angle=radians(*contact) if contact else 0.0,
+        )
+    except ValueError as error:
+        raise ValueError(f"--bearing {text}: {error}") from None
 
 
 def _hours(text: str | None, files: Sequence[MeasurementFile]) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""An actuator that turns its output through its stroke at constant speed, as document A has it."""
+"""Ramp of an actuator: its output turns through its stroke at constant speed, as in document A."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ Array = NDArray[np.float64]
 OUTPUT, INPUT = "output", "input"
 LOOPS = {OUTPUT: "output sensor", INPUT: "motor encoder"}
 ERROR = "gear.kinematic_error"
-RUN_IN = 0.1  # share of the ramp that is left out, until the speed is even
-LONGEST = 2e-4  # s, of a step
-STIFFER = 0.7  # a twisted gear may be stiffer than one at rest: steps are shorter by this factor
-SAMPLE = 1e-3  # s, between rows at the most
-ROWS = 64  # of a turn of the input at the least: orders up to 10 are told apart
+RUN_IN = 0.1  # of the ramp [1], that is left out until the speed is constant
+MAX_STEP = 2e-4  # s, of a simulation
+STEP_MARGIN = 0.7  # of a step [1], as a twisted gear may be stiffer than one at rest
+MAX_SAMPLE_TIME = 1e-3  # s, between rows
+MIN_ROWS_PER_TURN = 64  # of a turn of the input: separates orders up to 10
 MIN_TIME, MAX_TIME = 1e-6, 600.0  # s, of the ramp
-MOST_TURNS = 1e4  # of the input
-KEPT = 0.9  # share of the ramp's speed that a drive which follows it has on average
+MIN_TURNS, MAX_TURNS = 3.0, 1e4  # of the input, after the run-in and in all
+MIN_SPEED_SHARE = 0.9  # of the commanded speed [1], that a drive must reach on average
 CHANNELS = ("torque", "current", "output_angle", "input_angle")
 # Document A prints no dimensions. Assumed where the drive has none: those of E-R2, 0.6 mm of difference between the half axes.
 ASSUMED = kinematic_error.Misalignment(
     major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=np.radians(20.0)
 )
-OFFSET = 4e-3  # m: how far the section lies from the centre of tilt, assumed where the drive does not say
+OFFSET = 4e-3  # m: how far the section lies from the centre of tilt, assumed where the drive has none
 
 
 @dataclass(frozen=True)
 class ActuatorRamp:
-    """A drive, a stroke and the time that it takes.
+    """A drive, a stroke and its time.
 
     Attributes:
         drive: whose position loop closes on either side
@@ -61,7 +61,7 @@ class ActuatorRamp:
 
     @classmethod
     def of(cls, drive: Drive, stroke: float, duration: float) -> ActuatorRamp:
-        """Whose steps are as short as the drive asks for.
+        """Return the ramp of a drive, with steps that its fastest mode allows.
 
         Raises:
             ValueError: the stroke or the time is too small or too large, the ramp is less than three turns of the input, or
@@ -75,72 +75,71 @@ class ActuatorRamp:
                 "motor moves, as inertia and aerodynamic are"
             )
         turns = stroke * abs(drive.gear.kinematics.ratio) / (2.0 * np.pi)
-        if turns * (1.0 - RUN_IN) < 3.0:
-            needed = np.degrees(stroke * 3.0 / (turns * (1.0 - RUN_IN)))
+        if turns * (1.0 - RUN_IN) < MIN_TURNS:
+            needed = np.degrees(stroke * MIN_TURNS / (turns * (1.0 - RUN_IN)))
             raise ValueError(
                 f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {needed:.3g} deg or more"
             )
-        if turns > MOST_TURNS:
-            longest = np.degrees(stroke * MOST_TURNS / turns)
+        if turns > MAX_TURNS:
+            longest = np.degrees(stroke * MAX_TURNS / turns)
             raise ValueError(
                 f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {longest:.3g} deg or less"
             )
         for name in ("feedback", "position_gain"):
             _control_path(drive, name)
-        fastest = _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
-        return cls(drive, stroke, duration, min(LONGEST, STIFFER * COARSEST / fastest))
+        return cls(drive, stroke, duration, longest_step(drive))
 
     @property
     def command(self) -> Scenario:
-        """The output angle asked for [rad]."""
+        """Commanded output angle [rad]."""
         return ramp(self.stroke / self.duration, duration=self.duration)
 
     @property
     def turning(self) -> float:
-        """How fast the input turns [rad/s], as a size."""
+        """Size of the speed of the input [rad/s]."""
         return self.stroke / self.duration * abs(float(self.drive.gear.kinematics.ratio))
 
     @property
     def sample(self) -> float:
         """Time between the rows of a run [s]."""
-        return min(SAMPLE, 2.0 * np.pi / self.turning / ROWS)
+        return min(MAX_SAMPLE_TIME, 2.0 * np.pi / self.turning / MIN_ROWS_PER_TURN)
 
     @property
     def gain_path(self) -> str:
-        """The path of the gain of the position loop [1/s]."""
+        """Path of the gain of the position loop [1/s]."""
         return _control_path(self.drive, "position_gain")
 
     @property
     def gain(self) -> float:
-        """The gain of the position loop [1/s], which is the bandwidth in rad/s that it would have with an ideal speed loop."""
+        """Gain of the position loop [1/s]: its bandwidth in rad/s with an ideal speed loop."""
         return every(self.drive)[self.gain_path].value
 
     def closed_on(self, side: str) -> ActuatorRamp:
-        """The same with the position loop closed on "output" or "input"."""
+        """Return the ramp with the position loop closed on "output" or "input"."""
         return replace(self, drive=self.drive.replace({_control_path(self.drive, "feedback"): side}))
 
     def with_error(self, law: Any) -> ActuatorRamp:
-        """The same with another kinematic error."""
+        """Return the ramp with another kinematic error."""
         return replace(self, drive=self.drive.replace({ERROR: law}))
 
     def loaded(self, load_torque: float) -> ActuatorRamp:
-        """Return the same with a constant torque [N.m] on the output besides the load of the drive."""
+        """Return the ramp with a constant torque [N.m] on the output besides the load of the drive."""
         return replace(self, load_torque=load_torque)
 
     def lasting(self, duration: float) -> ActuatorRamp:
-        """The same stroke in another time [s]."""
+        """Return the ramp in another time [s]."""
         return replace(self, duration=duration)
 
     def without_noise(self) -> ActuatorRamp:
-        """The same, measured by sensors without noise."""
+        """Return the ramp with sensors without noise."""
         return replace(self, drive=self.drive.replace(dict.fromkeys(noises(self.drive, "amplitude"), 0.0)))
 
     def run(self) -> Recording:
-        """One run, all channels."""
+        """Return the recording of one run, with all channels."""
         return simulate(self.drive, self.command, self.dt, sample=self.sample, load_torque=self.load_torque)
 
     def many(self, members: Sequence[Mapping[str, float]], record: Sequence[str]) -> Ensemble:
-        """Runs that differ in the numbers given; each takes what it does not name from the drive.
+        """Return runs that differ in some numbers; the drive has those that a run does not name.
 
         Raises:
             ValueError: one of them cannot be run to its end, or does not follow the ramp
@@ -165,12 +164,12 @@ class ActuatorRamp:
         return runs
 
     def _check_that_it_follows(self, run: Recording) -> None:
-        """Refuses a drive that stays behind, turns back, or swings."""
+        """Raise ValueError for a drive that stays behind, turns back, or swings."""
         turned = np.diff(self.settled(run)["input_angle"]) * np.sign(float(self.drive.gear.kinematics.ratio))
         asked = self.turning * (1.0 - RUN_IN) * self.duration
         ramp = f"the drive does not follow a ramp of {np.degrees(self.stroke):.4g} deg in {self.duration:.4g} s"
         way_out = "give a smaller stroke, a longer time, or a drive whose motor and controller are fast enough"
-        if not turned.sum() > KEPT * asked:
+        if not turned.sum() > MIN_SPEED_SHARE * asked:
             raise ValueError(
                 f"{ramp}: its input turns by {turned.sum():.4g} rad after the run-in, not by {asked:.4g} rad; {way_out}"
             )
@@ -178,12 +177,12 @@ class ActuatorRamp:
             raise ValueError(f"{ramp}: its input turns back on the way; {way_out}")
 
     def settled(self, recording: Recording) -> Recording:
-        """What follows the run-in."""
+        """Return the recording after the run-in."""
         return recording.between(RUN_IN * self.duration, self.duration)
 
 
 def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
-    """The same with the stages of a staged gear in series as one spring, which takes less time; else the ramp itself.
+    """Return the ramp with the stages of a staged gear in series as one spring, which takes less time; else the ramp itself.
 
     Right for what is slow against the stages, as orders of the wave generator are. Inertias between the stages are left out.
     Referred to the output, with the ratio i, compliances add up (E-A6), with those of both couplings:
@@ -213,7 +212,7 @@ def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
 
 
 def geometry(drive: Drive) -> tuple[Any, bool]:
-    """The drive's own `Misalignment`, set straight, and whether it is assumed because the drive has none."""
+    """Return the `Misalignment` of a drive, straight, and True if it is assumed because the drive has none."""
     own = next(_laws(drive.gear.kinematic_error), None)
     law: Any = ASSUMED if own is None else own
     straight: dict[str, Any] = {
@@ -222,13 +221,18 @@ def geometry(drive: Drive) -> tuple[Any, bool]:
     return law.replace(**straight, offset=law.offset or OFFSET), own is None
 
 
+def longest_step(drive: Drive) -> float:
+    """Return the longest step of a run [s], for the fastest mode of the drive."""
+    return min(MAX_STEP, STEP_MARGIN * COARSEST / _core.max_rate(drive, 0.0, ROOM_TEMPERATURE))
+
+
 def noises(drive: Drive, name: str) -> list[str]:
-    """The paths of a number ("amplitude", "seed") of all noises that the drive's sensors have."""
+    """Return the paths of a number ("amplitude", "seed") of all noises of the drive's sensors."""
     return [path for path in every(drive) if path.startswith("sensors.") and path.endswith(f".{name}")]
 
 
 def _laws(law: Any) -> Iterator[Any]:
-    """Every law of misalignment in another law, or it itself."""
+    """Yield every law of misalignment in another law, or it itself."""
     if isinstance(law, kinematic_error.Misalignment):
         yield law
     for part in parts(law):
@@ -236,7 +240,7 @@ def _laws(law: Any) -> Iterator[Any]:
 
 
 def _control_path(drive: Drive, name: str) -> str:
-    """The path of a parameter of the controller, which may be inside of a sampled one."""
+    """Return the path of a parameter of the controller, which may be inside of a sampled one."""
     place, control = "control", drive.control
     while name not in (known := [each.name for each in parameters(control)]):
         inner = parts(control)

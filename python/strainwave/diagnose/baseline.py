@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.diagnose.detection import CONFIDENCE, FALSE_ALARM
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
 
@@ -24,7 +25,6 @@ MIN_BLOCK_PERIODS = 8.0  # periods of the lowest order in a block
 MAX_BLOCKS = 24  # of a baseline: shorter blocks contain no more of the drift
 MIN_BLOCKS = 6  # of a baseline, by which a spread is estimated
 BLOCK_RESOLUTIONS = 1.5  # resolutions of a block, by which two orders differ at least
-CONFIDENCE = 0.95  # of intervals
 SPREAD_MARGIN = 1.0  # standard deviations of the variance of replicates, added to what noise does not explain of it
 CONDITIONS = ("", "speed", "load")  # over which an amplitude may change in a healthy joint, besides a mean
 MIN_BLOCKS_FOR_LINE = 10  # blocks, by which a line over a condition is fitted
@@ -145,7 +145,12 @@ def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Base
 
 
 def compared(
-    baseline: Baseline, motion: JointMotion, *, false_alarm: float = 1e-3, new: Sequence[float] = (), searched: float = 1.0
+    baseline: Baseline,
+    motion: JointMotion,
+    *,
+    false_alarm: float = FALSE_ALARM,
+    new: Sequence[float] = (),
+    searched: float = 1.0,
 ) -> Comparison:
     """Return the change of each order of a recording against a baseline.
 

@@ -1,4 +1,4 @@
-r"""Statistics of detection: is there a line in noise of unknown level, how large is it, and how large must it be.
+r"""Statistics of detection: significance of a line in noise of unknown level, its interval, and the amplitude that is needed.
 
 The amplitudes of the sine and the cosine of an order are found by least squares under Gaussian noise. The generalised
 likelihood ratio test for a line compares their size with that of the noise around the order (Kay1998, linear model of unknown
@@ -13,21 +13,14 @@ Several orders tested together share the stated rate of false alarms (Bonferroni
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from math import inf, isfinite, nan, sqrt
-
-import numpy as np
-from numpy.typing import NDArray
+from math import inf, isfinite, sqrt
 
 from strainwave import arguments
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
 MAX_SIGNAL_TO_NOISE = 1e6  # amplitude over standard deviation: beyond it noise does not matter
-CONFIDENCE = 0.95
-MIN_BASELINE_RUNS = 3  # healthy recordings, whose spread is an estimate
+CONFIDENCE = 0.95  # of intervals
+FALSE_ALARM = 1e-3  # probability over all tests of a recording, if none is stated
+DETECTION = 0.9  # probability with which a line is detected that a recording shows
 
 
 def false_alarm_of(evidence: float, parts: int, freedom: float, tests: int = 1) -> float:
@@ -147,119 +140,3 @@ def _below(size: float, true: float, freedom: float) -> float:
     else:
         law = chi2.cdf(size**2, 2) if true == 0.0 else ncx2.cdf(size**2, 2, true**2)
     return float(law)
-
-
-@dataclass(frozen=True)
-class OrderBaseline:
-    """Amplitude of an order in healthy recordings, and its spread from run to run.
-
-    Attributes:
-        order: periods per revolution [1]
-        wave: mean of amplitude and phase as a complex number, at one reference angle [unit]; the magnitude alone is its real
-            part if the recordings have no common angle
-        spread: standard deviation of one run, of each part of the wave, or of the magnitude [unit]
-        runs: number of healthy recordings
-        same_reference: True if phases are comparable
-    """
-
-    order: float
-    wave: complex
-    spread: float
-    runs: int
-    same_reference: bool
-
-    @classmethod
-    def of(cls, order: float, waves: Sequence[complex], *, same_reference: bool) -> OrderBaseline:
-        """Return the baseline of an order from its waves in healthy recordings, at least three.
-
-        Args:
-            order: periods per revolution [1]
-            waves: amplitude times exp(j phase) of each recording [unit], shape (runs,)
-            same_reference: True if angle 0 of all recordings is the same position of the shaft
-
-        Raises:
-            ValueError: there are fewer than three recordings, or a wave is not finite
-        """
-        values: Complex = np.asarray(waves, dtype=np.complex128)
-        if len(values) < MIN_BASELINE_RUNS:
-            raise ValueError(
-                f"a baseline has {len(values)} healthy recordings; the spread between runs needs {MIN_BASELINE_RUNS} or more"
-            )
-        if not np.isfinite(values).all():
-            raise ValueError(
-                f"a wave of order {order:g} in the baseline is not finite; leave out recordings without that order"
-            )
-        if same_reference:
-            mean = complex(values.mean())
-            spread = sqrt(float(np.sum(np.abs(values - mean) ** 2)) / (2.0 * (len(values) - 1)))
-        else:
-            sizes = np.abs(values)
-            mean, spread = complex(float(sizes.mean())), float(sizes.std(ddof=1))
-        return cls(order, mean, spread, len(values), same_reference)
-
-
-@dataclass(frozen=True)
-class Change:
-    """Difference of an order from its healthy baseline.
-
-    Attributes:
-        amplitude: size of the difference [unit], of the waves if phases are comparable, else of the magnitudes
-        interval: of 95 % confidence of the true difference [unit]
-        false_alarm: probability that a healthy gear differs as much
-        detected: True if that is less than allowed
-    """
-
-    amplitude: float
-    interval: tuple[float, float]
-    false_alarm: float
-    detected: bool
-
-
-def change_from(
-    wave: complex,
-    sigma: float,
-    baseline: OrderBaseline,
-    *,
-    allowed: float = 1e-3,
-    tests: int = 1,
-    confidence: float = CONFIDENCE,
-) -> Change:
-    """Return how far an order is from its healthy baseline.
-
-    For a healthy gear the difference of waves over their spread follows F(2, 2 (runs - 1)). That of magnitudes follows
-    Student's t with runs - 1 degrees of freedom. The test is two-sided, as a fault may lessen an order. If the new recording
-    is noisier than the healthy ones, its own standard deviation counts.
-
-    Args:
-        wave: amplitude times exp(j phase) of the order in the new recording [unit]
-        sigma: standard deviation of each of its parts [unit]
-        baseline: of the order
-        allowed: probability of a false alarm, over all tests
-        tests: number of orders tested together
-        confidence: of the interval
-
-    Valid where the spread between healthy runs is the same in both parts of the wave.
-
-    >>> healthy = [1.0 + 0.01j, 1.02 + 0.0j, 0.99 - 0.01j, 1.01 + 0.02j, 0.98 + 0.0j]
-    >>> baseline = OrderBaseline.of(2.0, healthy, same_reference=True)
-    >>> change_from(1.01 + 0.0j, 0.01, baseline).detected, change_from(1.3 + 0.2j, 0.01, baseline).detected
-    (False, True)
-    """
-    from scipy.stats import t
-
-    own = max(sigma, baseline.spread)
-    spread = max(sqrt(own**2 + baseline.spread**2 / baseline.runs), 1e-300)
-    if not np.isfinite(wave):
-        return Change(nan, (0.0, inf), 1.0, False)
-    if baseline.same_reference:
-        freedom = 2.0 * (baseline.runs - 1)
-        difference = abs(wave - baseline.wave)
-        alarm = false_alarm_of(0.5 * (difference / spread) ** 2, 2, freedom, tests)
-        interval = amplitude_interval(difference, spread, freedom, confidence)
-    else:
-        freedom = baseline.runs - 1.0
-        difference = abs(abs(wave) - baseline.wave.real)
-        alarm = min(1.0, tests * 2.0 * float(t.sf(difference / spread, freedom)))
-        half = float(t.isf(0.5 * (1.0 - confidence), freedom)) * spread
-        interval = (max(0.0, difference - half), difference + half)
-    return Change(difference, interval, alarm, alarm < allowed)

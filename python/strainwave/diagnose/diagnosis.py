@@ -4,46 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import log, pi
-from typing import Literal
+from math import nan, pi, sqrt
+from typing import Any, Literal
 
 import numpy as np
 
 from strainwave import arguments
 from strainwave.diagnose.baseline import Comparison, baseline_of, compared
+from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise, threshold_of
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current
 from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogue_life, condition, trend
+from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_orders
 from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
+from strainwave.diagnose.response import error_response
+from strainwave.diagnose.steady_run import ACCURACY, ARCMINUTE
 from strainwave.files.gear_set import GearSet
-from strainwave.messages import listed
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import Ripple, ripple
 
 Verdict = Literal["changed", "no change found", "insensitive", "not comparable", "lines found", "no line found"]
 
-ARC_MINUTE = pi / 180.0 / 60.0  # rad
-MAX_CATALOGUE_ERROR = 2.0 * ARC_MINUTE  # rad: transmission accuracy of the least accurate catalogue gears
 LOAD_LEVELS = 3  # of the size of the load, in the table of the wave generator's ripple
 MIN_LOAD_SPREAD = 0.3  # of the load's root mean square [1], from which it has levels
-MAX_HARMONIC = 12  # of an order, up to which a cause is named
 WAVE_RESOLUTIONS = 1.5  # resolutions, by which a line differs at most from the order of the wave generator
 MAX_OTHER_LINES = 6  # that are fitted beside the wave generator's
-
-
-@dataclass(frozen=True)
-class NamedOrder:
-    """An order that a strain wave gear may have.
-
-    Attributes:
-        order: per revolution of the shaft
-        per_input: per revolution of the input
-        name: its cause, in words
-    """
-
-    order: float
-    per_input: float
-    name: str
 
 
 @dataclass(frozen=True)
@@ -55,7 +40,8 @@ class OrderAgainstNoise:
         forward, backward: amplitude in each direction, in the unit of the column; None without such motion
         threshold: amplitude from which noise alone is less probable than the stated rate, over all orders of the recording
         expected: amplitude by the kinematic error of the gear and the load of the recording; nan if it is not known
-        error: kinematic error at the output that would have the amplitude of the threshold [rad]; nan if it is not known
+        error: kinematic error at the output that is detected with probability 0.9 [rad]; nan if it is not known
+        needed: amplitude of this error
         detected: True if an amplitude is above the threshold
     """
 
@@ -65,6 +51,7 @@ class OrderAgainstNoise:
     threshold: float
     expected: float
     error: float
+    needed: float
     detected: bool
 
 
@@ -109,6 +96,7 @@ class RunDiagnosis:
         ripple: lines found blind
         wave: ripple of the wave generator; None if none was found
         orders: named orders against noise; empty if the ratio is not known
+        response: source of the amplitude per kinematic error, in words
         comparison: with the baseline; None without one
         verdict: in one or two words
         reason: of the verdict, in a sentence
@@ -125,6 +113,7 @@ class RunDiagnosis:
     ripple: Ripple
     wave: WaveRipple | None
     orders: tuple[OrderAgainstNoise, ...]
+    response: str
     comparison: Comparison | None
     verdict: Verdict
     reason: str
@@ -177,7 +166,8 @@ class Question:
     Attributes:
         gear_set: of the joint; None if it is not known
         ratio: size of the ratio; None if it is not known
-        orders: further orders per revolution of the input, as of bearings
+        orders: further orders per revolution of the input
+        bearings: `sw.fault.WaveGeneratorBearing` with the geometry of bearings, whose orders are named
         false_alarm: stated rate of false alarms, over all tests of a recording
         hours: of operation, by the name of the recording; empty if they are not known
         threshold: of the health indicator, at which the gear is to be exchanged; None if there is none
@@ -187,10 +177,20 @@ class Question:
     gear_set: GearSet | None = None
     ratio: float | None = None
     orders: tuple[float, ...] = ()
-    false_alarm: float = 1e-3
+    bearings: tuple[Any, ...] = ()
+    false_alarm: float = FALSE_ALARM
     hours: Mapping[str, float] = field(default_factory=dict)
     threshold: float | None = None
     ramp_drive: GearSet | None = None
+
+    @property
+    def kinematics(self) -> Any:
+        """Kinematics of the gear; None if it is not known."""
+        return None if self.gear_set is None else self.gear_set.gear.kinematics
+
+    def named_orders(self, run: JointRecording) -> tuple[NamedOrder, ...]:
+        """Return the orders that the gear may have over the angle of a recording."""
+        return named_orders(run, self.kinematics, self.orders, self.bearings)
 
 
 def diagnosed(
@@ -244,62 +244,6 @@ def diagnosed(
     )
 
 
-def named_orders(run: JointRecording, question: Question) -> tuple[NamedOrder, ...]:
-    """Return the orders that a strain wave gear may have over the angle of a shaft; empty if its ratio is not known."""
-    per_input = run.per_input
-    if not np.isfinite(per_input):
-        return ()
-    orders = [
-        NamedOrder(WAVE_ORDER * per_input, WAVE_ORDER, "wave generator"),
-        NamedOrder(per_input, 1.0, "eccentricity of the wave generator"),
-        NamedOrder(2.0 * WAVE_ORDER * per_input, 2.0 * WAVE_ORDER, "wave generator, second harmonic"),
-    ]
-    kinematics = None if question.gear_set is None else question.gear_set.gear.kinematics
-    teeth = getattr(kinematics, "circular_spline_teeth", None), getattr(kinematics, "flexspline_teeth", None)
-    if teeth[0] and teeth[1]:
-        other = WAVE_ORDER * float(teeth[0]) / float(teeth[1])
-        orders.append(NamedOrder(other * per_input, other, "wave generator against the other spline"))
-    orders += [NamedOrder(each * per_input, each, "as asked") for each in question.orders]
-    return tuple(orders)
-
-
-def causes(orders: Sequence[float], motion: JointMotion, question: Question) -> tuple[str, ...]:
-    """Return what orders of a shaft repeat with in a strain wave gear, a sentence for each cause.
-
-    Args:
-        orders: per revolution of the shaft
-        motion: of the recording, which separates orders by its length
-        question: with the gear, whose teeth separate the splines
-    """
-    per_input = motion.run.per_input
-    if not np.isfinite(per_input):
-        return ()
-    kinematics = None if question.gear_set is None else question.gear_set.gear.kinematics
-    circular, flexible = (getattr(kinematics, f"{name}_teeth", 0) for name in ("circular_spline", "flexspline"))
-    is_fixed = getattr(kinematics, "fixed", "") == "circular_spline"
-    still, turning = ("circular spline", "flexspline") if is_fixed else ("flexspline", "circular spline")
-    passes = (float(circular) / float(flexible)) ** (1.0 if is_fixed else -1.0) if circular and flexible else 0.0
-    reach = 1.0 / max(motion.span * per_input, 1e-300)
-    by_cause = dict[str, list[str]]()
-    for order in dict.fromkeys(orders):
-        own = order / per_input
-        whole = abs(own - round(own)) < reach and 1 <= round(own) <= MAX_HARMONIC
-        rounds = own / (WAVE_ORDER * passes) if passes else 0.0
-        other = 1 <= round(rounds) <= MAX_HARMONIC and abs(rounds - round(rounds)) * WAVE_ORDER * passes < reach
-        if whole and other:
-            cause = "of either spline, which this record does not separate: turn the output further"
-        elif other:
-            cause = f"passes of the wave generator over one place of the {turning}: a crack, or damaged teeth there"
-        elif whole:
-            cause = f"whole multiples: misalignment or wear of the wave generator, or teeth of the {still}"
-        else:
-            cause = "of none of both splines: a bearing, the motor, or a resonance"
-        by_cause.setdefault(cause, []).append(f"{own:.4g}")
-    return tuple(
-        f"order{'s' if len(each) > 1 else ''} {listed(each)} of the input: {cause}" for cause, each in by_cause.items()
-    )
-
-
 def _blind(run: JointRecording, question: Question) -> Ripple:
     return ripple(
         run.recording, run.column, angle=run.angle, side=run.side, ratio=run.ratio, rate=run.rate, other_angles=run.others
@@ -321,9 +265,11 @@ def _check_alike(runs: Sequence[JointRecording]) -> None:
 def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]) -> RunDiagnosis:
     found = _blind(run, question)
     motion = joint_motion(run)
-    orders = _against_noise(motion, named_orders(run, question), found, question)
+    named = question.named_orders(run)
+    orders, response = _against_noise(motion, named, found, question)
     comparison, remarks = _compared(motion, found, question, healthy, known)
-    verdict, reason = _verdict(orders, comparison, found, question, bool(healthy), remarks)
+    verdict, reason = _verdict(orders, comparison, found, named, bool(healthy), remarks, run.unit)
+    alarms = () if comparison is None else comparison.alarms
     geometry = _geometry(run, question, remarks)
     return RunDiagnosis(
         run.name,
@@ -331,6 +277,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         found,
         _wave(motion, found),
         orders,
+        response,
         comparison,
         verdict,
         reason,
@@ -338,7 +285,13 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         geometry,
         motion.span * run.per_input,
         motion.load,
-        () if comparison is None else causes([each.order for each in comparison.alarms], motion, question),
+        causes(
+            [each.order for each in alarms],
+            run.per_input,
+            1.0 / max(motion.span, 1e-300),
+            question.kinematics,
+            question.bearings,
+        ),
         tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
     )
 
@@ -360,7 +313,7 @@ def _compared(
     """Return the comparison with the baseline, or why there is none."""
     if not healthy:
         return None, []
-    named = [each.order for each in named_orders(motion.run, question) if each.order <= found.highest]
+    named = [each.order for each in question.named_orders(motion.run) if each.order <= found.highest]
     resolution = 1.0 / max(each.span for each in healthy)
     planned = apart([*known, *named], resolution)  # a line is where it was found, also beside a whole order
     own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
@@ -375,56 +328,70 @@ def _compared(
 
 def _against_noise(
     motion: JointMotion, named: Sequence[NamedOrder], found: Ripple, question: Question
-) -> tuple[OrderAgainstNoise, ...]:
-    """Return the named orders that the samples follow and the record separates, each with its threshold."""
-    seen = [each for each in named if each.order <= found.highest]
-    kept = set(apart([each.order for each in seen], 1.0 / max(motion.span, 1e-12)))
-    seen = [each for each in seen if each.order in kept]
-    if not seen:
-        return ()
-    (cells,) = cells_of(motion, [each.order for each in seen], np.zeros(len(motion.shaft.series), dtype=int))
-    tests = len(SENSES) * len(seen)
+) -> tuple[tuple[OrderAgainstNoise, ...], str]:
+    """Return the named orders that the samples follow and the record separates, and the source of their response to errors."""
+    followed = [each for each in named if each.order <= found.highest]
+    kept = set(apart([each.order for each in followed], 1.0 / max(motion.span, 1e-12)))
+    separate = [each for each in followed if each.order in kept]
+    if not separate:
+        return (), ""
+    (cells,) = cells_of(motion, [each.order for each in separate], np.zeros(len(motion.shaft.series), dtype=int))
+    by_order = {each: both for each, *both in zip(separate, *cells, strict=True) if any(cell is not None for cell in both)}
+    tests = sum(cell is not None for both in by_order.values() for cell in both)
+    of_error = [each.per_input for each in by_order if each.of_error]
+    response = error_response(motion, of_error, question.gear_set, motion.run.ratio)
     law = None if question.gear_set is None else question.gear_set.gear.kinematic_error
     amplitudes = dict(zip(getattr(law, "order", ()), getattr(law, "amplitude", ()), strict=True))
     rows = []
-    for k, each in enumerate(seen):
-        forward, backward = cells[0][k], cells[1][k]
-        there = [cell for cell in (forward, backward) if cell is not None]
-        if not there:
-            continue
-        sigma = min(cell.sigma for cell in there)
-        threshold = sigma * float(np.sqrt(2.0 * log(tests / question.false_alarm)))
-        ratio = motion.run.ratio
-        per_error = np.nan if ratio is None else each.per_input * ratio * motion.load  # by virtual work, at low speed
-        error = threshold / per_error if per_error > 0.0 else np.nan
-        expected = amplitudes[each.per_input] * per_error if each.per_input in amplitudes else np.nan
-        detected = any(cell.amplitude > cell.sigma * threshold / sigma for cell in there)
-        rows.append(OrderAgainstNoise(each, forward, backward, threshold, float(expected), float(error), detected))
-    return tuple(rows)
+    for each, both in by_order.items():
+        there = [cell for cell in both if cell is not None]
+        least = min(there, key=lambda cell: cell.sigma)
+        needed = least.sigma * needed_signal_to_noise(DETECTION, question.false_alarm, least.freedom, tests)
+        per_error = response.per_error.get(each.per_input, nan)
+        rows.append(
+            OrderAgainstNoise(
+                each,
+                *both,
+                threshold=_threshold(least, question.false_alarm, tests),
+                expected=float(amplitudes.get(each.per_input, nan) * per_error),
+                error=needed / per_error if per_error > 0.0 else nan,
+                needed=needed,
+                detected=any(cell.amplitude > _threshold(cell, question.false_alarm, tests) for cell in there),
+            )
+        )
+    return tuple(rows), response.source
+
+
+def _threshold(cell: Cell, false_alarm: float, tests: int) -> float:
+    """Return the amplitude that noise alone exceeds with a probability in any of some tests."""
+    return cell.sigma * sqrt(2.0 * threshold_of(false_alarm, 2, cell.freedom, tests))
 
 
 def _verdict(
     orders: Sequence[OrderAgainstNoise],
     comparison: Comparison | None,
     found: Ripple,
-    question: Question,
+    named: Sequence[NamedOrder],
     has_baseline: bool,
     remarks: Sequence[str],
+    unit: str,
 ) -> tuple[Verdict, str]:
     """Return the verdict with its reason; never that a gear is healthy."""
     if comparison is not None and comparison.alarms:
         worst = comparison.alarms[0]
+        name = name_of(worst.order, named, 1.0 / max(found.revolutions, 1e-300))
+        own = f" ({name})" if name else ""
         return "changed", (
             f"{len(comparison.alarms)} of {len(comparison.changes)} amplitudes differ from the baseline; the surest is order "
-            f"{worst.order:.5g} {worst.direction}: {worst.baseline:.3g} before, {worst.amplitude:.3g} now, probability "
+            f"{worst.order:.5g} {worst.direction}{own}: {worst.baseline:.3g} before, {worst.amplitude:.3g} now, probability "
             f"{worst.false_alarm:.1g} in a joint that did not change"
         )
     wave = next((each for each in orders if each.order.per_input == WAVE_ORDER), None)
-    if wave is not None and wave.error > MAX_CATALOGUE_ERROR and not wave.detected:
+    if wave is not None and wave.error > ACCURACY and not wave.detected:
         return "insensitive", (
-            f"only a kinematic error above {wave.error / ARC_MINUTE:.3g} arc minutes would be seen at this load and speed, and "
-            f"catalogue gears have up to {MAX_CATALOGUE_ERROR / ARC_MINUTE:g}: a fault may be there; record under more load, "
-            "longer or with less noise"
+            f"only a kinematic error above {wave.error / ARCMINUTE:.3g} arc minutes would be seen at this load and speed, and "
+            f"gears may have {ACCURACY / ARCMINUTE:g}, which makes {wave.needed * ACCURACY / wave.error:.3g} {unit} where "
+            f"{wave.needed:.3g} {unit} are needed: a fault may be there; record under more load, longer or with less noise"
         )
     if comparison is not None and comparison.changes:
         low = min(each.limit / max(each.baseline, 1e-300) for each in comparison.changes)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.diagnose.actuator_ramp import RUN_IN, ActuatorRamp
-from strainwave.diagnose.detection import needed_signal_to_noise
+from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.inversion import (
     COMBINE,
     MICRON,
@@ -36,6 +36,7 @@ from strainwave.diagnose.inversion import (
 )
 from strainwave.diagnose.possible_drives import TREND_DEGREES, PossibleDrives
 from strainwave.diagnose.reaction import CurrentPerError
+from strainwave.diagnose.steady_run import ACCURACY
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -45,9 +46,7 @@ Complex = NDArray[np.complex128]
 
 SHARES_OF_TILT = 11  # between eccentricity alone and tilt alone, at which the region of m is evaluated
 MAX_TREND_SIGMA = 4.0  # a trend further from those of the drawn drives contradicts the set
-REFERENCE_ERROR = np.radians(1.0 / 60.0)  # rad: amplitude of an error that a run has to show, or it is insensitive
 REFERENCE_ORDER = 2.0  # at which strain wave gears have most of their error
-FALSE_ALARM, DETECTION = 1e-3, 0.9  # probabilities that define what a record resolves
 MAX_MISFIT_RATIO = 4.0  # a way of sharing whose misfit is larger than the least by this factor is not named as possible
 LOBES = {
     "single": "one lobe carries",
@@ -235,7 +234,7 @@ def misalignment_from_current(
     *,
     ramp: ActuatorRamp | None = None,
     drives: PossibleDrives | None = None,
-    reference_error: float = REFERENCE_ERROR,
+    reference_error: float = ACCURACY,
 ) -> Geometry:
     """Estimate m = e1 + h beta from the current of a ramp.
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.diagnose.baseline import Comparison
+from strainwave.diagnose.detection import CONFIDENCE
 from strainwave.files.gear_set import GearSet
 
 Array = NDArray[np.float64]
@@ -21,7 +22,6 @@ OTHER_LIFE_L10 = 7000.0  # h: series CSF, HFUC and others [HarmonicDrive2014]
 MEDIAN_TO_L10 = 5.0  # L50 over L10 [HarmonicDrive2014]
 WEIBULL_SLOPE = log(log(2.0) / log(1.0 / 0.9)) / log(MEDIAN_TO_L10)  # 1.17, by these two quantiles
 MIN_TREND_RECORDINGS = 5  # recordings, of which a trend is extrapolated
-CONFIDENCE = 0.95  # of intervals
 LIFE_QUANTILES = (0.1, 0.5, 0.9)  # of the gears that have failed
 
 

@@ -7,6 +7,9 @@ with s the smooth part (friction over speed, inertia, gravity, slow trend) and g
 that nothing of an order goes to the smooth part unseen. Under white noise of standard deviation :math:`\sigma_i` the standard
 deviation of an amplitude found in M samples is :math:`\sigma_i \sqrt{2 / M}`, the bound of Cramér and Rao
 (RifeBoorstyn1974). The level of the noise is measured around each order, so that it may be coloured.
+
+`replicates` is the other estimator: it fits joints that turn less than a revolution, where this one has no neighbours that
+measure the noise. Its noise floor has more false alarms under pink noise: 12 of 600 runs where 6 were stated.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.detection import amplitude_interval, false_alarm_of
+from strainwave.diagnose.detection import FALSE_ALARM, amplitude_interval, false_alarm_of
 from strainwave.diagnose.motion import Motion, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
@@ -30,7 +33,6 @@ Array = NDArray[np.float64]
 MIN_PERIODS = 3.0  # of an order in the record
 MIN_SEPARATION = 1.0 - 1e-6  # lines of the spectrum, by which two orders must differ
 MAX_SAMPLED_PHASE = 0.8 * pi  # rad of an order between two samples
-FALSE_ALARM = 1e-3
 NOT_SEPARATED = "not separated"
 
 

@@ -9,7 +9,8 @@ from math import isfinite
 from typing import Any
 
 from strainwave.diagnose.baseline import Change
-from strainwave.diagnose.diagnosis import ARC_MINUTE, Diagnosis, OrderAgainstNoise, RunDiagnosis
+from strainwave.diagnose.diagnosis import Diagnosis, OrderAgainstNoise, RunDiagnosis
+from strainwave.diagnose.steady_run import ARCMINUTE
 from strainwave.report import diagnose_figures as plots
 from strainwave.report.orders import line_numbers
 from strainwave.report.orders_figures import spectrum_figure
@@ -96,6 +97,8 @@ def _run_facts(found: RunDiagnosis) -> dict[str, str]:
     if isfinite(found.revolutions):
         facts["Turned"] = f"{number(found.revolutions, 3)} revolutions of the input from end to end"
     facts["Load"] = f"{quantity(found.load, found.run.unit)}, root mean square without friction"
+    if found.response:
+        facts["Amplitude per error"] = found.response
     return facts
 
 
@@ -123,7 +126,7 @@ def _order(each: OrderAgainstNoise, unit: str) -> dict[str, str]:
         "backward": cell(each.backward),
         "threshold": quantity(each.threshold, unit),
         "expected": quantity(each.expected, unit) if isfinite(each.expected) else "",
-        "error": f"{number(each.error / ARC_MINUTE, 3)}′" if isfinite(each.error) else "",
+        "error": f"{number(each.error / ARCMINUTE, 3)}′" if isfinite(each.error) else "",
         "state": "above noise" if each.detected else "within noise",
     }
 
@@ -202,12 +205,14 @@ def _run_lines(found: RunDiagnosis) -> Iterator[str]:
         for cell in found.wave.cells:
             load = f"load {number(cell.low, 3)} to {number(cell.high, 3)} {unit}"
             yield f"  {cell.direction}, {load}: {uncertain_quantity(cell.amplitude, cell.sigma, unit)}"
+    if found.response:
+        yield f"amplitude per kinematic error: {found.response}"
     for each in found.orders:
         row = _order(each, unit)
         text = f"order {row['order']} ({row['name']}): {row['state']}"
         text += "".join(f", {name} {row[name]}" for name in ("forward", "backward") if row[name])
         text += f"; noise reaches {row['threshold']}"
-        text += f", as an error of {row['error']} would" if row["error"] else ""
+        text += f", an error of {row['error']} would be seen" if row["error"] else ""
         yield text + (f"; expected {row['expected']}" if row["expected"] else "")
     if found.comparison is not None:
         for change in [each for each in found.comparison.changes if each.alarm][:MAX_CHANGES]:
@@ -276,6 +281,7 @@ def _run_results(found: RunDiagnosis) -> dict[str, Any]:
         "lines": [line_numbers(line) for line in found.ripple.lines],
         "wave_generator": found.wave,
         "orders": found.orders,
+        "response": found.response,
         "comparison": found.comparison,
         "condition": found.condition,
         "causes": found.causes,

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 
-from strainwave.diagnose.detection_limit import ARCMINUTE, DetectionLimit
+from strainwave.diagnose.detection_limit import DetectionLimit
+from strainwave.diagnose.steady_run import ARCMINUTE
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json

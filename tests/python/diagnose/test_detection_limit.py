@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.diagnose.detection import needed_signal_to_noise
-from strainwave.diagnose.detection_limit import ARCMINUTE, COLUMN, DetectionLimit, detection_limit
+from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
 from strainwave.diagnose.order_lines import order_lines
+from strainwave.diagnose.steady_run import ARCMINUTE, COLUMN
 
 from tests.detection_limits import (
     Case,

@@ -9,8 +9,8 @@ import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
 from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
-from strainwave.diagnose.detection import needed_signal_to_noise
-from strainwave.diagnose.geometry import DETECTION, FALSE_ALARM, Geometry, misalignment_from_current, ramp_of
+from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise
+from strainwave.diagnose.geometry import Geometry, misalignment_from_current, ramp_of
 from strainwave.diagnose.inversion import displaced, tilted
 from strainwave.diagnose.possible_drives import PossibleDrives, trend
 from strainwave.files.gear_set import GearSet
