@@ -336,7 +336,8 @@ def _against_noise(
     if not separate:
         return (), ""
     (cells,) = cells_of(motion, [each.order for each in separate], np.zeros(len(motion.shaft.series), dtype=int))
-    by_order = {each: both for each, *both in zip(separate, *cells, strict=True) if any(cell is not None for cell in both)}
+    directions = zip(separate, *cells, strict=True)
+    by_order = {each: (there, back) for each, there, back in directions if not (there is None and back is None)}
     tests = sum(cell is not None for both in by_order.values() for cell in both)
     of_error = [each.per_input for each in by_order if each.of_error]
     response = error_response(motion, of_error, question.gear_set, motion.run.ratio)
@@ -351,7 +352,8 @@ def _against_noise(
         rows.append(
             OrderAgainstNoise(
                 each,
-                *both,
+                both[0],
+                both[1],
                 threshold=_threshold(least, question.false_alarm, tests),
                 expected=float(amplitudes.get(each.per_input, nan) * per_error),
                 error=needed / per_error if per_error > 0.0 else nan,

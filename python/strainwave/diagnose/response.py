@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import tau
+from typing import Any
 
 import numpy as np
 
@@ -72,9 +73,11 @@ def _missing(motion: JointMotion, gear_set: GearSet | None) -> str:
 
 def _by_model(motion: JointMotion, orders: Sequence[float], whole: Drive) -> ErrorResponse:
     """Return the gain at an error of `ACCURACY`, of the drive that turns its inertia at the usual speed under the load."""
-    drive = whole.replace(load=loads.Inertia(inertia=whole.load.inertia))  # all other loads are in the recording
+    load: Any = whole.load
+    motor: Any = whole.motor
+    drive = whole.replace(load=loads.Inertia(inertia=load.inertia))  # all other loads are in the recording
     speed = _speed(motion)
-    per_torque = float(drive.motor.torque_constant) * abs(float(drive.gear.kinematics.ratio))  # N.m/A
+    per_torque = float(motor.torque_constant) * abs(float(drive.gear.kinematics.ratio))  # N.m/A
     torque = per_torque * motion.load
     if not motion.shaft.own.reverses():  # one direction does not separate load and friction, which the model has
         torque = per_torque * (motion.load - _friction_current(_steady(drive, speed, 0.0, orders)))

@@ -61,7 +61,8 @@ class Floor:
         from scipy.fft import irfft, rfft
 
         count = len(series)
-        level = self.at(np.fft.rfftfreq(count)) ** power
+        frequency: Array = np.fft.rfftfreq(count).astype(np.float64)
+        level = self.at(frequency) ** power
         divided: Array = irfft(rfft(series, axis=0) / (level if series.ndim == 1 else level[:, None]), count, axis=0)
         return divided
 

@@ -182,8 +182,9 @@ def least_squares(columns: Array, values: Array) -> Array:
     """Return the coefficients of columns by least squares; columns are scaled, so that small ones count alike."""
     size = np.linalg.norm(columns, axis=0)
     size[size == 0.0] = 1.0
-    found: Array = np.linalg.lstsq(columns / size, values, rcond=1e-8)[0]
-    return (found.T / size).T
+    scaled: Array = np.linalg.lstsq(columns / size, values, rcond=1e-8)[0]
+    coefficients: Array = (scaled.T / size).T
+    return coefficients
 
 
 def orthonormal(columns: Array) -> tuple[Array, Array]:

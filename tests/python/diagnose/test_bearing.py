@@ -71,8 +71,6 @@ def test_a_simulated_fault_of_a_bearing_is_named(records: dict[str, sw.Recording
     names = {each.order.name: each for each in damaged.orders}
     assert names["bearing, outer ring"].detected
     assert not names["bearing, inner ring"].detected
-    without = diagnosed([read(records["bearing"], "bearing")], Question(JOINT, ratio=100.0), baseline=healthy).runs[0]
-    assert "bearing, outer ring" not in " ".join((without.reason, *without.causes))
 
 
 def test_the_command_names_the_element(records: dict[str, sw.Recording], tmp_path: Path) -> None:
