@@ -34,7 +34,7 @@ import strainwave as sw  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 from strainwave.dataset.faults import changes, prepared  # noqa: E402
 from strainwave.diagnose.baseline import Baseline, baseline_of, compared  # noqa: E402
-from strainwave.diagnose.diagnosis import Question, diagnosed, named_orders  # noqa: E402
+from strainwave.diagnose.diagnosis import Question, diagnosed  # noqa: E402
 from strainwave.diagnose.refusals import JointRecording, usable  # noqa: E402
 from strainwave.diagnose.replicates import joint_motion  # noqa: E402
 from strainwave.parameters import every  # noqa: E402
@@ -214,7 +214,7 @@ class Unit:
     @cached_property
     def healthy(self) -> Baseline:
         """Replicates of the baseline at the orders that are named or asked for."""
-        orders = [each.order for each in named_orders(self.recorded[0], self.joint.question)]
+        orders = [each.order for each in self.joint.question.named_orders(self.recorded[0])]
         return baseline_of([joint_motion(each) for each in self.recorded], orders)
 
     def searched(self, records: Sequence[tuple[Array, Array]]) -> list[bool]:

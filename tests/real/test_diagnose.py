@@ -199,7 +199,7 @@ def test_recordings_that_cannot_be_used_are_refused_with_the_reason() -> None:
     still = next(each for each in direct_drives() if "sig0" in each.name)
     bare = joint.recording.select(["time", "output_angle"])
     for recording, reason in (
-        (slow, r"aliased: order 2 of the wave generator passes at .* Hz .* the limit is 2\.34 Hz, half of the sample rate"),
+        (slow, r"aliased: order 2 of the wave generator passes at .* Hz .* the limit is 1\.872 Hz, 0\.8 of half"),
         (short, r"too short: the input turns .* revolutions .* needs 3 or more"),
         (still.recording, r"at rest|too short"),
         (bare, r"without current or torque: its columns are time, output_angle"),

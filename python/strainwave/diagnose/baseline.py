@@ -208,7 +208,8 @@ def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell]) -> tuple[list
         "load": (float(loads.min()) - load_room, float(loads.max()) + load_room),
         "place": (float(places.min()) - place_room, float(places.max()) + place_room),
     }
-    if float(np.ptp(places)) > tau:  # many revolutions: every place comes again
+    ends = [cell.place + side * cell.turned for cell in known for side in (-0.5, 0.5)]
+    if float(np.ptp(ends)) > tau:  # more than a revolution: every place comes again
         del bounds["place"]
     left, reasons = [], list[str]()
     for cell in own:

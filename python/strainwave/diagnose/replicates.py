@@ -72,6 +72,7 @@ class Cell:
         speed: mean size of the speed there [rad/s; rad per sample if no time is known]
         load: mean load there, in the unit of the column
         place: mean angle there [rad]
+        turned: angle there from end to end [rad]
     """
 
     amplitude: float
@@ -80,6 +81,7 @@ class Cell:
     speed: float
     load: float
     place: float
+    turned: float
 
 
 def joint_motion(run: JointRecording) -> JointMotion:
@@ -220,6 +222,7 @@ def _block_cells(
             speed=speed / motion.step,
             load=float(np.average(shaft.load[here], weights=share)),
             place=float(np.average(shaft.own.angle[here], weights=share)),
+            turned=float(np.ptp(shaft.own.angle[here])),
         )
     return cells
 

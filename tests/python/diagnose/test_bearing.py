@@ -100,7 +100,6 @@ def test_a_multiple_of_a_bearing_that_is_no_whole_order_is_its_cause() -> None:
         (("--gear", "csg-25-100", "--bearing", "23.5,4.763,46"), "balls = 23.5 must be a whole number"),
         (("--gear", "csg-25-100", "--bearing", "23,9,46"), "the balls must fit on their circle"),
         (("--ratio", "100", "--bearing", "23,4.763,46"), "the orders of a bearing need a gear with teeth"),
-        (("--plan", "--bearing", "23,4.763,46"), "--bearing names orders of recordings"),
     ],
 )
 def test_options_that_do_not_fit_are_refused_in_one_line(
@@ -108,3 +107,7 @@ def test_options_that_do_not_fit_are_refused_in_one_line(
 ) -> None:
     records["later"].to_csv(tmp_path / "later.csv")
     refused(tmp_path, ("diagnose", "later.csv", *options), reason)
+
+
+def test_a_plan_has_no_recording_whose_orders_a_bearing_names(tmp_path: Path) -> None:
+    refused(tmp_path, ("diagnose", "--plan", "--bearing", "23,4.763,46"), "does not use --bearing")
