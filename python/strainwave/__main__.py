@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from pathlib import Path
@@ -13,6 +14,10 @@ def main() -> None:
     """Runs the command, as the shell knows it."""
     written: list[Path] = []
     try:
+        from strainwave.simulation.threads import THREAD_VARIABLES
+
+        for name in THREAD_VARIABLES:
+            os.environ.setdefault(name, "1")
         from strainwave.commands import cli
         from strainwave.files import writing
 

@@ -22,6 +22,7 @@ from strainwave.dataset.plan import Plan
 from strainwave.dataset.shards import Shards
 from strainwave.messages import one_line
 from strainwave.native import kernels
+from strainwave.simulation.threads import THREAD_VARIABLES
 
 POLL_SECONDS = 0.2
 PROGRESS_SECONDS = 2.0
@@ -32,7 +33,6 @@ MAX_ERROR_BYTES = 4000
 DASK_RETRIES = 5  # of a shard whose worker died
 SLURM_SCRIPT = "slurm.sh"
 SLURM_MEMORY = "1G"
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 Show = Callable[[str], None]
 
 

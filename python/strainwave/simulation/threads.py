@@ -11,6 +11,9 @@ from typing import TypeVar
 Told = Callable[[int], None]  # what a call of the core tells now and then how many steps are done
 T = TypeVar("T")
 
+# Of libraries of linear algebra, which wait for each other beside other processes and take up to ten times the processor time.
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
 
 def available_threads() -> int:
     """How many threads this process may run at once."""
