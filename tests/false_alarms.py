@@ -82,7 +82,7 @@ def numbers(drive: sw.Drive, days: Days, day_spread: float, random: np.random.Ge
                 of_the_day[path] *= friction
             elif path.startswith("load."):
                 of_the_day[path] *= load
-            elif path.startswith("gear.kinematic_error.amplitude"):
+            elif day_spread > 0.0 and path.startswith("gear.kinematic_error.amplitude"):
                 of_the_day[path] *= float(np.exp(day_spread * random.standard_normal()))
         recorded.append(of_the_day)
     return recorded
