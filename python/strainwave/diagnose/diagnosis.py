@@ -222,7 +222,14 @@ def diagnosed(
     _check_alike([*runs, *baseline])
     healthy = [joint_motion(run) for run in baseline]
     known = [line for run in baseline for line in gear_lines(_blind(run, question))]
-    done = [_run(run, question, healthy, known) for run in runs]
+    done: list[RunDiagnosis] = []
+    for run in runs:
+        try:
+            done.append(_run(run, question, healthy, known))
+        except ValueError as error:
+            refused[run.name] = str(error)
+    if not done:
+        raise ValueError("; ".join(f"{name}: {why}" for name, why in refused.items()))
     remarks: list[str] = []
     if not baseline:
         remarks.append(

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -338,7 +337,8 @@ def _spread(values: Complex) -> Array:
 def _sensitivity(measured: MeasuredOrders, gains: Complex, parts: CurrentPerError, error: float) -> Sensitivity:
     place = ORDERS.index(REFERENCE_ORDER)
     current = error * float(np.abs(gains[:, place].mean()))
-    resolved = needed_signal_to_noise(DETECTION, FALSE_ALARM, inf) * float(measured.noise[place])
+    needed = needed_signal_to_noise(DETECTION, FALSE_ALARM, measured.degrees, len(ORDERS))
+    resolved = needed * float(measured.noise[place])
     per_torque = error * abs(complex(parts.per_torque[place]))
     return Sensitivity(error, REFERENCE_ORDER, current, resolved, parts.torque, resolved / per_torque)
 

@@ -25,7 +25,8 @@ Complex = NDArray[np.complex128]
 COMBINE = ("single", "mean", "max")
 MICRON = 1e-6
 ORDERS = (1.0, 2.0, 3.0, 4.0)
-MAX_NOISE_LINES = 8  # on each side of an order, from which its noise is estimated; the next one contains half of the order
+NOISE_LINES = 14  # the nearest ones, from which the noise of an order is estimated
+MIN_NOISE_ORDER = 0.5  # below it lines contain the trend
 HANN_NOISE_POWER = 1.5  # power of noise in a line through a Hann window over that without
 PROBE_AMPLITUDE = 2e-5  # rad, of each order of the error with which a drive is run
 SLOPE_STEP = 1e-8  # m, by which slopes of the orders are taken
@@ -135,18 +136,18 @@ def phasors(recording: Recording, column: str) -> Complex:
 def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
     """Return the orders of a column, and their noise.
 
-    Lines between the orders have noise alone; those near an order determine the noise of that order. They come from a spectrum
-    through a Hann window. It adds half to the power of noise, and the powers of neighbouring lines correlate by 4/9, of next
-    ones by 1/36. So two lines determine it about as well as one without a window.
+    Lines between the orders have noise alone, except the next ones of an order, which contain half of it. Those near an order
+    determine its noise. They come from a spectrum through a Hann window. It adds half to the power of noise, and the powers of
+    neighbouring lines correlate by 4/9, of next ones by 1/36. So two lines determine it about as well as one without a window.
     """
     orders = order_amplitudes(recording, column, ORDERS)
     spectrum = order_spectrum(recording, column, ORDERS[-1] + 0.5)
     line = np.rint(spectrum["order"] * orders.revolutions)
-    reach = min(MAX_NOISE_LINES, (orders.revolutions - 2) // 2)
-    apart = [np.abs(line - order * orders.revolutions) for order in ORDERS]
-    near = [spectrum["amplitude"][(distance > 1) & (distance <= reach)] for distance in apart]
-    noise = np.sqrt(np.array([np.mean(lines**2) for lines in near]) / (2.0 * HANN_NOISE_POWER))
-    degrees = round(2.0 * len(near[0]) / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)))
+    apart = np.abs(line - orders.revolutions * np.array(ORDERS)[:, np.newaxis])
+    quiet = (apart.min(axis=0) > 1) & (line > MIN_NOISE_ORDER * orders.revolutions)
+    near = np.argsort(np.where(quiet, apart, np.inf), axis=1, kind="stable")[:, : min(NOISE_LINES, int(quiet.sum()))]
+    noise = np.sqrt(np.mean(spectrum["amplitude"][near] ** 2, axis=1) / (2.0 * HANN_NOISE_POWER))
+    degrees = round(2.0 * near.shape[1] / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)))
     return MeasuredOrders(_sines(orders.amplitude, orders.phase), np.maximum(noise, np.finfo(float).tiny), degrees)
 
 
