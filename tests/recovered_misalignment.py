@@ -143,6 +143,8 @@ def table(found: list[Unit]) -> str:
     outer = np.mean([unit.result.estimate.combine == "max" for unit in found])
     detected = np.mean([unit.result.detected for unit in found])
     lines.append(f"the outer lobe carries: {outer:.0%}, else one does, as c_x is larger than m; detected: {detected:.0%}")
+    size, direction = np.max([unit.result.estimate.half_widths for unit in found], axis=0)[:2]
+    lines.append(f"largest half width: {1e6 * size:.2f} um of the size, {np.degrees(direction):.1f} deg of the direction")
     return "\n".join(lines)
 
 
