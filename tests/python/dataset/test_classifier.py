@@ -10,12 +10,15 @@ from strainwave.dataset.classifier import LabelledRuns, balanced_accuracy, bench
 pytest.importorskip("sklearn")
 
 UNITS, CONDITIONS, REPEATS = 24, 4, 6
-TREES = 20  # of a forest: five features need no more, and a benchmark grows nine forests
+TREES = 20  # of a forest: five features need no more
+CHANCE_SHUFFLES, CHANCE_TREES = 20, 5  # fewer than those of a result, as a test grows them each time
 
 
 @pytest.fixture(autouse=True)
 def small_forests(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(classifier, "FOREST_TREES", TREES)
+    monkeypatch.setattr(classifier, "CHANCE_SHUFFLES", CHANCE_SHUFFLES)
+    monkeypatch.setattr(classifier, "CHANCE_TREES", CHANCE_TREES)
 
 
 def runs(effect: float, own: float, seed: int = 0) -> LabelledRuns:
@@ -44,7 +47,14 @@ def test_a_split_by_run_pretends_what_held_out_units_do_not_have() -> None:
     found = benchmark(runs(effect=0.0, own=1.0))
     assert found.leaky.accuracy > 0.95  # the forest recognises units
     assert found.by_unit.low < 0.5 < found.by_unit.high + 0.1
-    assert abs(found.chance.accuracy - 0.5) < 0.35
+
+
+def test_chance_has_one_over_the_labels_inside_the_quantiles_of_its_shuffles() -> None:
+    """Features of the unit alone: the answers of a shuffle are the same for all runs of a unit, and differ between shuffles."""
+    found = benchmark(runs(effect=0.0, own=1.0)).chance
+    assert found.low < 0.5 < found.high
+    assert found.low < found.accuracy < found.high
+    assert found.units == round(classifier.HELD_OUT_SHARE * UNITS)
 
 
 def test_counts_of_the_confusion_are_those_of_the_runs_that_were_held_out() -> None:
