@@ -16,7 +16,7 @@ from strainwave.diagnose.replicates import JointMotion, joint_motion
 from strainwave.parameters import every
 
 speed, load, noise, duration = 20.0, 40.0, 0.05, 8.0  # rad/s of the input, N.m, A of a sample, s
-orders = [2.0, 1.0, 4.0, 6.06, 8.08]  # of a strain wave gear, and of a crack
+orders = [2.0, 1.0, 4.0, 6.06, 8.08]  # of a strain wave gear, those of a crack included
 severities = [0.0, 0.06, 0.12, 0.25, 0.5]
 chance = np.random.default_rng(1)
 joint = sw.Drive(
@@ -67,7 +67,7 @@ figure = Figure(figsize=(7.0, 4.5), layout="constrained")
 axes = figure.subplots()
 for number, (name, alarms) in enumerate(found.items()):
     counts = np.sum(alarms, axis=0)
-    bands = [binomtest(int(count), len(alarms)).proportion_ci(method="wilson") for count in counts]
+    bands = [binomtest(int(count), len(alarms)).proportion_ci() for count in counts]
     axes.plot(severities, counts / len(alarms), "o-", color=f"C{number}", label=name)
     axes.fill_between(severities, *np.array(bands).T, color=f"C{number}", alpha=0.2, lw=0)
     print(f"{name:27} of {len(alarms)} units: {counts} at severities {severities}")

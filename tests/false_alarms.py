@@ -4,7 +4,7 @@ Each healthy unit has its own kinematic error, stiffness, friction, inertia and 
 friction differs with the temperature, the load with what is carried, the kinematic error by `--day`, and the noise is another
 one. Some days are the baseline, the others are diagnosed as `strainwave diagnose RECORDING --baseline FOLDER --gear FILE` does
 it, the blind search included. Every alarm is false. Runs of one unit share a baseline, so that their alarms are not
-independent: units with an alarm are counted, too.
+independent. Intervals are therefore those of the share of units with an alarm.
 
 The spread of changes over their stated standard deviation is 1 if that is right, and less if it is larger than need be.
 """
@@ -24,8 +24,9 @@ from strainwave.diagnose.refusals import JointRecording, usable
 from strainwave.parameters import every
 from strainwave.simulation.ensemble import Ensemble, simulate_many
 
+from tests.shares import share_interval
+
 RATES = (0.05, 0.01, 0.001)  # stated rates of false alarms
-CONFIDENCE = 0.95  # of the interval of a rate
 SEED = 7
 STROKE, PERIOD, DURATION = 0.5, 10.0, 20.0  # rad and s, of a motion to and fro of the output: 25 revolutions of the input
 SAMPLE = 0.01  # s
@@ -156,30 +157,38 @@ def spread(changed: Sequence[float]) -> str:
     return f"changes over their stated standard deviation: root mean square {square:.3f}, median size {middle:.3f}"
 
 
-def interval(alarms: int, runs: int) -> tuple[float, float]:
-    """Return the interval of a rate (Clopper and Pearson)."""
-    from scipy.stats import binomtest
-
-    found = binomtest(alarms, runs).proportion_ci(CONFIDENCE, method="exact")
-    return float(found.low), float(found.high)
+def units_with_an_alarm(least: Sequence[Sequence[float]], rate: float) -> int:
+    """Return the number of units with a run that is an alarm at a stated rate."""
+    return sum(any(each < rate for each in one) for one in least)
 
 
 def table(least: Sequence[Sequence[float]]) -> str:
-    """Return alarms at each stated rate, with their intervals.
+    """Return alarms and units with an alarm at each stated rate, with the interval of the share of units.
+
+    The rate of alarms per run is at most this share, and at least the share over the number of runs of a unit.
 
     Args:
         least: least probability of each run, by unit
     """
     runs = sum(map(len, least))
-    lines = [f"{'stated':>7} {'alarms':>7} {'runs':>6} {'rate':>8}   {'95 % interval':<19} {'units with an alarm':>19}"]
+    lines = [f"{'stated':>7} {'alarms':>7} {'runs':>6} {'rate':>8} {'units with an alarm':>21}   95 % interval of this share"]
     for rate in RATES:
         alarms = sum(each < rate for one in least for each in one)
-        low, high = interval(alarms, runs)
-        units = sum(any(each < rate for each in one) for one in least)
+        units = units_with_an_alarm(least, rate)
+        low, high = share_interval(units, len(least))
         lines.append(
-            f"{rate:>7g} {alarms:>7} {runs:>6} {alarms / runs:>8.5f}   {low:.5f} to {high:.5f}  {units:>14} of {len(least)}"
+            f"{rate:>7g} {alarms:>7} {runs:>6} {alarms / runs:>8.5f} {f'{units} of {len(least)}':>21}   {low:.4f} to {high:.4f}"
         )
     return "\n".join(lines)
+
+
+def exceeds(least: Sequence[Sequence[float]], rate: float) -> bool:
+    """True if the rate of alarms per run is above a stated one, by the lower end of the interval over units.
+
+    A unit with n runs has an alarm with a probability of at most n times the rate.
+    """
+    most = max(map(len, least)) * rate
+    return share_interval(units_with_an_alarm(least, rate), len(least))[0] > most
 
 
 def main() -> int:
@@ -219,8 +228,7 @@ def main() -> int:
             break
     print(f"{STROKE:g} rad, {DURATION:g} s at {1.0 / SAMPLE:g} Hz; baseline of {asked.baseline} days; {verdicts}")
     print(table(least), spread(changed), sep="\n")
-    runs = sum(map(len, least))
-    return int(any(interval(sum(each < rate for one in least for each in one), runs)[0] > rate for rate in RATES))
+    return int(any(exceeds(least, rate) for rate in RATES))
 
 
 if __name__ == "__main__":
