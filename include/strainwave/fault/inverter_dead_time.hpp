@@ -11,7 +11,8 @@ struct InverterDeadTime {
     static constexpr auto name = "inverter_dead_time";
     static constexpr auto mode = "Dead time of the inverter that is not compensated";
     static constexpr auto effect = "each phase loses voltage against its current; the current is distorted at its zeros";
-    static constexpr auto signal = "order 6 p of the input in motor current and torque, less where a current loop is fast; voltage per current";
+    static constexpr auto signal =
+        "order 6 p of the input in motor current and torque, less where a current loop is fast; voltage per current";
     static constexpr auto source = "JeongPark1991; the voltage at severity 1 is assumed";
     static constexpr auto doc = R"(
         An inverter that waits longer between its switches, or whose compensation of this wait fails.
