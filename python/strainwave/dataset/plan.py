@@ -375,7 +375,7 @@ WHOLE_KEYS = {"number", "seed", "shard_members", "stages", "every"}  # keys whos
 
 
 def _without_whole_numbers(value: Any, key: str = "") -> Any:
-    """Turn whole numbers into floats, where a float is meant: TOML tells 1 from 1.0, engineers do not."""
+    """Turn whole numbers into floats, where a float is meant: TOML distinguishes 1 from 1.0, and an engineer does not."""
     if isinstance(value, dict):
         return {name: _without_whole_numbers(each, name) for name, each in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Numbers drawn by index: a design says where each of many points lies, without the points before it."""
+"""Numbers drawn by index: a design determines each of many points without the points before it."""
 
 from __future__ import annotations
 
