@@ -15,7 +15,7 @@ from math import hypot, inf
 
 from strainwave import Drive, arguments
 from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise
-from strainwave.diagnose.steady_run import ACCURACY, ARCMINUTE, RecordedOrder, SteadyRun
+from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 
 PROBE = ARCMINUTE  # rad: error of the first run; later ones have the limit itself
 PROBE_RUNS = 3  # runs with an error at most
@@ -82,7 +82,7 @@ def detection_limit(
     order: float,
     probability: float = DETECTION,
     false_alarm: float = FALSE_ALARM,
-    accuracy: float = ACCURACY,
+    accuracy: float = MAX_CATALOGUE_AMPLITUDE,
     tests: int = 1,
 ) -> DetectionLimit:
     """Return the smallest kinematic error of an order that the motor current shows, for this drive and this record.

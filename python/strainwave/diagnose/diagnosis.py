@@ -18,7 +18,7 @@ from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_
 from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.diagnose.response import error_response
-from strainwave.diagnose.steady_run import ACCURACY, ARCMINUTE
+from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import Ripple, ripple
@@ -396,10 +396,11 @@ def _verdict(
             f"{worst.false_alarm:.1g} in a joint that did not change"
         )
     wave = next((each for each in orders if each.order.per_input == WAVE_ORDER), None)
-    if wave is not None and wave.error > ACCURACY and not wave.detected:
+    if wave is not None and wave.error > MAX_CATALOGUE_AMPLITUDE and not wave.detected:
+        current = wave.needed * MAX_CATALOGUE_AMPLITUDE / wave.error
         return "insensitive", (
             f"only a kinematic error above {wave.error / ARCMINUTE:.3g} arc minutes would be seen at this load and speed, and "
-            f"gears may have {ACCURACY / ARCMINUTE:g}, which makes {wave.needed * ACCURACY / wave.error:.3g} {unit} where "
+            f"gears may have {MAX_CATALOGUE_AMPLITUDE / ARCMINUTE:g}, which makes {current:.3g} {unit} where "
             f"{wave.needed:.3g} {unit} are needed: a fault may be there; record under more load, longer or with less noise"
         )
     if comparison is not None and comparison.changes:

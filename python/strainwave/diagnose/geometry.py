@@ -35,7 +35,7 @@ from strainwave.diagnose.inversion import (
 )
 from strainwave.diagnose.possible_drives import TREND_DEGREES, PossibleDrives
 from strainwave.diagnose.reaction import CurrentPerError
-from strainwave.diagnose.steady_run import ACCURACY
+from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -233,7 +233,7 @@ def misalignment_from_current(
     *,
     ramp: ActuatorRamp | None = None,
     drives: PossibleDrives | None = None,
-    reference_error: float = ACCURACY,
+    reference_error: float = MAX_CATALOGUE_AMPLITUDE,
 ) -> Geometry:
     """Estimate m = e1 + h beta from the current of a ramp.
 

@@ -11,11 +11,12 @@ import numpy as np
 
 from strainwave import Drive, loads
 from strainwave.diagnose.replicates import JointMotion
-from strainwave.diagnose.steady_run import ACCURACY, COLUMN, RecordedOrder, SteadyRun
+from strainwave.diagnose.steady_run import COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 from strainwave.files.gear_set import GearSet
 
 SAMPLES_PER_PERIOD = 20.0  # of an order, in the runs of the model
 MODEL_TURNS = 5.0  # of the input in a run of the model, or periods of an order below 1
+FRICTION_SPREAD = 0.3  # of the friction of the model [1], by which that of the gear may be larger
 MAX_MODEL_DURATION = 300.0  # s, of a run of the model: slower motion is that of virtual work
 
 
@@ -38,7 +39,8 @@ def error_response(
     """Return the response by the model of the whole drive in its loop, or else by virtual work.
 
     By virtual work an error of amplitude A and order n turns a load T into n T A at the motor. This leaves out the inertia of
-    the output and the loop of the controller, so it is right at low speed under load.
+    the output and the loop of the controller, so it is right at low speed under load. A motion of one direction does not
+    separate the load from friction. The model then takes the friction of the file and a spread; virtual work has no response.
 
     Args:
         motion: of the recording
@@ -54,6 +56,9 @@ def error_response(
             return _by_model(motion, orders, gear_set.drive)
         except (ValueError, FloatingPointError) as error:
             reason = str(error)
+    if not motion.shaft.own.reverses():
+        remedy = "reverse the motion, or give a gear file with motor, load and controller"
+        return ErrorResponse({}, f"not known: one direction does not separate load from friction; {remedy} ({reason})")
     per_error = {order: order * ratio * motion.load for order in orders}
     return ErrorResponse(per_error, f"by virtual work at the load of the recording, right at low speed ({reason})")
 
@@ -72,7 +77,7 @@ def _missing(motion: JointMotion, gear_set: GearSet | None) -> str:
 
 
 def _by_model(motion: JointMotion, orders: Sequence[float], whole: Drive) -> ErrorResponse:
-    """Return the gain at an error of `ACCURACY`, of the drive that turns its inertia at the usual speed under the load."""
+    """Return the gain at the largest catalogue error, of the drive that turns its inertia at the usual speed under the load."""
     load: Any = whole.load
     motor: Any = whole.motor
     drive = whole.replace(load=loads.Inertia(inertia=load.inertia))  # all other loads are in the recording
@@ -80,13 +85,14 @@ def _by_model(motion: JointMotion, orders: Sequence[float], whole: Drive) -> Err
     per_torque = float(motor.torque_constant) * abs(float(drive.gear.kinematics.ratio))  # N.m/A
     torque = per_torque * motion.load
     if not motion.shaft.own.reverses():  # one direction does not separate load and friction, which the model has
-        torque = per_torque * (motion.load - _friction_current(_steady(drive, speed, 0.0, orders)))
+        friction = _friction_current(_steady(drive, speed, 0.0, orders))
+        torque = per_torque * max(motion.load - (1.0 + FRICTION_SPREAD) * friction, 0.0)
     run = _steady(drive, speed, torque, orders)
     healthy = run.with_error(0.0)
     per_error = {}
     for order in orders:
         own = replace(run, order=order)
-        per_error[order] = abs(own.gain(RecordedOrder.of(healthy, order), ACCURACY))
+        per_error[order] = abs(own.gain(RecordedOrder.of(healthy, order), MAX_CATALOGUE_AMPLITUDE))
     return ErrorResponse(
         per_error, f"by the model of the drive in its loop, at {speed:.3g} rad/s of the input under {torque:.3g} N.m"
     )

@@ -21,7 +21,7 @@ from strainwave.simulation.signals import outputs
 Array = NDArray[np.float64]
 
 ARCMINUTE = radians(1.0 / 60.0)  # rad
-ACCURACY = ARCMINUTE  # rad: amplitude that makers allow for the accuracy of positioning of usual gears
+MAX_CATALOGUE_AMPLITUDE = ARCMINUTE  # rad: half of 2 arcmin peak to peak, the bound of the least accurate catalogue gears
 RUN_IN_TURNS = 2.0  # revolutions of the input before the record
 MIN_RUN_IN = 1.0  # s
 MAX_DURATION = 3600.0  # s, of the record
