@@ -11,7 +11,7 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "orders", "identification", "dataset", "diagnose", "rig", "studies"}
+ANALYSES = {"analysis", "orders", "identification", "tuning", "dataset", "diagnose", "export", "rig", "studies"}
 BELOW = {"files", "native", "simulation"}
 LAYERS = {
     "files": {"files"},
@@ -20,9 +20,10 @@ LAYERS = {
     "analysis": {*BELOW, "analysis"},
     "orders": {*BELOW, "analysis", "orders"},
     "identification": {*BELOW, "analysis", "orders", "identification"},
+    "tuning": {*BELOW, "analysis", "tuning"},
     "dataset": {*BELOW, "dataset"},
-    "diagnose": {*BELOW, "analysis", "orders", "identification", "diagnose"},
-    "export": {*BELOW, "export"},
+    "diagnose": {*BELOW, "analysis", "orders", "identification", "tuning", "diagnose"},
+    "export": {*BELOW, "tuning", "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
     "studies": {*BELOW, "analysis", "orders", "diagnose", "studies"},
     "report": {*BELOW, *ANALYSES, "report"},
