@@ -63,6 +63,17 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(unquoted(name) for name in names[:MAX_NAMES]) + more
 
 
+def without_name(reason: str, *names: str) -> str:
+    """Return a reason without the name of the file with which it begins, once or more.
+
+    >>> without_name("day/run.csv: run.csv: at rest", "day/run.csv", "run.csv")
+    'at rest'
+    """
+    while begin := next((f"{name}: " for name in names if reason.startswith(f"{name}: ")), ""):
+        reason = reason.removeprefix(begin)
+    return reason
+
+
 def shortened(value: object) -> str:
     """Return a value of any type as Python writes it, on one line; of a long one a part.
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +12,7 @@ import typer
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
+from strainwave.diagnose.detection import DETECTION, FALSE_ALARM
 
 if TYPE_CHECKING:
     from strainwave.diagnose.diagnosis import Diagnosis, Question
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
 PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
+PLANNED_SAMPLE_RATE = 1000.0  # Hz, of the current
 BEARING_NUMBERS = (3, 4)  # of an option --bearing, without and with the contact angle
 ALARM_EXIT_CODE = 3  # of the process, if a recording differs from the baseline
 
@@ -33,8 +35,10 @@ class PlanOptions:
     load: Annotated[float | None, numeric("With --plan: torque at the output against the motion, in N.m; usually none.")] = None
     duration: Annotated[float | None, numeric("With --plan: length of the record, in s.")] = None
     noise: Annotated[float | None, numeric("With --plan: standard deviation of a sample of the current, in A.")] = None
-    sample_rate: Annotated[float | None, numeric("With --plan: samples of the current per second, in Hz; usually 1000.")] = None
-    probability: Annotated[float | None, numeric("With --plan: that such an error is found; usually 0.9.")] = None
+    sample_rate: Annotated[
+        float | None, numeric(f"With --plan: samples of the current per second, in Hz; usually {PLANNED_SAMPLE_RATE:g}.")
+    ] = None
+    probability: Annotated[float | None, numeric(f"With --plan: that such an error is found; usually {DETECTION:g}.")] = None
 
     def check_alone(self, given: dict[str, object]) -> None:
         """Raise ValueError for an option or a recording that a plan does not use."""
@@ -70,9 +74,10 @@ def diagnose(
     ] = None,
     ratio: Annotated[float | None, numeric("Ratio of the gear, if no gear is given.")] = None,
     rate: Annotated[float | None, numeric("Samples per second of files without time, in Hz.")] = None,
-    false_alarm: Annotated[float, numeric("Rate of false alarms over all tests of a recording.")] = 1e-3,
+    false_alarm: Annotated[float, numeric("Rate of false alarms over all tests of a recording.")] = FALSE_ALARM,
     order: Annotated[
-        list[str] | None, typer.Option(help="Further order per revolution of the input, as of a bearing; repeat as needed.")
+        list[str] | None,
+        typer.Option(help="Further order per revolution of the input; repeat as needed. --bearing names those of a bearing."),
     ] = None,
     bearing: Annotated[
         list[str] | None,
@@ -109,6 +114,7 @@ def diagnose(
                 "--threshold": threshold,
                 "--geometry": geometry,
             }
+            | {f"--{each.name}": getattr(given, each.name) for each in fields(given)}
         )
         _plan(gear, planned, order or [], false_alarm, out)
         return
@@ -117,23 +123,24 @@ def diagnose(
         raise ValueError("no recording is given: name one or more files, or add --plan for what a recording would show")
     from strainwave.files.writing import write_folder
     from strainwave.identification.joints import ALL
-    from strainwave.identification.reading.source import measurement_files
+    from strainwave.identification.reading.source import distinct_names, measurement_files
     from strainwave.report.diagnose import diagnose_files, diagnose_summary
     from strainwave.report.provenance import Provenance
 
     files, healthy = measurement_files(paths), measurement_files(baseline or [])
     _check_apart(files.files, healthy.files)
     question = _question(gear, ratio, rate, order or [], bearing or [], false_alarm, threshold)
-    by_name = _hours(hours, files.files)
+    opened = [*files.files, *healthy.files]
+    names = distinct_names(opened)
+    by_name = _hours(hours, [names[file.path] for file in files.files])
     if geometry and (question.gear_set is None or question.gear_set.motor is None):
         raise ValueError("--geometry needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
     question = replace(question, hours=by_name, ramp_drive=question.gear_set if geometry else None)
-    opened = [*files.files, *healthy.files]
     mapping = given.mapping_of(opened)
     read = [*paths_in(files), *paths_in(healthy)]
     with progress() as turn:
         joints = _joints(files, mapping) if given.joint == ALL else (given.joint,)
-        found = [_of_joint(joint, files, healthy, mapping, question, rate, turn) for joint in joints]
+        found = [_of_joint(joint, files, healthy, names, mapping, question, rate, turn) for joint in joints]
         turn("report")
         written = diagnose_files(found, Provenance.of_this_command(read), by_name)
         write_folder(out, written)
@@ -160,7 +167,7 @@ def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_a
         planned.needed("speed"),
         0.0 if planned.load is None else planned.load,
         planned.needed("duration"),
-        1000.0 if planned.sample_rate is None else planned.sample_rate,
+        PLANNED_SAMPLE_RATE if planned.sample_rate is None else planned.sample_rate,
         planned.needed("noise"),
     )
     wanted = [number_option(each) for each in orders] or list(PLANNED_ORDERS)
@@ -177,7 +184,7 @@ def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_a
                     sample_rate=record.sample_rate,
                     noise=record.noise,
                     order=order,
-                    probability=0.9 if planned.probability is None else planned.probability,
+                    probability=DETECTION if planned.probability is None else planned.probability,
                     false_alarm=false_alarm,
                     tests=len(wanted),
                 )
@@ -249,7 +256,7 @@ def _bearing(text: str) -> Any:
         raise ValueError(f"--bearing {text}: {error}") from None
 
 
-def _hours(text: str | None, files: Sequence[MeasurementFile]) -> dict[str, float]:
+def _hours(text: str | None, names: Sequence[str]) -> dict[str, float]:
     """Return the hours of operation by the name of the recording."""
     from strainwave.arguments import number
     from strainwave.number_texts import number_in
@@ -260,9 +267,9 @@ def _hours(text: str | None, files: Sequence[MeasurementFile]) -> dict[str, floa
         numbers = [number("hours", number_in(each.strip()), "h", "[)", 0.0) for each in text.split(",")]
     except ValueError as error:
         raise ValueError(f"--hours {text}: {error}; give the hours of operation at each recording, as 0,120,300") from None
-    if len(numbers) != len(files):
-        raise ValueError(f"--hours has {len(numbers)} numbers for {len(files)} recordings; give one for each, as 0,120,300")
-    return {file.path.name: hour for file, hour in zip(files, numbers, strict=True)}
+    if len(numbers) != len(names):
+        raise ValueError(f"--hours has {len(numbers)} numbers for {len(names)} recordings; give one for each, as 0,120,300")
+    return dict(zip(names, numbers, strict=True))
 
 
 def _check_apart(files: Sequence[MeasurementFile], healthy: Sequence[MeasurementFile]) -> None:
@@ -288,6 +295,7 @@ def _of_joint(
     joint: str | None,
     files: MeasurementFiles,
     healthy: MeasurementFiles,
+    names: Mapping[Path, str],
     mapping: Callable[[Path], FileMapping],
     question: Question,
     rate: float | None,
@@ -295,28 +303,33 @@ def _of_joint(
 ) -> Diagnosis:
     """Return the diagnosis of one joint; a recording that cannot be used is refused with its reason."""
     from strainwave.diagnose.diagnosis import diagnosed
-    from strainwave.messages import one_line
+    from strainwave.messages import one_line, without_name
 
     runs, refused = [], dict[str, str]()
     for file in files.files:
-        turn(file.path.name)
+        turn(name := names[file.path])
         try:
-            runs.append(_run_of(file, joint, mapping, question, rate))
+            runs.append(_run_of(file, name, joint, mapping, question, rate))
         except ValueError as error:
-            refused[file.path.name] = one_line(str(error))
+            refused[name] = without_name(one_line(str(error)), name, file.path.name)
     baseline = []
     for file in healthy.files:
-        turn(file.path.name)
+        turn(name := names[file.path])
         try:
-            baseline.append(_run_of(file, joint, mapping, question, rate))
+            baseline.append(_run_of(file, name, joint, mapping, question, rate))
         except ValueError as error:
-            raise ValueError(one_line(f"baseline {error}")) from None
+            raise ValueError(f"baseline {name}: {without_name(one_line(str(error)), name, file.path.name)}") from None
     turn(f"joint {joint}" if joint else "diagnosis")
     return diagnosed(runs, question, baseline=baseline, joint=joint or "", refused=refused)
 
 
 def _run_of(
-    file: MeasurementFile, joint: str | None, mapping: Callable[[Path], FileMapping], question: Question, rate: float | None
+    file: MeasurementFile,
+    name: str,
+    joint: str | None,
+    mapping: Callable[[Path], FileMapping],
+    question: Question,
+    rate: float | None,
 ) -> JointRecording:
     from strainwave.diagnose.refusals import usable
     from strainwave.identification.reading.recognise import recognise
@@ -327,6 +340,5 @@ def _run_of(
     ratio = read.constants.get("ratio") if question.ratio is None else question.ratio
     read = read if ratio is None else read.at_ratio(ratio)
     side: Any = own.side
-    name = file.path.name
     run = usable(read.recording, name, ratio=ratio, side=side, other_angles=read.neighbours)
     return replace(run, remarks=(*read.remarks, *run.remarks))

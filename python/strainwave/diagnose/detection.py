@@ -15,8 +15,6 @@ from __future__ import annotations
 
 from math import inf, isfinite, sqrt
 
-from strainwave import arguments
-
 MAX_SIGNAL_TO_NOISE = 1e6  # amplitude over standard deviation: beyond it noise does not matter
 CONFIDENCE = 0.95  # of intervals
 FALSE_ALARM = 1e-3  # probability over all tests of a recording, if none is stated
@@ -112,6 +110,8 @@ def amplitude_interval(
     0.0
     """
     from scipy.optimize import brentq
+
+    from strainwave import arguments
 
     confidence = arguments.probability("confidence", confidence)
     if not sigma > 0.0:

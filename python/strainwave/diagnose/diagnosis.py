@@ -20,6 +20,7 @@ from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cel
 from strainwave.diagnose.response import error_response
 from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
+from strainwave.messages import without_name
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import Ripple, ripple
 
@@ -38,7 +39,8 @@ class OrderAgainstNoise:
     Attributes:
         order: with its cause
         forward, backward: amplitude in each direction, in the unit of the column; None without such motion
-        threshold: amplitude from which noise alone is less probable than the stated rate, over all orders of the recording
+        threshold: amplitude from which noise alone is less probable than the stated rate, over all orders of the recording; the
+            larger one of both directions
         expected: amplitude by the kinematic error of the gear and the load of the recording; nan if it is not known
         error: kinematic error at the output that is detected with probability 0.9 [rad]; nan if it is not known
         needed: amplitude of this error
@@ -132,7 +134,7 @@ class Diagnosis:
     Attributes:
         joint: its name; empty if the files have one joint
         runs: of each recording
-        refused: the reason why a recording cannot be used, by its name
+        refused: the reason why a recording cannot be used, by its name, which it does not contain
         baseline: names of the recordings of the baseline
         false_alarm: stated rate of false alarms of a recording
         gear: name of the gear; empty if none is given
@@ -217,8 +219,7 @@ def diagnosed(
     arguments.probability("false_alarm", question.false_alarm)
     refused = dict(refused or {})
     if not runs:
-        why = "; ".join(refused.values())
-        raise ValueError(why or "there is no recording to diagnose; give one or more")
+        raise ValueError(_all_refused(refused) or "there is no recording to diagnose; give one or more")
     _check_alike([*runs, *baseline])
     healthy = [joint_motion(run) for run in baseline]
     known = [line for run in baseline for line in gear_lines(_blind(run, question))]
@@ -227,9 +228,9 @@ def diagnosed(
         try:
             done.append(_run(run, question, healthy, known))
         except ValueError as error:
-            refused[run.name] = str(error)
+            refused[run.name] = without_name(str(error), run.name)
     if not done:
-        raise ValueError("; ".join(f"{name}: {why}" for name, why in refused.items()))
+        raise ValueError(_all_refused(refused))
     remarks: list[str] = []
     if not baseline:
         remarks.append(
@@ -249,6 +250,10 @@ def diagnosed(
         _trend(done, question, remarks),
         tuple(remarks),
     )
+
+
+def _all_refused(refused: Mapping[str, str]) -> str:
+    return "; ".join(f"{name}: {why}" for name, why in refused.items())
 
 
 def _blind(run: JointRecording, question: Question) -> Ripple:
@@ -353,19 +358,20 @@ def _against_noise(
     rows = []
     for each, both in by_order.items():
         there = [cell for cell in both if cell is not None]
-        least = min(there, key=lambda cell: cell.sigma)
-        needed = least.sigma * needed_signal_to_noise(DETECTION, question.false_alarm, least.freedom, tests)
+        noisy = max(there, key=lambda cell: _threshold(cell, question.false_alarm, tests))
+        threshold = _threshold(noisy, question.false_alarm, tests)
+        needed = noisy.sigma * needed_signal_to_noise(DETECTION, question.false_alarm, noisy.freedom, tests)
         per_error = response.per_error.get(each.per_input, nan)
         rows.append(
             OrderAgainstNoise(
                 each,
                 both[0],
                 both[1],
-                threshold=_threshold(least, question.false_alarm, tests),
+                threshold=threshold,
                 expected=float(amplitudes.get(each.per_input, nan) * per_error),
                 error=needed / per_error if per_error > 0.0 else nan,
                 needed=needed,
-                detected=any(cell.amplitude > _threshold(cell, question.false_alarm, tests) for cell in there),
+                detected=any(cell.amplitude > threshold for cell in there),
             )
         )
     return tuple(rows), response.source

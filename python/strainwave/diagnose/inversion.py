@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ COMBINE = ("single", "mean", "max")
 MICRON = 1e-6
 ORDERS = (1.0, 2.0, 3.0, 4.0)
 NOISE_LINES = 14  # the nearest ones, from which the noise of an order is estimated
+SPECTRUM_MARGIN = 0.5  # order, by which the spectrum goes on beyond the highest one
 MIN_NOISE_ORDER = 0.5  # below it lines contain the trend
 HANN_NOISE_POWER = 1.5  # power of noise in a line through a Hann window over that without
 PROBE_AMPLITUDE = 2e-5  # rad, of each order of the error with which a drive is run
@@ -139,16 +141,35 @@ def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
     Lines between the orders have noise alone, except the next ones of an order, which contain half of it. Those near an order
     determine its noise. They come from a spectrum through a Hann window. It adds half to the power of noise, and the powers of
     neighbouring lines correlate by 4/9, of next ones by 1/36. So two lines determine it about as well as one without a window.
+
+    Raises:
+        ValueError: no line is that of noise alone, as the record has too few revolutions
     """
     orders = order_amplitudes(recording, column, ORDERS)
-    spectrum = order_spectrum(recording, column, ORDERS[-1] + 0.5)
+    spectrum = order_spectrum(recording, column, ORDERS[-1] + SPECTRUM_MARGIN)
     line = np.rint(spectrum["order"] * orders.revolutions)
-    apart = np.abs(line - orders.revolutions * np.array(ORDERS)[:, np.newaxis])
-    quiet = (apart.min(axis=0) > 1) & (line > MIN_NOISE_ORDER * orders.revolutions)
+    apart, quiet = _noise_lines(line, orders.revolutions)
+    if not quiet.any():
+        raise ValueError(
+            f"the ramp has {orders.revolutions:g} whole revolutions of the input after the run-in; the noise of orders "
+            f"{ORDERS[0]:g} to {ORDERS[-1]:g} needs {_needed_revolutions()} or more: record a longer stroke"
+        )
     near = np.argsort(np.where(quiet, apart, np.inf), axis=1, kind="stable")[:, : min(NOISE_LINES, int(quiet.sum()))]
     noise = np.sqrt(np.mean(spectrum["amplitude"][near] ** 2, axis=1) / (2.0 * HANN_NOISE_POWER))
     degrees = round(2.0 * near.shape[1] / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)))
     return MeasuredOrders(_sines(orders.amplitude, orders.phase), np.maximum(noise, np.finfo(float).tiny), degrees)
+
+
+def _noise_lines(line: Array, revolutions: float) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the distance of each line from each order [lines], shape (4, n), and True for lines of noise alone, shape (n,)."""
+    apart = np.abs(line - revolutions * np.array(ORDERS)[:, np.newaxis])
+    return apart, (apart.min(axis=0) > 1) & (line > MIN_NOISE_ORDER * revolutions)
+
+
+def _needed_revolutions() -> int:
+    """Return the smallest number of whole revolutions with a line of noise alone."""
+    highest = ORDERS[-1] + SPECTRUM_MARGIN
+    return next(each for each in count(1) if _noise_lines(np.arange(1.0, highest * each + 1e-9), each)[1].any())
 
 
 def less_run(recording: Recording, run: Recording, column: str) -> Recording:

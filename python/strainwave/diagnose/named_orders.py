@@ -25,7 +25,8 @@ class NamedOrder:
         order: per revolution of the shaft
         per_input: per revolution of the input
         name: its cause, in words
-        of_error: True if a kinematic error may have it; a bearing changes friction or stiffness instead
+        of_error: True if a kinematic error has it; a bearing changes friction or stiffness instead, and the cause of an order
+            that was asked for is not known
     """
 
     order: float
@@ -84,11 +85,10 @@ def named_orders(
         orders |= {
             f"{name} against the other spline": k * passes for k, name in ((3.0, "third harmonic"), (4.0, "fourth harmonic"))
         }
-    errors = [*orders.items(), *(("as asked", order) for order in further)]
-    elements = bearing_orders(bearings, kinematics).items()
+    others = [*(("as asked", order) for order in further), *bearing_orders(bearings, kinematics).items()]
     return (
-        *(NamedOrder(order * run.per_input, order, name) for name, order in errors),
-        *(NamedOrder(order * run.per_input, order, name, of_error=False) for name, order in elements),
+        *(NamedOrder(order * run.per_input, order, name) for name, order in orders.items()),
+        *(NamedOrder(order * run.per_input, order, name, of_error=False) for name, order in others),
     )
 
 

@@ -13,6 +13,7 @@ from strainwave import Drive, loads
 from strainwave.diagnose.replicates import JointMotion
 from strainwave.diagnose.steady_run import COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 from strainwave.files.gear_set import GearSet
+from strainwave.messages import listed
 
 SAMPLES_PER_PERIOD = 20.0  # of an order, in the runs of the model
 MODEL_TURNS = 5.0  # of the input in a run of the model, or periods of an order below 1
@@ -69,8 +70,11 @@ def _missing(motion: JointMotion, gear_set: GearSet | None) -> str:
         return f"{motion.run.column.replace('_', ' ')} is no current of a motor"
     if not motion.timed:
         return "the speed is not known without time"
-    if gear_set is None or gear_set.motor is None or gear_set.load is None or gear_set.control is None:
-        return "the gear has no motor, load and controller"
+    if gear_set is None:
+        return "no gear is given"
+    parts = {"motor": gear_set.motor, "load": gear_set.load, "controller": gear_set.control}
+    if missing := [name for name, part in parts.items() if part is None]:
+        return f"the gear has no {listed(missing)}"
     if not getattr(gear_set.motor, "torque_constant", 0.0):
         return f"the motor {gear_set.motor.name} has no torque constant"
     return "" if hasattr(gear_set.load, "inertia") else f"the load {gear_set.load.name} moves the output from outside"

@@ -182,7 +182,7 @@ def diagnose_summary(found: Sequence[Diagnosis]) -> str:
             for remark in run.remarks:
                 lines += _wrapped(f"note: {remark}", "  ")
         for name, why in each.refused.items():
-            lines += _wrapped(f"{name}: refused: {why.removeprefix(f'{name}: ')}", "")
+            lines += _wrapped(f"{name}: refused: {why}", "")
         for text in (*_life_lines(each), *(f"note: {remark}" for remark in each.remarks)):
             lines += _wrapped(text, "")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
@@ -250,10 +250,10 @@ def _results(found: Diagnosis) -> dict[str, Any]:
 
 
 def _misalignment(found: RunDiagnosis) -> tuple[str, ...]:
-    """Return the misalignment in words; empty if none was asked for."""
+    """Return the misalignment in words, which begin with its doubts; empty if none was asked for."""
     if found.geometry is None:
         return ()
-    return (f"misalignment: {found.geometry.words().removesuffix('.')}", *found.geometry.doubts)
+    return (f"misalignment: {found.geometry.words().removesuffix('.')}",)
 
 
 def _misalignment_results(found: RunDiagnosis) -> dict[str, Any] | None:

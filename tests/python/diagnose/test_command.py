@@ -99,7 +99,30 @@ def test_a_recording_at_rest_is_refused_beside_those_that_are_used(folder: Path)
     done = strainwave("diagnose", "rest.csv", "later.csv", *JOINT, "--out", "e", folder=folder)
     assert done.returncode == 0, done.stderr
     assert "rest.csv: refused: at rest: input_angle moves by 0 rad" in done.stdout
-    refused(folder, ("diagnose", "rest.csv", *JOINT), "rest.csv: at rest")
+    assert "<li>rest.csv: at rest" in (folder / "e" / "report.html").read_text()
+    refused(folder, ("diagnose", "rest.csv", *JOINT), " rest.csv: at rest")
+    with pytest.raises(AssertionError):
+        refused(folder, ("diagnose", "rest.csv", *JOINT), "rest.csv: rest.csv")
+
+
+def test_without_a_ratio_the_page_states_that_the_amplitude_per_error_is_not_known(folder: Path) -> None:
+    done = strainwave("diagnose", "later.csv", "--out", "i", folder=folder)
+    assert done.returncode == 0, done.stderr
+    page = " ".join((folder / "i" / "report.html").read_text().split())
+    assert "is detected with probability 0.9. It is not known without the ratio of the gear." in page
+
+
+def test_recordings_of_one_name_in_several_folders_have_hours_and_reasons_of_their_own(folder: Path) -> None:
+    for day, name in enumerate(("later.csv", "rest.csv", "rest.csv")):
+        (folder / f"d{day}").mkdir()
+        (folder / f"d{day}" / "run.csv").write_bytes((folder / name).read_bytes())
+    names = [f"d{day}/run.csv" for day in range(3)]
+    done = strainwave("diagnose", *names, *JOINT, "--hours", "0,100,200", "--out", "j", folder=folder)
+    assert done.returncode == 0, done.stderr
+    assert "d1/run.csv: refused: at rest" in done.stdout
+    (joint,) = json.loads((folder / "j" / "results.json").read_text())["joints"]
+    assert [each["name"] for each in joint["recordings"]] == ["d0/run.csv"]
+    assert list(joint["refused"]) == ["d1/run.csv", "d2/run.csv"]
 
 
 def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
@@ -127,6 +150,8 @@ def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
         ((), "no recording is given"),
         (("later.csv", "--plan", *JOINT), "--plan simulates the drive --gear and does not use recordings: leave it out"),
         (("--plan", *JOINT, "--baseline", "healthy"), "does not use --baseline"),
+        (("--plan", *JOINT, "--column", "current=I"), "does not use --column"),
+        (("--plan", *JOINT, "--joint", "all"), "does not use --joint"),
         (("later.csv", "--hours", "a"), '--hours a: "a" is no number'),
         (("later.csv", "--hours", "-5"), "--hours -5: hours = -5.0 h must lie in [0, inf)"),
         (("later.csv", "--threshold", "-2", "--hours", "1"), "--threshold = -2.0 must lie in (0, inf)"),

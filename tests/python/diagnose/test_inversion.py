@@ -35,6 +35,15 @@ def test_degrees_of_freedom_are_no_more_than_the_scatter_of_the_noise_has(revolu
     assert 0.5 * 2.0 / scatter < measured(revolutions, 0).degrees < 1.25 * 2.0 / scatter
 
 
+def test_a_ramp_without_a_line_of_noise_alone_is_refused_with_the_revolutions_that_it_needs() -> None:
+    for revolutions in (2.5, 3.5, 3.9):
+        with pytest.raises(ValueError, match=r"has [23] whole revolutions .* orders 1 to 4 needs 4 or more: record a longer"):
+            measured(revolutions, 0)
+    least = measured(4.5, 0)
+    assert least.degrees > 0
+    assert np.isfinite(least.noise).all()
+
+
 def test_a_short_ramp_shows_an_order_far_above_its_noise() -> None:
     """With lines of its own half interval alone, an order of 67 standard deviations was no finding in 8 revolutions."""
     found = measured(8.0, 1, amplitude=10.0 * SIGMA * np.sqrt(2.0 / SAMPLES))

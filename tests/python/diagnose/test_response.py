@@ -65,6 +65,9 @@ def test_the_signature_of_section_7_9_without_load_is_insensitive(load_torque: f
 def test_without_a_whole_drive_the_response_is_that_of_virtual_work() -> None:
     found = diagnosis(to_and_fro(), sw.GearSet.read("csg-25-100"))
     assert found.response.startswith("by virtual work")
+    assert "(the gear has no motor, load, controller)" in found.response
+    run = usable(to_and_fro(), "run", ratio=100.0)
+    assert "(no gear is given)" in diagnosed([run], Question(ratio=100.0)).runs[0].response
     two = found.orders[0]
     assert two.needed / two.error == pytest.approx(2.0 * 100.0 * found.load, rel=1e-9)
     fast = sw.GearSet.of(

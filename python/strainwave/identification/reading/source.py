@@ -130,6 +130,24 @@ def measurement_files(paths: Sequence[str | Path] | Mapping[str, Measurement] | 
     return MeasurementFiles(with_parts(files), [link for folder in folders for link in folder.links])
 
 
+def distinct_names(files: Sequence[MeasurementFile]) -> dict[Path, str]:
+    """Return a name of each file by its path: its own, or with the folders that distinguish it from files of the same name.
+
+    >>> files = [MeasurementFile(Path(path)) for path in ("a/1/run.csv", "b/1/run.csv", "b/2/rest.csv")]
+    >>> list(distinct_names(files).values())
+    ['a/1/run.csv', 'b/1/run.csv', 'rest.csv']
+    """
+    paths = list(dict.fromkeys(file.path for file in files))
+    whole = [path.parts for path in paths]
+    return {path: Path(*own[-_parts_needed(own, whole) :]).as_posix() for path, own in zip(paths, whole, strict=True)}
+
+
+def _parts_needed(own: tuple[str, ...], all_parts: Sequence[tuple[str, ...]]) -> int:
+    """Return the number of last parts of a path that no other path has; all parts if another path ends with them."""
+    counts = (sum(other[-count:] == own[-count:] for other in all_parts) for count in range(1, len(own) + 1))
+    return next((count for count, alike in enumerate(counts, 1) if alike == 1), len(own))
+
+
 def _below(path: Path) -> FolderFiles:
     if not path.is_dir() or Path(path, BAG).is_file():
         return FolderFiles([path], [])
