@@ -29,7 +29,7 @@ class FeatureSet:
     Args:
         signals: signals with moments, each with its unit
         orders: of the current over the input angle
-        tooth_order: 2 z_c / z_f, or None; needs `tooth_turns` turns of the input to be separated from order 2
+        tooth_order: that of the spline that turns, or None; needs `tooth_turns` turns of the input to be separated from order 2
     """
 
     signals: Mapping[str, str]

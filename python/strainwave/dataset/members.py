@@ -22,6 +22,7 @@ from strainwave.parameters import every, unknown
 from strainwave.simulation.resolution import check_resolution
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import command_unit, outputs
+from strainwave.spline_orders import turning_spline_order
 
 Array = NDArray[np.float64]
 
@@ -145,11 +146,8 @@ class Population:
     def features(self) -> FeatureSet:
         known = {*outputs(self.drive), "tracking_error"}
         signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in known}
-        gear: Any = self.drive.gear.kinematics
-        tooth = None
-        if self.plan.features.tooth_orders and hasattr(gear, "circular_spline_teeth"):
-            tooth = round(2.0 * gear.circular_spline_teeth / gear.flexspline_teeth, 6)
-        return FeatureSet(signals, self.plan.features.orders, tooth)
+        tooth = turning_spline_order(self.drive.gear.kinematics) if self.plan.features.tooth_orders else None
+        return FeatureSet(signals, self.plan.features.orders, None if tooth is None else round(tooth, 6))
 
     # Units
 

@@ -81,11 +81,13 @@ class Comparison:
     Attributes:
         changes: of each order and direction, the least probable first
         tests: number of tests, over which false alarms are counted
+        resolution: by which two orders differ at least that the blocks separate, in orders of the shaft
         remarks: what was not compared, and why
     """
 
     changes: tuple[Change, ...]
     tests: float
+    resolution: float
     remarks: tuple[str, ...]
 
     @property
@@ -101,11 +103,13 @@ class Baseline:
     Attributes:
         orders: per revolution of the shaft
         travel: motion of a block [rad]
+        resolution: by which two orders differ at least that its blocks separate, in orders of the shaft
         cells: of each recording by block, direction and order
     """
 
     orders: tuple[float, ...]
     travel: float
+    resolution: float
     cells: tuple[list[list[list[Cell | None]]], ...]
 
     def of(self, direction: int, order: int) -> list[list[Cell]]:
@@ -140,8 +144,10 @@ def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Base
         for motion, block in zip(motions, blocks, strict=True)
         for number in range(int(block.max()) + 1)
     ]
-    kept = apart(orders, BLOCK_RESOLUTIONS / max(float(np.median(spans)), 1e-12))
-    return Baseline(kept, travel, tuple(cells_of(m, kept, block) for m, block in zip(motions, blocks, strict=True)))
+    resolution = BLOCK_RESOLUTIONS / max(float(np.median(spans)), 1e-12)
+    kept = apart(orders, resolution)
+    cells = tuple(cells_of(motion, kept, block) for motion, block in zip(motions, blocks, strict=True))
+    return Baseline(kept, travel, resolution, cells)
 
 
 def compared(
@@ -194,7 +200,7 @@ def compared(
             "record both directions"
         )
     ranked = tuple(sorted(changes, key=lambda each: (each.false_alarm, -abs(each.change) / each.sigma)))
-    return Comparison(ranked, float(planned), tuple(remarks))
+    return Comparison(ranked, float(planned), baseline.resolution, tuple(remarks))
 
 
 def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell]) -> tuple[list[Cell], list[str]]:

@@ -280,8 +280,11 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
     named = question.named_orders(run)
     orders, response = _against_noise(motion, named, found, question)
     comparison, remarks = _compared(motion, found, question, healthy, known)
-    verdict, reason = _verdict(orders, comparison, found, named, bool(healthy), remarks, run.unit)
-    alarms = () if comparison is None else comparison.alarms
+    alarms = (
+        [] if comparison is None else [_located(each.order, comparison, found, motion, known) for each in comparison.alarms]
+    )
+    name = name_of(*alarms[0], named) if alarms else ""
+    verdict, reason = _verdict(orders, comparison, found, name, bool(healthy), remarks, run.unit)
     geometry = _geometry(run, question, remarks)
     return RunDiagnosis(
         run.name,
@@ -297,13 +300,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         geometry,
         motion.span * run.per_input,
         motion.load,
-        causes(
-            [each.order for each in alarms],
-            run.per_input,
-            1.0 / max(motion.span, 1e-300),
-            question.kinematics,
-            question.bearings,
-        ),
+        causes(alarms, run.per_input, question.kinematics, question.bearings),
         tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
     )
 
@@ -325,17 +322,34 @@ def _compared(
     """Return the comparison with the baseline, or why there is none."""
     if not healthy:
         return None, []
-    named = [each.order for each in question.named_orders(motion.run) if each.order <= found.highest]
+    named = [each for each in question.named_orders(motion.run) if each.order <= found.highest]
+    multiples = {each.order for each in named if each.is_multiple}
     resolution = 1.0 / max(each.span for each in healthy)
-    planned = apart([*known, *named], resolution)  # a line is where it was found, also beside a whole order
+    # a line is where it was found, also beside a whole order
+    planned = apart([*known, *(each.order for each in named)], resolution)
     own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
+    ranked = [*(each for each in planned if each not in multiples), *own, *(each for each in planned if each in multiples)]
     searched = (found.highest - found.lowest) * max(found.revolutions, 1.0)
     try:
-        baseline = baseline_of(healthy, [*planned, *own])
+        baseline = baseline_of(healthy, ranked)
     except ValueError as error:
         return None, [str(error)]
     new = [order for order in own if order in baseline.orders]
     return compared(baseline, motion, false_alarm=question.false_alarm, new=new, searched=searched), []
+
+
+def _located(
+    order: float, comparison: Comparison, found: Ripple, motion: JointMotion, known: Sequence[float]
+) -> tuple[float, float]:
+    """Return where the line of an alarm is, and with what resolution.
+
+    The blocks that were compared separate less than the recording. A line that is new and alone among what they do not
+    separate is the one that changed: it is where the blind search found it in the whole recording.
+    """
+    near = [line for line in gear_lines(found) if abs(line - order) < comparison.resolution]
+    if len(near) == 1 and all(abs(line - near[0]) >= comparison.resolution for line in known):
+        return near[0], 1.0 / max(motion.span, 1e-300)
+    return order, comparison.resolution
 
 
 def _against_noise(
@@ -386,15 +400,14 @@ def _verdict(
     orders: Sequence[OrderAgainstNoise],
     comparison: Comparison | None,
     found: Ripple,
-    named: Sequence[NamedOrder],
+    name: str,
     has_baseline: bool,
     remarks: Sequence[str],
     unit: str,
 ) -> tuple[Verdict, str]:
-    """Return the verdict with its reason; never that a gear is healthy."""
+    """Return the verdict with its reason, which names the surest alarm; never that a gear is healthy."""
     if comparison is not None and comparison.alarms:
         worst = comparison.alarms[0]
-        name = name_of(worst.order, named, 1.0 / max(found.revolutions, 1e-300))
         own = f" ({name})" if name else ""
         return "changed", (
             f"{len(comparison.alarms)} of {len(comparison.changes)} amplitudes differ from the baseline; the surest is order "

@@ -8,12 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from strainwave import fault
 from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
 from strainwave.messages import listed
+from strainwave.spline_orders import gear_facts, spline_orders
 
 MAX_HARMONIC = 12  # of an order, up to which a cause is named
-TEETH = ("flexspline_teeth", "circular_spline_teeth")
+MULTIPLES = {3.0: "third harmonic", 4.0: "fourth harmonic"}  # of a crack; the lower ones need long blocks to be separated
+DAMAGE = {
+    "flexspline": "a crack of the flexspline or its damaged teeth",
+    "circular spline": "damaged teeth of the circular spline",
+}
+AGAINST_OTHER = "wave generator against the other spline"
 ELEMENTS = {"outer_ring": "outer ring", "inner_ring": "inner ring", "ball": "ball", "cage": "cage"}
 
 
@@ -27,12 +32,14 @@ class NamedOrder:
         name: its cause, in words
         of_error: True if a kinematic error has it; a bearing changes friction or stiffness instead, and the cause of an order
             that was asked for is not known
+        is_multiple: True for a third or fourth multiple of a spline's order; a line that was found near it counts instead
     """
 
     order: float
     per_input: float
     name: str
     of_error: bool = True
+    is_multiple: bool = False
 
 
 def bearing_orders(bearings: Sequence[Any], kinematics: Any) -> dict[str, float]:
@@ -47,9 +54,9 @@ def bearing_orders(bearings: Sequence[Any], kinematics: Any) -> dict[str, float]
     """
     if not bearings:
         return {}
-    if not all(getattr(kinematics, name, 0) for name in TEETH):
+    facts = gear_facts(kinematics)
+    if facts is None:
         raise ValueError("the orders of a bearing need a gear with teeth: its outer ring turns with the flexspline")
-    facts = fault.Facts(**{name: getattr(kinematics, name) for name in (*TEETH, "fixed", "ratio")})
     orders = {}
     for number, bearing in enumerate(bearings, 1):
         place = "bearing" if len(bearings) == 1 else f"bearing {number}"
@@ -77,59 +84,62 @@ def named_orders(
         "eccentricity of the wave generator": 1.0,
         "wave generator, second harmonic": 2.0 * WAVE_ORDER,
     }
-    flexible, circular = (getattr(kinematics, name, 0) for name in TEETH)
-    if flexible and circular:
-        passes = WAVE_ORDER * float(circular) / float(flexible)
-        orders["wave generator against the other spline"] = passes
-        # multiples of a crack; the first two differ too little from orders 2 and 4 to be separated in blocks of few turns
-        orders |= {
-            f"{name} against the other spline": k * passes for k, name in ((3.0, "third harmonic"), (4.0, "fourth harmonic"))
-        }
+    splines = spline_orders(kinematics)
+    passes = next((order for order in splines.values() if order != WAVE_ORDER), None)
+    against = {} if passes is None else {AGAINST_OTHER: passes}
+    # a crack has multiples of the order of the flexspline, which is that of the wave generator if the flexspline is fixed
+    cracked = {"wave generator": WAVE_ORDER} if splines.get("flexspline") == WAVE_ORDER else {}
+    multiples = {
+        f"{name}, {harmonic}": times * order
+        for name, order in (cracked | against).items()
+        for times, harmonic in MULTIPLES.items()
+    }
     others = [*(("as asked", order) for order in further), *bearing_orders(bearings, kinematics).items()]
     return (
-        *(NamedOrder(order * run.per_input, order, name) for name, order in orders.items()),
+        *(NamedOrder(order * run.per_input, order, name) for name, order in (orders | against).items()),
         *(NamedOrder(order * run.per_input, order, name, of_error=False) for name, order in others),
+        *(NamedOrder(order * run.per_input, order, name, is_multiple=True) for name, order in multiples.items()),
     )
 
 
-def name_of(order: float, named: Sequence[NamedOrder], resolution: float) -> str:
-    """Return the name of an order of a shaft; empty if it has none within the resolution."""
-    near = min(named, key=lambda each: abs(each.order - order), default=None)
-    return near.name if near is not None and abs(near.order - order) < resolution else ""
+def name_of(order: float, resolution: float, named: Sequence[NamedOrder]) -> str:
+    """Return the names of an order of a shaft within the resolution, the nearest first; empty if it has none."""
+    near = [each for each in named if abs(each.order - order) < resolution]
+    return " or ".join(each.name for each in sorted(near, key=lambda each: abs(each.order - order)))
 
 
 def causes(
-    orders: Sequence[float], per_input: float, resolution: float, kinematics: Any, bearings: Sequence[Any]
+    orders: Sequence[tuple[float, float]], per_input: float, kinematics: Any, bearings: Sequence[Any]
 ) -> tuple[str, ...]:
     """Return what orders of a shaft repeat with in a strain wave gear, a sentence for each cause.
 
     Args:
-        orders: per revolution of the shaft
+        orders: per revolution of the shaft, each with the resolution with which it was found
         per_input: revolutions of the input per revolution of the shaft; nan if it is not known
-        resolution: of the recording, in orders of the shaft
         kinematics: of the gear, whose teeth separate the splines; None if it is not known
         bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
     """
     if not np.isfinite(per_input):
         return ()
-    flexible, circular = (getattr(kinematics, name, 0) for name in TEETH)
-    is_fixed = getattr(kinematics, "fixed", "") == "circular_spline"
-    still, turning = ("circular spline", "flexspline") if is_fixed else ("flexspline", "circular spline")
-    passes = (float(circular) / float(flexible)) ** (1.0 if is_fixed else -1.0) if circular and flexible else 0.0
-    reach = resolution / per_input
+    splines = spline_orders(kinematics)
+    still = next((name for name, order in splines.items() if order == WAVE_ORDER), "")
+    turning, passes = next(((name, order) for name, order in splines.items() if name != still), ("", 0.0))
     elements = bearing_orders(bearings, kinematics)
     by_cause = dict[str, list[str]]()
-    for order in dict.fromkeys(orders):
-        own = order / per_input
+    for order, resolution in dict.fromkeys(orders):
+        own, reach = order / per_input, resolution / per_input
         whole = _is_multiple(own, 1.0, reach)
-        other = _is_multiple(own, WAVE_ORDER * passes, reach)
+        other = _is_multiple(own, passes, reach)
         names = [name for name, base in elements.items() if _is_multiple(own, base, reach)]
         if whole and other:
             cause = "of either spline, which this record does not separate: turn the output further"
         elif other:
-            cause = f"passes of the wave generator over one place of the {turning}: a crack, or damaged teeth there"
+            cause = f"passes of the wave generator over one place of the {turning}: {DAMAGE[turning]}"
         elif whole:
-            cause = f"whole multiples: misalignment or wear of the wave generator, or teeth of the {still}"
+            damage = DAMAGE.get(still, "damage of the spline that does not turn")
+            cause = f"whole multiples: misalignment or wear of the wave generator, {damage}"
+        elif not splines:
+            cause = "no whole multiples: the spline that turns, a bearing, the motor, or a resonance; give a gear with teeth"
         else:
             cause = "" if names else "of none of both splines: a bearing, the motor, or a resonance"
         cause = "; or ".join([*([cause] if cause else []), *names])

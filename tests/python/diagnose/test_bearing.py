@@ -87,9 +87,9 @@ def test_the_command_names_the_element(records: dict[str, sw.Recording], tmp_pat
 
 def test_a_multiple_of_a_bearing_that_is_no_whole_order_is_its_cause() -> None:
     order = bearing_orders([BEARING], JOINT.gear.kinematics)["bearing, outer ring"]
-    (cause,) = causes([2.0 * order], 1.0, 0.01, JOINT.gear.kinematics, [BEARING])
+    (cause,) = causes([(2.0 * order, 0.01)], 1.0, JOINT.gear.kinematics, [BEARING])
     assert cause.endswith("of the input: bearing, outer ring")
-    (other,) = causes([2.0 * order], 1.0, 0.01, JOINT.gear.kinematics, [])
+    (other,) = causes([(2.0 * order, 0.01)], 1.0, JOINT.gear.kinematics, [])
     assert other.endswith("a bearing, the motor, or a resonance")
 
 
