@@ -20,6 +20,7 @@ from strainwave.commands.dataset import dataset
 from strainwave.commands.demo import demo
 from strainwave.commands.diagnose import diagnose
 from strainwave.commands.drives import drives
+from strainwave.commands.export import export
 from strainwave.commands.gears import gears
 from strainwave.commands.identify import identify
 from strainwave.commands.models import models
@@ -66,6 +67,7 @@ app = typer.Typer(
 )
 app.add_typer(study, name="study")
 app.add_typer(rig, name="rig")
+app.add_typer(export, name="export")
 for verb in VERBS:
     app.command()(verb)
 

@@ -1,0 +1,100 @@
+"""The command `strainwave export`: a gear in the form of another program, with what that form loses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from strainwave.commands.options import numeric
+
+if TYPE_CHECKING:
+    from strainwave.export.exported import Exported
+
+export = typer.Typer(help="Write a gear in the form of another program, and state what that form loses.")
+
+Gear = Annotated[str, typer.Argument(help="A gear or drive: a set by name, or a file as identify writes it.")]
+Torque = Annotated[float | None, numeric("Largest torque at the output in N.m; usually the peak torque of the ratings.")]
+Name = Annotated[str, typer.Option(help="Of the gear in the files.")]
+
+
+@export.command("joint")
+def joint(
+    gear: Gear,
+    max_torque: Torque = None,
+    name: Name = "gear",
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/joint"),
+) -> None:
+    """Numbers of a joint without a gear: frictionloss, armature, damping for MuJoCo; dynamics and transmission for URDF."""
+    from strainwave.export.joint import joint as exported
+    from strainwave.files.gear_set import GearSet
+
+    _write(exported(GearSet.read(gear), max_torque=max_torque, name=name), out)
+
+
+@export.command("mjcf")
+def mjcf(
+    gear: Gear,
+    max_torque: Torque = None,
+    load_inertia: Annotated[float | None, numeric("Inertia at the output in kg.m2; usually that of the load.")] = None,
+    into: Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")] = None,
+    joint: Annotated[str | None, typer.Option(help="With --into: name of the hinge behind the gear.")] = None,
+    draws: Annotated[int, typer.Option(help="Number of drawn gears, for domain randomisation.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
+    name: Name = "gear",
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/mjcf"),
+) -> None:
+    """A model for MuJoCo without a plugin: twist with hysteresis, friction with a bristle, motor; alone or in a robot."""
+    from strainwave.export.mujoco import MAX_MODEL_BYTES
+    from strainwave.export.mujoco import mjcf as exported
+    from strainwave.files.gear_set import GearSet
+
+    if into is not None and into.stat().st_size > MAX_MODEL_BYTES:
+        raise ValueError(f"{into} is larger than {MAX_MODEL_BYTES >> 20} MiB; give the MJCF file without its meshes")
+    text = None if into is None else into.read_text("utf-8")
+    found = exported(
+        GearSet.read(gear), max_torque=max_torque, load_inertia=load_inertia, into=text, joint=joint, draws=draws, seed=seed,
+        name=name,
+    )  # fmt: skip
+    _write(found, out)
+
+
+@export.command("bam")
+def bam(
+    gear: Gear,
+    max_torque: Torque = None,
+    actuator: Annotated[str, typer.Option(help="Name of an actuator that BAM has, with its control law.")] = "erob80_100",
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/bam"),
+) -> None:
+    """Parameters of BAM (better actuator models), with friction, inertia and torque constant at the output."""
+    from strainwave.export.bam import bam as exported
+    from strainwave.files.gear_set import GearSet
+
+    _write(exported(GearSet.read(gear), actuator=actuator, max_torque=max_torque), out)
+
+
+@export.command("from-bam")
+def from_bam(
+    file: Annotated[Path, typer.Argument(help="Parameter file of BAM.")],
+    ratio: Annotated[float, numeric("Ratio of the gear, which BAM does not state.")],
+    out: Annotated[Path, typer.Option(help="Gear file to write.")] = Path("out/gear.toml"),
+) -> None:
+    """A gear file from parameters of BAM."""
+    from strainwave.export.bam import read_bam
+
+    found = read_bam(file, ratio)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    found.save(out)
+    print(f"{found.name}: {found.note}\nwrote {out}")
+
+
+def _write(found: Exported, out: Path) -> None:
+    """Write the files of an export, and print its summary."""
+    from strainwave.files.writing import write_folder
+    from strainwave.report.exported import export_files, export_summary
+
+    files = export_files(found)
+    write_folder(out, files)
+    print(export_summary(found))
+    print(f"\nwrote {', '.join(files)} to {out}")

@@ -1,0 +1,103 @@
+"""Numbers of a joint for simulators that have no gear: MuJoCo's joint attributes, and URDF's dynamics and transmission."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.export.elements import GearElements, friction_losses, twist_at_largest
+from strainwave.export.exported import Exported
+from strainwave.files.gear_set import GearSet
+
+Array = NDArray[np.float64]
+
+
+def joint(gear_set: GearSet, *, max_torque: float | None = None, name: str = "gear") -> Exported:
+    """Return the numbers of a rigid joint: MuJoCo's attributes, and dynamics and transmission of URDF.
+
+    Numbers: `armature`, inertia of the input at the output; `frictionloss` and `damping`, dry and viscous friction of the whole
+    gear at the output; `stiffness` and `stiffness_damping` of the gear, for a joint with a spring between motor and link.
+
+    Args:
+        gear_set: the gear, with its motor if that is known
+        max_torque: largest torque at the output [N.m]; by default the peak torque of the ratings
+        name: of the default class and of the robot
+
+    Raises:
+        ValueError: neither a torque nor a rating is given
+
+    >>> import strainwave as sw
+    >>> found = joint(sw.GearSet.read("csg-20-100"))
+    >>> round(found.numbers["frictionloss"][0], 3), sorted(found.files)
+    (4.611, ['joint.urdf', 'joint.xml'])
+    """
+    elements = GearElements.of_set(gear_set, max_torque)
+    numbers = _numbers(elements)
+    values = {key: repr(value) for key, (value, _) in numbers.items()}
+
+    def friction(speed: Array) -> Array:
+        torque = numbers["frictionloss"][0] * np.sign(speed) + numbers["damping"][0] * speed / abs(elements.ratio)
+        found: Array = torque / abs(elements.ratio)
+        return found
+
+    losses = list(friction_losses(gear_set.gear, elements.max_speed, friction))
+    return Exported(
+        "joint",
+        gear_set.name,
+        {"joint.xml": _mujoco_default(values, name), "joint.urdf": _urdf(values, elements.ratio, name)},
+        numbers,
+        tuple(losses),
+        (*elements.left_out, *left_out_if_rigid(elements)),
+        (
+            "give the joint of your model the class of joint.xml, or the attributes in it; stiffness is no attribute of a joint "
+            "that a motor turns, as its spring acts between link and world",
+        ),
+    )
+
+
+def left_out_if_rigid(elements: GearElements) -> Iterator[str]:
+    """Yield what of the torsion a rigid joint leaves out."""
+    yield f"torsion: {1e3 * twist_at_largest(elements):.3g} mrad at {elements.max_torque:.4g} N.m"
+
+
+def _numbers(elements: GearElements) -> dict[str, tuple[float, str]]:
+    ratio = abs(elements.ratio)
+    bristle = elements.at_input.bristle
+    dry = elements.at_input.dry + (0.0 if bristle is None else float(bristle.coulomb))
+    return {
+        "armature": (elements.input_inertia * ratio**2, "kg.m2"),
+        "frictionloss": (dry * ratio + elements.at_output.dry, "N.m"),
+        "damping": (elements.at_input.viscous * ratio**2 + elements.at_output.viscous, "N.m.s/rad"),
+        "stiffness": (elements.max_torque / twist_at_largest(elements), "N.m/rad"),
+        "stiffness_damping": (elements.damping, "N.m.s/rad"),
+    }
+
+
+def _mujoco_default(values: Mapping[str, str], name: str) -> str:
+    """Return a default class of MJCF."""
+    attributes = " ".join(f'{key}="{values[key]}"' for key in ("armature", "frictionloss", "damping"))
+    return (
+        f"<mujoco>\n  <default>\n    <default class={quoteattr(name)}>\n      <joint {attributes}/>\n    </default>\n"
+        "  </default>\n</mujoco>\n"
+    )
+
+
+def _urdf(values: Mapping[str, str], ratio: float, name: str) -> str:
+    """Return dynamics and transmission of a joint in URDF."""
+    return f"""<robot name={quoteattr(name)}>
+  <!-- Put dynamics into the joint of your robot, and its name into the transmission. -->
+  <joint name="joint" type="revolute">
+    <dynamics damping="{values["damping"]}" friction="{values["frictionloss"]}"/>
+  </joint>
+  <transmission name="joint_transmission">
+    <type>transmission_interface/SimpleTransmission</type>
+    <joint name="joint"/>
+    <actuator name="motor">
+      <mechanicalReduction>{ratio!r}</mechanicalReduction>
+    </actuator>
+  </transmission>
+</robot>
+"""

@@ -1,0 +1,272 @@
+"""A gear as MJCF: a model of MuJoCo without a plugin, alone or attached to a joint of a robot.
+
+The rotor is a joint of its own, at the ratio. The twist of the gear is a tendon of both joints: springs with a gap and springs
+that yield are its elastic elements, so that the hysteresis of Maxwell slip elements is exact. A LuGre friction is that of a
+`dcmotor`. What MuJoCo has no element for is stated in `left_out`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from strainwave import arguments, loads, motor
+from strainwave.export.elements import Friction, GearElements, Spring
+from strainwave.export.exported import Exported
+from strainwave.files.gear_set import GearSet
+from strainwave.messages import listed, quoted
+from strainwave.tuning.drawn import drawn_gears
+
+ROTOR_MASS = 1e-6  # kg: MuJoCo refuses a body that moves without one
+ROTOR_INERTIA = 1e-9  # kg.m², at least, across the axis
+TIMESTEP = 5e-4  # s
+DEFAULT_TIMESTEP = 2e-3  # s, of a model that states none
+STIFF_FRICTION = "0.9999 0.9999 0.001 0.5 2"  # impedance of dry friction: by default MuJoCo gives 5 to 10 % of it away
+MAX_MODEL_BYTES = 64 << 20  # of a robot's file
+RANDOMISED = ("armature", "frictionloss", "damping", "stiffness", "springlength", "springyield", "resistance", "motorconst",
+              "inductance", "cogging", "lugre", "gear")  # fmt: skip # attributes that drawn gears differ in
+PLACE = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")  # attributes of a body that place it
+
+Element = ElementTree.Element
+
+
+def mjcf(
+    gear_set: GearSet,
+    *,
+    max_torque: float | None = None,
+    load_inertia: float | None = None,
+    into: str | None = None,
+    joint: str | None = None,
+    draws: int = 0,
+    seed: int = 0,
+    name: str = "gear",
+) -> Exported:
+    """Return a gear as MJCF, alone with an inertia or behind a joint of a robot, with its losses.
+
+    Args:
+        gear_set: the gear, with motor and load if these are known
+        max_torque: at the output, up to which the torsion is fitted [N.m]; by default the peak torque of the ratings
+        load_inertia: at the output about its axis [kg.m²]; by default that of the load
+        into: text of the MJCF file of a robot; a model with an inertia alone if not given
+        joint: name of a hinge of the robot, which becomes the output
+        draws: number of gears that are drawn from what is known of the numbers, for domain randomisation
+        seed: of the draw
+        name: of the gear, and prefix of joints, tendons and actuators
+
+    Raises:
+        ValueError: neither a torque nor a rating is given, there is no inertia, or the robot has no such hinge
+
+    >>> import strainwave as sw
+    >>> found = mjcf(sw.GearSet.read("csg-20-100"), load_inertia=1.2)
+    >>> [loss.quantity for loss in found.losses], max(loss.share for loss in found.losses) < 1e-9
+    (['torque of the loop', 'width of the loop', 'loss per cycle', 'friction at the input'], True)
+    """
+    elements = GearElements.of_set(gear_set, max_torque)
+    if (into is None) != (joint is None):
+        raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
+    remarks: tuple[str, ...] = ()
+    if into is not None and joint is not None:
+        text, remarks = attached(into, joint, elements, gear_set.motor, name=name)
+    else:
+        text = _alone(elements, gear_set.motor, _inertia(gear_set, load_inertia), name)
+    files: dict[str, str | bytes] = {"gear.xml": text}
+    if draws:
+        files["randomisation.json"] = _randomisation(gear_set, elements, arguments.whole("draws", draws, 2), seed, name)
+    remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
+    return Exported("mjcf", gear_set.name, files, {}, elements.losses, elements.left_out, remarks)
+
+
+def _inertia(gear_set: GearSet, given: float | None) -> float:
+    if given is not None:
+        return arguments.number("load_inertia", given, "kg.m2", low=0.0)
+    inertia = getattr(gear_set.load, "inertia", None)
+    if not inertia:
+        raise ValueError(f"{gear_set.name} has no load with an inertia; give load_inertia, in kg.m2, or a robot and its joint")
+    return float(inertia)
+
+
+def _randomisation(gear_set: GearSet, elements: GearElements, draws: int, seed: int, name: str) -> str:
+    """Return the numbers of the gear's joints, tendons and actuators for drawn gears, and their intervals of 95 %, as JSON."""
+    parts = {"motor": gear_set.motor or motor.TorqueSource(inertia=0.0), "load": gear_set.load or loads.Inertia()}
+    whole = gear_set.with_parts(source="stated with the export", **parts)
+    columns = drawn_gears(whole, draws, seed)
+    members = []
+    for member in range(draws):
+        drive = whole.drive.replace({path: float(values[member]) for path, values in columns.items()})
+        rotor = float(getattr(drive.motor, "inertia", 0.0))
+        drawn = GearElements.of(drive.gear, rotor, elements.max_torque, elements.max_speed)
+        members.append(_numbers(_alone(drawn, drive.motor, 1.0, name)))
+    shared = [key for key in members[0] if all(key in each for each in members)]
+    ranges = {key: np.quantile([each[key] for each in members], [0.025, 0.975]).tolist() for key in shared}
+    return json.dumps({"ranges": ranges, "draws": members}, indent=1) + "\n"
+
+
+def _numbers(model: str) -> dict[str, float]:
+    """Return the numbers of joints, tendons and actuators of a model, by name and attribute."""
+    found: dict[str, float] = {}
+    for each in ElementTree.fromstring(model).iter():
+        if "name" not in each.attrib or each.tag not in ("joint", "fixed", "motor", "dcmotor"):
+            continue
+        for key, value in each.attrib.items():
+            words = value.split()
+            if key in RANDOMISED:
+                found |= {f"{each.attrib['name']}.{key}[{place}]": float(word) for place, word in enumerate(words)}
+    return found
+
+
+def _alone(elements: GearElements, actuator: Any, load_inertia: float, name: str) -> str:
+    root = Element("mujoco", model=name)
+    ElementTree.SubElement(root, "compiler", angle="radian")
+    ElementTree.SubElement(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity="0 0 0")
+    world = ElementTree.SubElement(root, "worldbody")
+    link = ElementTree.SubElement(world, "body", name=f"{name}_link")
+    spread = " ".join([repr(load_inertia)] * 3)
+    ElementTree.SubElement(link, "inertial", pos="0 0 0", mass="1", diaginertia=spread)
+    shaft = ElementTree.SubElement(link, "joint", {"name": f"{name}_output", "type": "hinge", "axis": "0 0 1"})
+    add_gear(root, world, link, shaft, elements, actuator, name)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def attached(model: str, joint: str, elements: GearElements, actuator: Any, *, name: str = "gear") -> tuple[str, tuple[str, ...]]:
+    """Return a robot's model with a gear behind one of its joints, and remarks on what it changes.
+
+    Args:
+        model: text of an MJCF file
+        joint: name of a hinge in it, which becomes the output of the gear
+        elements: of the gear
+        actuator: motor of the drive; None for a torque at the input
+        name: of the gear
+
+    Raises:
+        ValueError: the text is no MJCF, or the joint is not a hinge in it with a body of its own
+    """
+    root = _parsed(model)
+    parents = {child: parent for parent in root.iter() for child in parent}
+    hinges = [each for each in root.iter("joint") if each.get("name") == joint and parents[each].tag == "body"]
+    if not hinges:
+        names = [each.get("name", "") for each in root.iter("joint") if parents[each].tag == "body" and each.get("name")]
+        raise ValueError(f"joint = {quoted(joint)} is not in the model; it has {listed(names) or 'no joint with a name'}")
+    shaft = hinges[0]
+    if shaft.get("type", "hinge") != "hinge":
+        raise ValueError(f"joint = {quoted(joint)} is of type {shaft.get('type')}; a gear turns a hinge")
+    link = parents[shaft]
+    add_gear(root, parents[link], link, shaft, elements, actuator, name)
+    remarks = [
+        f"the actuator {each.get('name') or each.tag} still acts on {joint}, behind the gear; let {name}_motor take its place"
+        for each in root.findall("actuator/*")
+        if each.get("joint") == joint
+    ]
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n", tuple(remarks)
+
+
+def _parsed(model: str) -> Element:
+    """Return the root of an MJCF file; one that declares entities is refused, as these may grow without bound."""
+    if len(model) > MAX_MODEL_BYTES or "<!DOCTYPE" in model or "<!ENTITY" in model:
+        raise ValueError("the model declares entities, or is larger than 64 MiB; save it without a DOCTYPE")
+    try:
+        root = ElementTree.fromstring(model)
+    except ElementTree.ParseError as error:
+        raise ValueError(f"the model is no XML: {error}") from None
+    if root.tag != "mujoco":
+        raise ValueError(f"the model is a {root.tag}, not a mujoco; MuJoCo itself saves a URDF as MJCF (mj_saveLastXML)")
+    return root
+
+
+def add_gear(
+    root: Element, parent: Element, link: Element, joint: Element, elements: GearElements, actuator: Any, name: str
+) -> None:
+    """Add rotor, tendons and actuator of a gear to a model.
+
+    Args:
+        root: of the model
+        parent: body, or the world, to which the rotor is attached
+        link: body that the gear turns, a child of it
+        joint: of the link, a hinge with a name
+        elements: of the gear
+        actuator: motor of the drive; None for a torque at the input
+        name: of the gear
+    """
+    option = root.find("option")
+    timestep = DEFAULT_TIMESTEP if option is None else float(option.get("timestep", DEFAULT_TIMESTEP))
+    place = {key: value for key, value in link.attrib.items() if key in PLACE}
+    rotor = ElementTree.SubElement(parent, "body", {"name": f"{name}_rotor", **place})
+    inertia = " ".join([repr(ROTOR_INERTIA)] * 3)
+    ElementTree.SubElement(rotor, "inertial", pos="0 0 0", mass=repr(ROTOR_MASS), diaginertia=inertia)
+    axis = {key: value for key, value in joint.attrib.items() if key in ("axis", "pos", "class")}
+    own = {"armature": repr(elements.input_inertia), **_friction(elements.at_input, timestep)}
+    ElementTree.SubElement(rotor, "joint", {"name": f"{name}_input", "type": "hinge", **axis, **own})
+    joint.attrib.update(_friction(elements.at_output, timestep))
+    _add_twist(_child(root, "tendon"), elements, name, joint.attrib["name"])
+    _add_actuators(_child(root, "actuator"), actuator, elements.at_input, name)
+
+
+def _child(root: Element, tag: str) -> Element:
+    found = root.find(tag)
+    return ElementTree.SubElement(root, tag) if found is None else found
+
+
+def _friction(shaft: Friction, timestep: float) -> dict[str, str]:
+    """Return attributes of a joint for its dry and viscous friction."""
+    dry = {"frictionloss": repr(shaft.dry), "solreffriction": f"{2.0 * timestep!r} 1", "solimpfriction": STIFF_FRICTION}
+    return (dry if shaft.dry > 0.0 else {}) | ({"damping": repr(shaft.viscous)} if shaft.viscous > 0.0 else {})
+
+
+def _add_twist(tendons: Element, elements: GearElements, name: str, output: str) -> None:
+    """Add a tendon for each elastic element of the twist, which is the input angle over the ratio less the output angle."""
+    parts: list[dict[str, str]] = [_spring(spring) for spring in elements.springs]
+    parts += [{"stiffness": repr(k), "springyield": repr(torque / k)} for k, torque in elements.slips]
+    if elements.damping > 0.0:
+        parts[0] = {"damping": repr(elements.damping), **parts[0]}
+    for number, attributes in enumerate(parts):
+        length = attributes if "springlength" in attributes else {"springlength": "0", **attributes}
+        tendon = ElementTree.SubElement(tendons, "fixed", {"name": f"{name}_twist_{number}", **length})
+        ElementTree.SubElement(tendon, "joint", joint=f"{name}_input", coef=repr(1.0 / elements.ratio))
+        ElementTree.SubElement(tendon, "joint", joint=output, coef="-1")
+
+
+def _spring(spring: Spring) -> dict[str, str]:
+    coefficients = [spring.linear, spring.quadratic, spring.cubic]
+    while len(coefficients) > 1 and coefficients[-1] == 0.0:
+        coefficients.pop()
+    found = {"stiffness": " ".join(map(repr, coefficients))}
+    return found | ({"springlength": f"{-spring.gap!r} {spring.gap!r}"} if spring.gap else {})
+
+
+def _add_actuators(actuators: Element, part: Any, at_input: Friction, name: str) -> None:
+    joint = {"joint": f"{name}_input"}
+    bristle = {} if at_input.bristle is None else {"lugre": _lugre(at_input)}
+    match part:
+        case motor.DC():
+            attributes = dict(_dc(part))
+            ElementTree.SubElement(actuators, "dcmotor", {"name": f"{name}_motor", **joint, **attributes, **bristle})
+            return
+        case motor.CurrentSource():
+            gear = repr(float(part.torque_constant))
+            ElementTree.SubElement(actuators, "motor", {"name": f"{name}_motor", **joint, "gear": gear})
+        case _:
+            ElementTree.SubElement(actuators, "motor", {"name": f"{name}_motor", **joint})
+    if bristle:
+        passive = {"input": "none", "resistance": "1", "motorconst": "0 0"}
+        ElementTree.SubElement(actuators, "dcmotor", {"name": f"{name}_bristle", **joint, **passive, **bristle})
+
+
+def _dc(part: motor.DC) -> Iterator[tuple[str, str]]:
+    yield "resistance", repr(float(part.resistance))
+    yield "motorconst", f"{float(part.torque_constant)!r} {float(part.back_emf)!r}"
+    if part.inductance > 0.0:
+        yield "inductance", f"{float(part.inductance)!r} 0"
+    if part.cogging_torque:
+        yield "cogging", f"{float(part.cogging_torque)!r} {float(part.cogging_order)!r} 0"
+
+
+def _lugre(at_input: Friction) -> str:
+    law = at_input.bristle
+    assert law is not None
+    numbers = (law.bristle_stiffness, law.bristle_damping, law.coulomb, law.breakaway, law.stribeck_speed)
+    return " ".join(repr(float(each)) for each in numbers)
