@@ -27,9 +27,7 @@ STRIBECK_EXPONENT = 2.0  # of the laws of this package; other ones are refused
 LOAD_TERMS = "load_friction_"  # how the names of friction that grows with the load begin
 
 
-def bam(
-    gear_set: GearSet, *, actuator: str = DEFAULT_ACTUATOR, max_torque: float | None = None
-) -> Exported:
+def bam(gear_set: GearSet, *, actuator: str = DEFAULT_ACTUATOR, max_torque: float | None = None) -> Exported:
     """Return the parameter file of BAM for a joint, with the loss in the friction.
 
     Model M2 is exact for a Stribeck or LuGre friction of the input in steady motion, M1 for a Coulomb friction.
@@ -53,12 +51,12 @@ def bam(
     }
     if resistance := getattr(gear_set.motor, "resistance", 0.0):
         numbers["R"] = float(resistance), "ohm"
-    falls = isinstance(law, friction.Stribeck | friction.LuGre)
-    dry, viscous = (float(law.coulomb), float(law.viscous)) if falls else (shaft.dry, shaft.viscous)
+    falls = law if isinstance(law, friction.Stribeck | friction.LuGre) else None
+    dry, viscous = (shaft.dry, shaft.viscous) if falls is None else (float(falls.coulomb), float(falls.viscous))
     numbers["friction_base"] = dry * ratio + elements.at_output.dry, "N.m"
-    if falls:
-        numbers["friction_stribeck"] = (float(law.breakaway) - float(law.coulomb)) * ratio, "N.m"
-        numbers["dtheta_stribeck"] = float(law.stribeck_speed) / ratio, "rad/s"
+    if falls is not None:
+        numbers["friction_stribeck"] = (float(falls.breakaway) - float(falls.coulomb)) * ratio, "N.m"
+        numbers["dtheta_stribeck"] = float(falls.stribeck_speed) / ratio, "rad/s"
         numbers["alpha"] = STRIBECK_EXPONENT, "1"
     numbers["friction_viscous"] = viscous * ratio**2 + elements.at_output.viscous, "N.m.s/rad"
     values = {name: value for name, (value, _) in numbers.items()}
@@ -66,7 +64,7 @@ def bam(
     def at_input(speed: Array) -> Array:
         return friction_of(values, speed / elements.ratio) / elements.ratio
 
-    content = values | {"model": "m2" if falls else "m1", "actuator": actuator}
+    content = values | {"model": "m1" if falls is None else "m2", "actuator": actuator}
     return Exported(
         "bam",
         gear_set.name,
@@ -82,7 +80,7 @@ def friction_of(numbers: Mapping[str, float], speed: Array) -> Array:
     """Return the friction of models M1 and M2 of BAM [N.m], shape as the speed of the output [rad/s]."""
     dry = numbers["friction_base"] * np.ones_like(speed)
     if "friction_stribeck" in numbers:
-        dry = dry + numbers["friction_stribeck"] * np.exp(-np.abs(speed / numbers["dtheta_stribeck"]) ** numbers["alpha"])
+        dry = dry + numbers["friction_stribeck"] * np.exp(-(np.abs(speed / numbers["dtheta_stribeck"]) ** numbers["alpha"]))
     torque: Array = dry * np.sign(speed) + numbers["friction_viscous"] * speed
     return torque
 
@@ -105,6 +103,7 @@ def read_bam(path: Path, ratio: float) -> GearSet:
         content = json.loads(path.read_text("utf-8"))
         names = {name: float(content[name]) for name in content if name not in ("model", "actuator")}
         dry, viscous = names["friction_base"] / ratio, names["friction_viscous"] / ratio**2
+        inertia, constant = names["armature"] / ratio**2, names["kt"] / ratio
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise ValueError(one_line(f"{path} is no parameter file of BAM: {shortened(str(error))}")) from None
     loads = [name for name, value in names.items() if name.startswith(LOAD_TERMS) and value]
@@ -125,8 +124,8 @@ def read_bam(path: Path, ratio: float) -> GearSet:
         gear=Gear(
             kinematics=kinematics.PlainRatio(reduction=ratio),
             friction_input=law,
-            input_inertia=names.get("armature", 0.0) / ratio**2,
+            input_inertia=inertia,
         ),
-        motor=motor.CurrentSource(torque_constant=names.get("kt", 0.0) / ratio, inertia=0.0),
+        motor=motor.CurrentSource(torque_constant=constant, inertia=0.0),
     )
     return replace(GearSet.of(drive, name=path.stem, source=f"BAM, {path.name}"), note=note)

@@ -8,17 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, nnls
 
-from strainwave import Gear, friction, hysteresis, stiffness
+from strainwave import Drive, Gear, friction, hysteresis, loads, motor, stiffness
 from strainwave.export.exported import Loss
 from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
 from strainwave.files.units import convert
+from strainwave.simulation import scenario
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
+from strainwave.simulation.run import simulate
 from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
@@ -30,8 +34,15 @@ CREEP_SHARE = 0.01  # of the largest speed, from which friction is fitted
 FITTED_SPEEDS = 400  # in each sense
 FITTED_ANGLES = 61  # over a turn of the output
 SEGMENTS = 12  # of a spring without segments of its own
-SLIPS = 8  # elements of a hysteresis that is fitted
+SLIPS = 16  # elements of a hysteresis that is fitted, of which least squares keeps some
+MIN_SLIP_SHARE = 2e-3  # of the largest twist, at which the first of them slips
+LOSS_WEIGHT = 1e3  # of the loss per cycle over that of a torque of the loop
 LOOP_POINTS = 400  # of a branch of the loop in which hysteresis is compared
+RUN_DURATION = 10.0  # s
+RUN_FREQUENCY = 0.5  # Hz
+RUN_SPEED = 100.0  # rad/s of the input at most
+RUN_TORQUE_SHARE = 0.3  # of the largest torque, that the run reaches
+RUN_SAMPLE = 2e-3  # s
 MIN_SLOPE_SHARE = 1e-9  # of the stiffness: a smaller slope is rounding
 
 
@@ -92,7 +103,6 @@ class GearElements:
         at_input, at_output: friction of both shafts
         max_torque: at the output, up to which the torsion was fitted [N.m]
         max_speed: of the input, up to which friction was fitted [rad/s]
-        losses: against the gear
         left_out: laws of the gear without an element, in words
     """
 
@@ -105,7 +115,6 @@ class GearElements:
     at_output: Friction
     max_torque: float
     max_speed: float
-    losses: tuple[Loss, ...]
     left_out: tuple[str, ...]
 
     @classmethod
@@ -133,7 +142,7 @@ class GearElements:
             max_speed: of the input, up to which friction is fitted [rad/s]
         """
         twist = _twist_at(gear, max_torque)
-        own = cls(
+        return cls(
             ratio=float(gear.kinematics.ratio),
             input_inertia=float(gear.input_inertia) + rotor_inertia,
             springs=_springs(gear.stiffness, twist),
@@ -143,11 +152,14 @@ class GearElements:
             at_output=_friction_of(gear.friction_output, max_speed / abs(gear.kinematics.ratio), 1.0),
             max_torque=max_torque,
             max_speed=max_speed,
-            losses=(),
             left_out=tuple(_left_out(gear, max_torque)),
         )
-        losses = (*own.torsion_losses(gear, twist), *friction_losses(gear, max_speed, own.friction))
-        return replace(own, losses=losses)
+
+    def losses(self, gear: Gear) -> tuple[Loss, ...]:
+        """Return the losses against a gear: of torsion loops, of friction over speed, and of a run."""
+        twist = _twist_at(gear, self.max_torque)
+        friction = friction_losses(gear, self.max_speed, self.friction)
+        return (*self.torsion_losses(gear, twist), *friction, *self.run_losses(gear))
 
     def torque(self, twist: Array) -> Array:
         """Return the torque along a path of the twist from a virgin state [N.m], shape as the path [rad]."""
@@ -156,17 +168,44 @@ class GearElements:
         return total
 
     def torsion_losses(self, gear: Gear, twist: float) -> Iterator[Loss]:
-        """Yield what torque, width and loss per cycle of a torsion loop differ by."""
-        path, loop = _loop(twist)
-        full = np.asarray(gear.stiffness.torque(path)) + np.asarray(gear.hysteresis.trace(path))
-        both = [full[loop], self.torque(path)[loop]]
-        over = f"a torsion loop to {self.max_torque:.4g} N.m"
-        yield Loss.between("torque of the loop", both[1] - both[0], "N.m", float(np.abs(both[0]).max()), over)
-        if not gear.hysteresis.trace(path).any():
-            return
-        (width, energy), (own_width, own_energy) = (_width_and_energy(path[loop], torque) for torque in both)
-        yield Loss.between("width of the loop", np.array([own_width - width]), "rad", width, over)
-        yield Loss.between("loss per cycle", np.array([own_energy - energy]), "J", energy, over)
+        """Yield what torque, width and loss per cycle of a loop to the largest twist, and of one to half of it, differ by."""
+        for reach in (twist, 0.5 * twist):
+            path, loop = _loop(reach)
+            held = np.asarray(gear.hysteresis.trace(path))
+            both = [(np.asarray(gear.stiffness.torque(path)) + held)[loop], self.torque(path)[loop]]
+            top = float(np.abs(both[0]).max())
+            over = f"a torsion loop to {top:.4g} N.m"
+            yield Loss.between("torque of the loop", both[1] - both[0], "N.m", top, over)
+            if held.any():
+                (width, energy), (own_width, own_energy) = (_width_and_energy(path[loop], torque) for torque in both)
+                yield Loss.between("width of the loop", np.array([own_width - width]), "rad", width, over)
+                yield Loss.between("loss per cycle", np.array([own_energy - energy]), "J", energy, over)
+
+    def run_losses(self, gear: Gear) -> Iterator[Loss]:
+        """Yield what output angle and motor torque differ by if the input moves to and fro before an inertia."""
+        speed = min(RUN_SPEED, 0.5 * self.max_speed)
+        inertia = RUN_TORQUE_SHARE * self.max_torque * abs(self.ratio) / (2.0 * np.pi * RUN_FREQUENCY * speed)
+        full, own = (
+            _to_and_fro(each, self.input_inertia - gear.input_inertia, speed, inertia) for each in (gear, self.simplified(gear))
+        )
+        over = f"{RUN_DURATION:g} s at {RUN_FREQUENCY:g} Hz, the input to {speed:.4g} rad/s before {inertia:.3g} kg.m2"
+        twist = float(np.ptp(full["transmission_error"]))
+        yield Loss.between("transmission error of a run", own["output_angle"] - full["output_angle"], "rad", twist, over)
+        torque = float(np.sqrt(np.mean(full["motor_torque"] ** 2)))
+        yield Loss.between("motor torque of a run", own["motor_torque"] - full["motor_torque"], "N.m", torque, over)
+
+    def simplified(self, gear: Gear) -> Gear:
+        """Return a gear with the spring of the given one and no law but the elements."""
+        at_input = self.at_input.bristle or friction.Coulomb(coulomb=self.at_input.dry, viscous=self.at_input.viscous)
+        return Gear(
+            kinematics=gear.kinematics,
+            stiffness=gear.stiffness,
+            hysteresis=hysteresis.MaxwellSlip(stiffness=[k for k, _ in self.slips], breakaway=[f for _, f in self.slips]),
+            damping=self.damping,
+            friction_input=at_input,
+            friction_output=friction.Coulomb(coulomb=self.at_output.dry, viscous=self.at_output.viscous),
+            input_inertia=gear.input_inertia,
+        )
 
     def friction(self, speed: Array) -> Array:
         """Return the friction of the whole gear at the input [N.m] at steady speeds of the input [rad/s]."""
@@ -174,9 +213,17 @@ class GearElements:
         return self.at_input.steady(speed) + at_output
 
 
-def friction_losses(
-    gear: Gear, max_speed: float, exported: Callable[[Array], Array]
-) -> Iterator[Loss]:
+def _to_and_fro(gear: Gear, rotor_inertia: float, speed: float, inertia: float) -> Recording:
+    """Return the run of a gear whose input moves as a sine with a largest speed [rad/s] before an inertia [kg.m²]."""
+    drive = Drive(gear=gear, motor=motor.AccelerationSource(inertia=rotor_inertia), load=loads.Inertia(inertia=inertia))
+    rate = 2.0 * np.pi * RUN_FREQUENCY
+    motion = scenario.sine(amplitude=-rate * speed, frequency=RUN_FREQUENCY, duration=RUN_DURATION)
+    begin = {"input_speed": speed, "output_speed": speed / float(gear.kinematics.ratio)}
+    recorded = ["output_angle", "transmission_error", "motor_torque"]
+    return simulate(drive, motion, sample=RUN_SAMPLE, initial=begin, record=recorded)
+
+
+def friction_losses(gear: Gear, max_speed: float, exported: Callable[[Array], Array]) -> Iterator[Loss]:
     """Yield what the friction of an exported model differs by, at the input, over speeds of both senses and a turn.
 
     Args:
@@ -196,6 +243,7 @@ def friction_losses(
 
 def twist_at_largest(elements: GearElements) -> float:
     """Return the twist of a virgin gear at its largest torque [rad]."""
+
     def missing(twist: float) -> float:
         return float(elements.torque(np.array([0.0, twist]))[-1]) - elements.max_torque
 
@@ -234,7 +282,7 @@ def _twist_at(gear: Gear, torque: float) -> float:
 def _loop(twist: float) -> tuple[Array, slice]:
     """Return a path of the twist from rest to both ends and a whole loop after it, and the loop."""
     corners = [0.0, twist, -twist, twist, -twist, twist]
-    path = [np.linspace(a, b, LOOP_POINTS, endpoint=False) for a, b in zip(corners, corners[1:], strict=False)]
+    path = [np.linspace(a, b, LOOP_POINTS, endpoint=False) for a, b in pairwise(corners)]
     whole = np.concatenate([*path, [twist]])
     return whole, slice(3 * LOOP_POINTS, None)
 
@@ -259,6 +307,9 @@ def _springs(law: Any, twist: float) -> tuple[Spring, ...]:
             return _stiffening([0.0, law.knee], [law.k1, law.k1 + law.k2])
         case stiffness.ThreeSegment() if law.k1 <= law.k2 <= law.k3:
             return _stiffening([0.0, float(law.twist(law.t1)), float(law.twist(law.t2))], [law.k1, law.k2, law.k3])
+        case stiffness.Backlash():
+            half = 0.5 * float(law.clearance)
+            return tuple(replace(spring, gap=spring.gap + half) for spring in _springs(law.law, twist - half))
         case _:
             knots = np.linspace(0.0, twist, SEGMENTS + 1)
             slopes = np.diff(np.asarray(law.torque(knots))) / np.diff(knots)
@@ -273,16 +324,20 @@ def _stiffening(knees: Sequence[float], slopes: Sequence[float]) -> tuple[Spring
 
 
 def _slips(law: Any, twist: float) -> tuple[tuple[float, float], ...]:
-    """Return Maxwell slip elements of a hysteresis, exactly if it has them, else such that their virgin curve is its own."""
+    """Return Maxwell slip elements of a hysteresis, exactly if it has them, else by least squares over the loop to a twist."""
     if isinstance(law, hysteresis.MaxwellSlip):
         return tuple(zip(map(float, law.stiffness), map(float, law.breakaway), strict=True))
-    reach = twist * np.geomspace(1e-3, 1.0, SLIPS + 1)
-    path = np.concatenate([[0.0], reach])
-    virgin = np.asarray(law.trace(path))
-    slopes = np.minimum.accumulate(np.maximum(np.diff(virgin) / np.diff(path), 0.0))
-    steps = slopes - np.append(slopes[1:], 0.0)
-    least = MIN_SLOPE_SHARE * max(float(slopes[0]), 1e-300)
-    return tuple((float(k), float(k * x)) for k, x in zip(steps, reach, strict=True) if k > least)
+    path, loop = _loop(twist)
+    target = np.asarray(law.trace(path))[loop]
+    if not target.any():
+        return ()
+    reach = twist * np.geomspace(MIN_SLIP_SHARE, 1.0, SLIPS)
+    units = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[float(slip)]) for slip in reach]
+    traces = np.stack([np.asarray(unit.trace(path))[loop] for unit in units], axis=1)
+    energy = np.trapezoid(traces, path[loop], axis=0) * LOSS_WEIGHT / twist
+    wanted = np.append(target, float(np.trapezoid(target, path[loop])) * LOSS_WEIGHT / twist)
+    weights, _ = nnls(np.vstack([traces, energy]), wanted)
+    return tuple((float(k), float(k * slip)) for k, slip in zip(weights, reach, strict=True) if k > 0.0)
 
 
 def _friction_at_input(gear: Gear, fast: float) -> Friction:
@@ -313,7 +368,8 @@ def _friction_of(law: Any, fast: float, turns: float) -> Friction:
 
 
 def _angles(turns: float) -> Array:
-    return 2.0 * np.pi * abs(turns) / FITTED_ANGLES * np.arange(FITTED_ANGLES)
+    angle: Array = 2.0 * np.pi * abs(turns) / FITTED_ANGLES * np.arange(FITTED_ANGLES)
+    return angle
 
 
 def _left_out(gear: Gear, torque: float) -> Iterator[str]:

@@ -52,8 +52,8 @@ def joint(gear_set: GearSet, *, max_torque: float | None = None, name: str = "ge
         tuple(losses),
         (*elements.left_out, *left_out_if_rigid(elements)),
         (
-            "give the joint of your model the class of joint.xml, or the attributes in it; stiffness is no attribute of a joint "
-            "that a motor turns, as its spring acts between link and world",
+            "give the joint of your model the class of joint.xml, or the attributes in it; stiffness is no attribute of a "
+            "joint that a motor turns, as its spring acts between link and world",
         ),
     )
 
