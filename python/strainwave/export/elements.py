@@ -368,7 +368,7 @@ def _friction_of(law: Any, fast: float, turns: float) -> Friction:
 
 
 def _angles(turns: float) -> Array:
-    angle: Array = 2.0 * np.pi * abs(turns) / FITTED_ANGLES * np.arange(FITTED_ANGLES)
+    angle: Array = np.asarray(2.0 * np.pi * abs(turns) / FITTED_ANGLES * np.arange(FITTED_ANGLES), dtype=np.float64)
     return angle
 
 
