@@ -27,7 +27,7 @@ def joint(
     out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/joint"),
 ) -> None:
     """Numbers of a joint without a gear: frictionloss, armature, damping for MuJoCo; dynamics and transmission for URDF."""
-    from strainwave.export.joint import joint as exported
+    from strainwave.export.joint_numbers import joint as exported
     from strainwave.files.gear_set import GearSet
 
     _write(exported(GearSet.read(gear), max_torque=max_torque, name=name), out)
@@ -68,7 +68,7 @@ def bam(
     out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/bam"),
 ) -> None:
     """Parameters of BAM (better actuator models), with friction, inertia and torque constant at the output."""
-    from strainwave.export.bam import bam as exported
+    from strainwave.export.bam_parameters import bam as exported
     from strainwave.files.gear_set import GearSet
 
     _write(exported(GearSet.read(gear), actuator=actuator, max_torque=max_torque), out)
@@ -81,7 +81,7 @@ def from_bam(
     out: Annotated[Path, typer.Option(help="Gear file to write.")] = Path("out/gear.toml"),
 ) -> None:
     """A gear file from parameters of BAM."""
-    from strainwave.export.bam import read_bam
+    from strainwave.export.bam_parameters import read_bam
 
     found = read_bam(file, ratio)
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,7 @@ import pytest
 import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave.export.bam import bam, read_bam
+from strainwave.export.bam_parameters import bam, read_bam
 from strainwave.files.gear_set import GearSet
 
 MOTOR = sw.motor.CurrentSource(torque_constant=0.08, inertia=5e-5)

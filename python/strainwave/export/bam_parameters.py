@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear, arguments, friction, kinematics, motor
 from strainwave.export.elements import GearElements, friction_losses
 from strainwave.export.exported import Exported
-from strainwave.export.joint import left_out_if_rigid
+from strainwave.export.joint_numbers import left_out_if_rigid
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed, one_line, shortened
 from strainwave.tuning.cascade import torque_constant
