@@ -85,6 +85,12 @@ def headers(source: str) -> list[str]:
     return re.findall(r"^#include <(strainwave/[^>]+)>", source, re.MULTILINE)
 
 
+def _headers_beside(name: str, source: str) -> list[str]:
+    """Return the headers of its own folder that a header of this name includes."""
+    folder = name.rpartition("/")[0]
+    return [f"{folder}/{each}" for each in re.findall(r'^#include "([^"]+)"', source, re.MULTILINE)]
+
+
 def closure(names: Iterable[str]) -> dict[str, str]:
     """Return the texts of headers by name, with those that they include."""
     texts: dict[str, str] = {}
@@ -92,5 +98,5 @@ def closure(names: Iterable[str]) -> dict[str, str]:
     while waiting:
         if (name := waiting.pop()) not in texts:
             texts[name] = (INCLUDE / name).read_text("utf-8")
-            waiting += headers(texts[name])
+            waiting += headers(texts[name]) + _headers_beside(name, texts[name])
     return texts

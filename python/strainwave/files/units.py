@@ -203,6 +203,23 @@ def measures(unit: str, wanted: str) -> bool:
     return True
 
 
+def base_exponents(unit: str) -> tuple[float, dict[str, int]]:
+    """Return the size of a unit in SI base units, and their exponents; an angle counts as a base unit.
+
+    >>> base_exponents("N.m/rad")
+    (1.0, {'kg': 1, 'm': 2, 'rad': -1, 's': -2})
+
+    Raises:
+        ValueError: the unit is not known
+    """
+    from pint.util import to_units_container
+
+    parsed = _parse(unit)
+    _, base = _registry().get_base_units(parsed)
+    powers = {_registry().get_symbol(name): int(power) for name, power in to_units_container(base).items()}
+    return float(_registry().convert(1.0, parsed, base)), dict(sorted(powers.items()))
+
+
 def counts(unit: str) -> bool:
     """True if a unit is that of an encoder's counts, without or with the counts of a revolution.
 

@@ -58,8 +58,13 @@ class Compiler:
     link: tuple[str, ...]
     identity: str
 
-    def build(self, source: Path, flags: Sequence[str]) -> Path:
+    def build(self, source: Path, flags: Sequence[str], libraries: Sequence[str] = ()) -> Path:
         """Compile a source to a shared object in the same folder, which takes all temporary files, and return its path.
+
+        Args:
+            source: file in C++
+            flags: of the compilation
+            libraries: and other arguments of the linker
 
         Raises:
             CompileError: the compiler reports an error, crashes, or takes longer than `MAX_COMPILE_SECONDS`
@@ -67,7 +72,7 @@ class Compiler:
         unlinked, shared = source.with_suffix(".o"), source.with_suffix(".so")
         for command in (
             (*self.command, *flags, "-c", str(source), "-o", str(unlinked)),
-            (*self.link, str(unlinked), "-o", str(shared)),
+            (*self.link, str(unlinked), *libraries, "-o", str(shared)),
         ):
             status, output = _run(command, MAX_COMPILE_SECONDS, str(source.parent))
             if status != 0:
@@ -93,7 +98,7 @@ def candidates() -> Iterator[Compiler]:
                 seen.add(identity)
                 command = (path, *words[1:])
                 yield Compiler(Path(words[0]).name, command, (*command, "-shared"), identity)
-    if zig := _zig():
+    if zig := zig_program():
         # The kernel finds its mathematics in what Python has loaded: to link with libraries, zig would build them first, for
         # 20 s and 57 MB. Its processor by default is that of the machine.
         yield Compiler("zig c++", (zig, "c++", "-mcpu=baseline"), (zig, "cc", "-shared", "-nostdlib", "-s"), _identity(zig))
@@ -128,7 +133,7 @@ def compiles_cplusplus_20(compiler: Compiler) -> bool:
     return status == 0 and oldest and int(macros.get("__cplusplus", 0)) >= CPLUSPLUS_20
 
 
-def _zig() -> str | None:
+def zig_program() -> str | None:
     """Return the program of the package ziglang if it is installed."""
     found = find_spec("ziglang")
     folders = found.submodule_search_locations if found else None

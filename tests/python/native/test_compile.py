@@ -58,7 +58,7 @@ def test_what_is_no_job_is_refused_with_those_there_are() -> None:
 
 @pytest.mark.usefixtures("empty_path")
 def test_without_a_compiler_it_is_an_error_with_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("strainwave.native.compilers._zig", lambda: None)
+    monkeypatch.setattr("strainwave.native.compilers.zig_program", lambda: None)
     with pytest.raises(NoCompilerError, match="pip install"):
         sw.compile(sw.load("two-inertia-gear"), ["simulate"])
 

@@ -56,7 +56,7 @@ def test_the_compiler_of_the_environment_comes_first_and_zig_last(monkeypatch: p
         program(tmp_path / name, "true")
     program(tmp_path / "mine", "true")
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(compilers, "_zig", lambda: str(tmp_path / "mine"))
+    monkeypatch.setattr(compilers, "zig_program", lambda: str(tmp_path / "mine"))
     assert names() == ["c++", "g++", "clang++", "zig c++"]
     monkeypatch.setenv("CXX", f"{tmp_path}/mine -m32")
     assert next(candidates()).command == (f"{tmp_path}/mine", "-m32")
@@ -68,7 +68,7 @@ def test_the_compiler_of_the_environment_comes_first_and_zig_last(monkeypatch: p
 def test_two_names_of_one_compiler_are_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "c++").symlink_to(program(tmp_path / "g++", "true"))
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(compilers, "_zig", lambda: None)
+    monkeypatch.setattr(compilers, "zig_program", lambda: None)
     assert names() == ["c++"]
 
 
@@ -99,7 +99,7 @@ def test_a_compiler_must_be_recent_by_its_own_answer(
     text = "; ".join(f"echo '#define {name} {value}{'L' * (name == '__cplusplus')}'" for name, value in macros.items())
     program(tmp_path / "g++", text or "exit 0")
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(compilers, "_zig", lambda: None)
+    monkeypatch.setattr(compilers, "zig_program", lambda: None)
     if usable:
         assert find_compiler().name == "g++"
     else:

@@ -205,7 +205,7 @@ def test_without_a_compiler_the_general_drive_goes_on_and_says_so_once(
     monkeypatch.setenv("STRAINWAVE_KERNELS", str(tmp_path / "kernels"))
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CXX", raising=False)
-    monkeypatch.setattr("strainwave.native.compilers._zig", lambda: None)
+    monkeypatch.setattr("strainwave.native.compilers.zig_program", lambda: None)
     monkeypatch.setattr(kernels, "COMPILE_STEPS", 1000)
     monkeypatch.setattr(kernels, "LOOK_UP_STEPS", 100)
     inertias = {"load.inertia": np.linspace(0.4, 0.6, 5)}

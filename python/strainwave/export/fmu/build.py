@@ -1,0 +1,260 @@
+"""FMUs of drives: sources, binaries for some platforms, and descriptions, in one file."""
+
+from __future__ import annotations
+
+import io
+import platform as machine
+import re
+import time
+import zipfile
+from collections.abc import Iterable
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from strainwave import Drive, _core, arguments
+from strainwave.export.exported import Exported
+from strainwave.export.fmu.comparison import difference_to_simulation
+from strainwave.export.fmu.description import Description, build_description, model_description
+from strainwave.export.fmu.source import sources
+from strainwave.export.fmu.variables import MIN_STEP, Variable, variables
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import drive_of
+from strainwave.messages import quoted
+from strainwave.native.compilers import FLAGS, Compiler, NoCompilerError, find_compiler, zig_program
+from strainwave.native.static_type import in_words
+from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, fine_enough
+
+VERSIONS = (2, 3)
+STEP = 2e-4  # s, the internal step of a drive that needs no shorter one
+MAX_NAME_LENGTH = 60  # characters of a file name
+EPOCH = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal drives have equal FMUs
+NOT_AS_LIBRARY = "-Wl,--as-needed", "-Wl,-z,defs", "-lm"  # no C++ library, and no symbol without a library
+MAX_HALVINGS = 20  # of the step, for bristles
+RESERVED = {"model", "drive", "fmu", "strainwave"}
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A platform that FMUs have binaries for.
+
+    Attributes:
+        folder: of FMI 2.0; that of FMI 3.0 is its name
+        suffix: of a shared library
+        target: as zig names it
+    """
+
+    folder: str
+    suffix: str
+    target: str
+
+
+PLATFORMS = {
+    "x86_64-linux": Platform("linux64", ".so", "x86_64-linux-gnu.2.17"),
+    "aarch64-linux": Platform("aarch64-linux", ".so", "aarch64-linux-gnu.2.17"),
+    "x86_64-windows": Platform("win64", ".dll", "x86_64-windows-gnu"),
+    "x86_64-darwin": Platform("darwin64", ".dylib", "x86_64-macos"),
+    "aarch64-darwin": Platform("aarch64-darwin", ".dylib", "aarch64-macos"),
+}
+ALIASES = {found.folder: name for name, found in PLATFORMS.items()}
+
+
+def fmu(
+    drive: Drive | GearSet,
+    *,
+    version: int = 2,
+    platforms: Iterable[str] | None = None,
+    step: float | None = None,
+    name: str | None = None,
+) -> Exported:
+    """Return the FMU of a drive for co-simulation: motor, controller, sensors, gear and load as one block.
+
+    The FMU steps the drive by the code that `sw.simulate` runs, with steps of a fixed length, into which it cuts communication
+    steps. Inputs are the command, the input of the load and the temperature, each with its rate. All outputs of a simulation are
+    outputs, and all numbers of the drive parameters. The FMU always contains its sources.
+
+    Args:
+        drive: a drive, or a gear set with one
+        version: of FMI, 2 or 3
+        platforms: for which it has binaries, of `PLATFORMS`; by default that of this machine; none makes a source FMU, which
+            needs no compiler. Platforms other than this machine need the extra `compiler`
+        step: internal step [s]; by default 0.2 ms, or shorter where the drive needs that
+        name: of the model and the file; by default that of the gear set
+
+    Raises:
+        TypeError, ValueError: an argument is not of its kind, or no step follows the bristles of the drive
+        ImportError: the package fmpy, which contains the headers of FMI, is not installed
+        NoCompilerError: there is no compiler
+        CompileError: the compiler reports an error
+
+    >>> import strainwave as sw
+    >>> found = sw.export.fmu(sw.GearSet.read("tilt-actuator-lumped"), platforms=())  # doctest: +SKIP
+    >>> list(found.files)  # doctest: +SKIP
+    ['tilt-actuator-lumped.fmu']
+    """
+    model, drive = drive, drive_of(drive)
+    if version not in VERSIONS:
+        raise ValueError(f"version = {version!r} must be 2 or 3, for FMI 2.0 or FMI 3.0")
+    targets = own_platform() if platforms is None else [_platform(each) for each in platforms]
+    step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
+    name = _file_name(name, model)
+    found = variables(drive, step)
+    files, token = sources(drive, found, version)
+    about = Description(name, re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII), token, in_words(drive), step, found)
+    binaries, seconds = {}, {}
+    for each in dict.fromkeys(targets):
+        began = time.perf_counter()
+        binaries[each] = _binary(each, files, version)
+        seconds[each] = time.perf_counter() - began
+    content = _archive(about, files, binaries, version)
+    losses = []
+    if set(own_platform()) <= set(binaries):
+        losses = difference_to_simulation(content, drive, found, version, step)
+    numbers = {"internal_step": (step, "s"), "size": (len(content) / 1e3, "1")}
+    return Exported(
+        f"FMU for co-simulation, FMI {version}.0",
+        model.name if isinstance(model, GearSet) else name,
+        {f"{name}.fmu": content},
+        {"internal_step": (step, "s")},
+        tuple(losses),
+        tuple(_left_out(drive)),
+        tuple(_remarks(about, binaries, seconds, len(content), numbers)),
+    )
+
+
+def own_platform() -> list[str]:
+    """Return the platform of this machine, or none if FMUs have no binaries for it."""
+    name = f"{machine.machine().lower().replace('amd64', 'x86_64').replace('arm64', 'aarch64')}-{machine.system().lower()}"
+    return [name] if name in PLATFORMS else []
+
+
+def default_step(drive: Drive) -> float:
+    """Return the internal step of a drive [s]: 0.2 ms, or half, a quarter … where its vibrations need that.
+
+    Raises:
+        ValueError: its bristles need steps shorter than `MIN_STEP`
+
+    >>> default_step(Drive())
+    0.0002
+    """
+    step = fine_enough(drive, STEP, MIN_STEP)
+    stiffest = _core.bristle_frequency(drive)
+    for _ in range(MAX_HALVINGS):
+        if step * stiffest <= FASTEST_ON_BRISTLES:
+            break
+        step *= 0.5
+    if step < MIN_STEP:
+        raise ValueError(
+            f"a shaft of this drive vibrates on its bristles at {stiffest:.3g} rad/s, which needs steps of "
+            f"{FASTEST_ON_BRISTLES / stiffest:.2g} s; give step, or friction with softer bristles or with Coulomb's law"
+        )
+    return step
+
+
+def _platform(name: str) -> str:
+    known = ALIASES.get(name, name) if isinstance(name, str) else name
+    if known not in PLATFORMS:
+        allowed = ", ".join(PLATFORMS)
+        raise ValueError(f"the platform {quoted(str(name))} is not known; give some of {allowed}, or none for a source FMU")
+    return known
+
+
+def _file_name(name: str | None, model: Drive | GearSet) -> str:
+    text = arguments.text("name", name) if name is not None else model.name if isinstance(model, GearSet) else "drive"
+    found = re.sub(r"[^A-Za-z0-9_-]+", "-", text).strip("-")[:MAX_NAME_LENGTH]
+    if not found:
+        raise ValueError(f"name = {quoted(text)} must contain letters or digits")
+    return found
+
+
+def _left_out(drive: Drive) -> Iterable[str]:
+    yield "model exchange, directional derivatives, and adaptive steps"
+    if _core.parts(drive)[1]:
+        yield "counts and options of the models: they are constants of the FMU, as the models themselves are"
+
+
+def _remarks(
+    about: Description, binaries: dict[str, bytes], seconds: dict[str, float], size: int, numbers: object
+) -> Iterable[str]:
+    del numbers
+    yield f"{size / 1e3:.0f} kB; {_counted(about.variables)}"
+    for each, content in binaries.items():
+        yield f"binary for {each}: {len(content) / 1e3:.0f} kB, compiled in {seconds[each]:.1f} s"
+    if not binaries:
+        yield "a source FMU: the tool that imports it compiles its sources by a C++20 compiler"
+
+
+def _counted(found: list[Variable]) -> str:
+    kinds = [each.causality for each in found]
+    return ", ".join(f"{kinds.count(kind)} {kind}s" for kind in ("input", "output", "parameter"))
+
+
+def _binary(name: str, files: dict[str, str], version: int) -> bytes:
+    """Return the shared library for a platform.
+
+    Raises:
+        NoCompilerError: there is no compiler for it
+        CompileError: the compiler reports an error
+    """
+    compiler, flags, libraries = _compiler(name)
+    with TemporaryDirectory() as folder:
+        for path, text in files.items():
+            target = Path(folder, path)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, "utf-8")
+        return compiler.build(Path(folder, f"fmi{version}.cpp"), (*flags, f"-I{folder}"), libraries).read_bytes()
+
+
+def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
+    """Return the compiler for a platform with its flags and libraries."""
+    instead = "or make a source FMU, which needs no compiler: --platform source, or platforms=() in Python"
+    if name in own_platform():
+        try:
+            compiler = find_compiler()
+        except NoCompilerError as error:
+            raise NoCompilerError(f"{error}; {instead}") from None
+        if compiler.name != "zig c++" and name.endswith("-linux"):
+            return compiler, FLAGS, NOT_AS_LIBRARY
+    zig = zig_program()
+    if zig is None:
+        raise NoCompilerError(f"a binary for {name} needs the package ziglang: `pip install strainwave[compiler]`, {instead}")
+    target = PLATFORMS[name].target
+    compiler = Compiler("zig c++", (zig, "c++", "-target", target), (zig, "cc", "-shared", "-target", target, "-s"), zig)
+    flags = tuple(each for each in FLAGS if not (each == "-fPIC" and name.endswith("-windows")))
+    return compiler, flags, () if name.endswith("-windows") else ("-lm",)
+
+
+def _archive(about: Description, files: dict[str, str], binaries: dict[str, bytes], version: int) -> bytes:
+    """Return the bytes of the FMU, a zip archive."""
+    contents: dict[str, str | bytes] = {"modelDescription.xml": model_description(about, version)}
+    contents["documentation/index.html"] = _documentation(about)
+    contents |= {f"sources/{path}": text for path, text in sorted(files.items())}
+    contents["sources/buildDescription.xml"] = build_description(about, version)
+    for name, content in binaries.items():
+        found = PLATFORMS[name]
+        contents[f"binaries/{found.folder if version == 2 else name}/{about.identifier}{found.suffix}"] = content
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
+        for path, text in contents.items():
+            file.writestr(zipfile.ZipInfo(path, EPOCH), text, zipfile.ZIP_DEFLATED)
+    return archive.getvalue()
+
+
+def _documentation(about: Description) -> str:
+    """Return the page that tools show of the FMU."""
+    lines = "".join(
+        f"<tr><td>{escape(each.name)}</td><td>{each.causality}</td><td>{escape(each.unit)}</td>"
+        f"<td>{escape(each.description)}</td></tr>\n"
+        for each in about.variables
+    )
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{escape(about.name)}</title></head><body>
+<h1>{escape(about.name)}</h1>
+<p>A drive with strain wave gear, by strainwave: {escape(about.text)}. Communication steps are cut into internal steps of at most
+{about.step!r} s.</p>
+<table>
+<tr><th>name</th><th>causality</th><th>unit</th><th>meaning</th></tr>
+{lines}</table>
+</body></html>
+"""

@@ -1,0 +1,105 @@
+"""Comparison of an FMU with the simulation of its drive: both run the same motion."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive
+from strainwave.export.exported import Loss
+from strainwave.export.fmu.variables import Variable, recorded
+from strainwave.simulation import scenario, signals
+from strainwave.simulation.run import simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+Array = NDArray[np.float64]
+STEPS = 1000  # of the compared run
+COMMANDS = {"rad": 0.1, "rad/s": 1.0}  # size of the command by its unit
+OTHER_COMMAND = 0.1  # in other units: V, A, N.m
+COMPARED = ("input_angle", "output_angle", "twist", "torque")
+
+
+def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable], version: int, step: float) -> list[Loss]:
+    """Return what an FMU loses against `sw.simulate` over a step of the command, in some of its outputs."""
+    duration = STEPS * step
+    size = COMMANDS.get(signals.command_unit(drive), OTHER_COMMAND)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        run = simulate(drive, scenario.constant(size, duration), step)
+    names = {output.name: name for name, output in recorded(drive, found).items()}
+    chosen = [name for name in COMPARED if name in names]
+    with instance(content, found, version) as block:
+        block.start({"command": size})
+        values = [block.get([names[each] for each in chosen])]
+        for i in range(STEPS):
+            block.step(i * step, step)
+            values.append(block.get([names[each] for each in chosen]))
+    over = f"a step of the command by {size:g} {signals.command_unit(drive)}, {duration:.3g} s"
+    columns = zip(chosen, np.array(values).T, strict=True)
+    return [
+        Loss.between(name, column - run[name], run.unit(name), float(np.abs(run[name]).max()), over) for name, column in columns
+    ]
+
+
+class Block:
+    """An instance of an FMU in this process."""
+
+    def __init__(self, slave: Any, references: Mapping[str, int], version: int) -> None:
+        self._slave, self._references, self._version = slave, references, version
+
+    def start(self, values: Mapping[str, float]) -> None:
+        """Initialise with values of inputs and parameters."""
+        if self._version == 2:
+            self._slave.setupExperiment(startTime=0.0)
+        self.set(values)
+        self._slave.enterInitializationMode()
+        self._slave.exitInitializationMode()
+
+    def set(self, values: Mapping[str, float]) -> None:
+        references = [self._references[name] for name in values]
+        set_reals = self._slave.setReal if self._version == 2 else self._slave.setFloat64
+        set_reals(references, list(values.values()))
+
+    def get(self, names: list[str]) -> list[float]:
+        get_reals = self._slave.getReal if self._version == 2 else self._slave.getFloat64
+        found: list[float] = get_reals([self._references[name] for name in names])
+        return found
+
+    def step(self, time: float, length: float) -> None:
+        self._slave.doStep(currentCommunicationPoint=time, communicationStepSize=length)
+
+    def state(self) -> Any:
+        return self._slave.getFMUstate() if self._version == 2 else self._slave.getFMUState()
+
+
+@contextmanager
+def instance(content: bytes, found: list[Variable], version: int) -> Iterator[Block]:
+    """Load an FMU, and free it in the end."""
+    import fmpy
+    from fmpy.fmi2 import FMU2Slave
+    from fmpy.fmi3 import FMU3Slave
+
+    with ExitStack() as stack:
+        folder = stack.enter_context(TemporaryDirectory())
+        fmpy.extract(io.BytesIO(content), unzipdir=folder)
+        about = fmpy.read_model_description(Path(folder, "modelDescription.xml").as_posix())
+        slave = (FMU2Slave if version == 2 else FMU3Slave)(
+            guid=about.guid,
+            unzipDirectory=folder,
+            modelIdentifier=about.coSimulation.modelIdentifier,
+            instanceName="comparison",
+        )
+        slave.instantiate()
+        stack.callback(slave.freeInstance)
+        yield Block(slave, {each.name: each.reference for each in found}, version)
+        slave.terminate()

@@ -1,0 +1,324 @@
+// A drive as an FMU, without what differs between the versions of FMI: its numbers, its state, and its steps.
+#pragma once
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strainwave/kernel/run.hpp>
+
+#include "drive.hpp"  // Drive, laws, shape, parameters, channels, names; written for each drive
+
+namespace fmu {
+
+using strainwave::Input;
+using strainwave::Interval;
+using strainwave::kernel::input_count;
+
+using Compiled = decltype(Drive<double>{}.compile());
+using Evaluation = Compiled::Evaluation;
+using State = Compiled::State;
+
+inline constexpr double same_length = 1e-9;    // relative: steps closer than this are of one length
+inline constexpr double max_step_rate = 1.0;   // internal step times the fastest angular frequency of the drive
+inline constexpr double max_bristle_rate = 2.0;  // internal step times the angular frequency of a shaft on its bristles
+inline constexpr int message_size = 512;       // characters
+
+enum class Phase : int32_t { instantiated, initialising, stepping, failed, ended };
+
+// All that a state of the FMU contains, so that a copy of it is a copy of the state.
+struct Content {
+    Phase phase;
+    bool numbers_changed, has_begun;  // whether the drive is to be made of its numbers again; whether a step was taken
+    double time;
+    double numbers[parameter_count];
+    double inputs[input_count];
+    double slopes[input_count / 2];  // of the inputs, in the next step only, as FMI 2 sets them
+    double outputs[output_count];
+    Input<double> acting;  // inputs at this instant
+    Evaluation here;
+};
+static_assert(__is_trivially_copyable(Content));
+
+// First contradiction among the numbers of a part and of those in it.
+struct Contradictions {
+    const char* text = nullptr;
+    double first = 0.0, second = 0.0;
+
+    template <class T>
+    void of(const T& part) {
+        if constexpr (requires { part.problem(); }) {
+            if constexpr (requires { part.problem().text; }) {
+                if (const auto found = part.problem(); !text && found.text) *this = {found.text, found.first, found.second};
+            } else if (const char* found = part.problem(); !text && found) {
+                text = found;
+            }
+        }
+        if constexpr (strainwave::Described<T>) T::fields(part, *this);
+    }
+    template <class T>
+    void operator()(const T& member, const strainwave::Field&) {
+        if constexpr (strainwave::Described<T>) of(member);
+    }
+};
+
+class Model {
+    Content content;
+    Compiled drive;
+    strainwave::integrate::Steps<double, Compiled> steps;
+
+public:
+    char message[message_size];
+
+    Model() { reset(); }
+
+    void reset() {
+        memset(static_cast<void*>(&content), 0, sizeof content);
+        content.phase = Phase::instantiated;
+        content.numbers_changed = true;
+        for (int i = 0; i < parameter_count; ++i) content.numbers[i] = parameters[i].start;
+        for (int i = 0; i < input_count; ++i) content.inputs[i] = input_starts[i];
+        message[0] = 0;
+    }
+    Phase phase() const { return content.phase; }
+    void enter(Phase phase) { content.phase = phase; }
+    void start_at(double time) { content.time = time; }
+
+    // Variables by their value references. False with a message if there is no such variable, or it cannot be set now.
+    bool get(uint32_t reference, double& value) {
+        if (reference == 0) {
+            value = content.time;
+        } else if (is(reference, first_input, input_count)) {
+            value = content.inputs[reference - first_input];
+        } else if (is(reference, first_output, output_count)) {
+            if (content.phase == Phase::initialising && !prepare()) return false;
+            value = content.outputs[reference - first_output];
+        } else if (is(reference, first_parameter, parameter_count)) {
+            value = content.numbers[reference - first_parameter];
+        } else {
+            return fail("there is no variable with value reference %u", unsigned(reference));
+        }
+        return true;
+    }
+    bool set(uint32_t reference, double value) {
+        if (is(reference, first_input, input_count)) {
+            if (!finite(value)) return fail("%s = %g is no number", names[reference - first_input], value);
+            content.inputs[reference - first_input] = value;
+        } else if (is(reference, first_parameter, parameter_count)) {
+            const Parameter& parameter = parameters[reference - first_parameter];
+            if (content.phase != Phase::instantiated && content.phase != Phase::initialising)
+                return fail("%s can be set before the end of the initialisation only", parameter.name);
+            if (!(value >= parameter.low && value <= parameter.high))
+                return fail("%s = %g %s must lie within [%g, %g]", parameter.name, value, parameter.unit, parameter.low,
+                            parameter.high);
+            content.numbers[reference - first_parameter] = value;
+            content.numbers_changed = true;
+        } else {
+            return fail("the variable with value reference %u cannot be set", unsigned(reference));
+        }
+        return true;
+    }
+    // The rate of an input in the next step.
+    bool set_slope(uint32_t reference, double rate) {
+        if (!is(reference, first_input, input_count) || (reference - first_input) % 2 != 0)
+            return fail("the variable with value reference %u has no rate that can be set", unsigned(reference));
+        content.slopes[(reference - first_input) / 2] = rate;
+        return true;
+    }
+
+    // The drive at its begin, under the inputs of now.
+    bool prepare() {
+        if (content.numbers_changed && !make()) return false;
+        content.numbers_changed = false;
+        content.acting = at(0.0);
+        if (!(content.acting.temperature > 0.0)) return fail("temperature = %g K must be positive", content.acting.temperature);
+        if (!resolves()) return false;
+        State state;
+        if (!begin(state)) return false;
+        new (&content.here) Evaluation(strainwave::kernel::begun(drive, state, content.acting, 0.5 * max_step()));
+        return show("begins");
+    }
+
+    // A communication step of `length` [s].
+    bool step(double time, double length) {
+        if (!(length >= 0.0 && finite(length))) return fail("the step of %g s must not be negative", length);
+        content.time = time;
+        if (!content.has_begun) {
+            if (!prepare()) return false;
+        } else if (const Input<double> now = at(0.0); memcmp(&now, &content.acting, sizeof now) != 0) {
+            content.acting = now;
+            content.here = drive.evaluate(content.here.state, now);
+        }
+        if (!(at(length).temperature > 0.0)) return fail("temperature = %g K must be positive", at(length).temperature);
+        content.has_begun = true;
+        if (length > 0.0 && !advance(length)) return false;
+        content.acting = at(length);
+        const auto reached = strainwave::flattened<double>(content.acting);
+        for (int i = 0; i < input_count; i += 2) content.inputs[i] = reached[i];
+        for (double& slope : content.slopes) slope = 0.0;
+        content.time = time + length;
+        return show("diverged");
+    }
+
+    // States, as copies.
+    static constexpr size_t state_size = sizeof(Content);
+    void save(void* to) const { memcpy(to, &content, sizeof content); }
+    void restore(const void* from) {
+        double before[parameter_count];
+        memcpy(before, content.numbers, sizeof before);
+        const bool was_changed = content.numbers_changed;
+        memcpy(static_cast<void*>(&content), from, sizeof content);
+        steps = {};
+        const bool same = !was_changed && memcmp(before, content.numbers, sizeof before) == 0;
+        if (!same && !content.numbers_changed) make();
+    }
+    bool fail(const char* format, ...) __attribute__((format(printf, 2, 3))) {
+        va_list values;
+        va_start(values, format);
+        vsnprintf(message, sizeof message, format, values);
+        va_end(values);
+        return false;
+    }
+
+private:
+    static bool finite(double x) { return x - x == 0.0; }
+    static bool is(uint32_t reference, uint32_t first, int count) {
+        return reference >= first && reference < first + uint32_t(count);
+    }
+    double max_step() const { return content.numbers[0]; }
+
+    // The inputs `after` [s] from now.
+    Input<double> at(double after) const {
+        double numbers[input_count];
+        for (int i = 0; i < input_count; i += 2) {
+            const double rate = content.inputs[i + 1] + content.slopes[i / 2];
+            numbers[i] = content.inputs[i] + rate * after;
+            numbers[i + 1] = rate;
+        }
+        return strainwave::kernel::input_from<double>(numbers);
+    }
+
+    bool make() {
+        strainwave::kernel::Reader<double> from{laws, shape, content.numbers + own_parameters};
+        const auto model = strainwave::kernel::assembled<Drive<double>>(from);
+        Contradictions found;
+        found.of(model);
+        if (found.text) return contradiction(found);
+        drive = model.compile();
+        steps = {};
+        return true;
+    }
+    bool contradiction(const Contradictions& found) {
+        const double values[] = {found.first, found.second};
+        char* to = message;
+        int next = 0;
+        for (const char* letter = found.text; *letter != 0 && to < message + message_size - 32; ++letter) {
+            if (letter[0] == '{' && letter[1] == '}') {
+                to += snprintf(to, 32, "%g", values[next < 2 ? next++ : 1]);
+                ++letter;
+            } else {
+                *to++ = *letter;
+            }
+        }
+        *to = 0;
+        return false;
+    }
+    bool resolves() {
+        const double fastest = strainwave::own_motion::max_rate<double>(drive, 0.0, content.acting.temperature);
+        const double bristle = strainwave::own_motion::bristle_frequency<double>(drive);
+        if (fastest * max_step() > max_step_rate)
+            return fail("%s = %g s is too coarse: the drive is as fast as a vibration of %g rad/s; set %g s or less",
+                        parameters[0].name, max_step(), fastest, max_step_rate / fastest);
+        if (bristle * max_step() > max_bristle_rate)
+            return fail("%s = %g s is too coarse: a shaft vibrates on its bristles at %g rad/s; set %g s or less",
+                        parameters[0].name, max_step(), bristle, max_bristle_rate / bristle);
+        return true;
+    }
+
+    // The state at the begin: at rest, or with the initial quantities that are not zero.
+    bool begin(State& state) {
+        strainwave::initial::Known<double> known{};
+        bool any = false;
+        for (int i = 0; i < initial_count; ++i) {
+            const double value = content.numbers[1 + i];
+            if (value == 0.0) continue;
+            known.set(initial_quantities[i], value);
+            any = true;
+        }
+        if (!any && !strainwave::prescribes(drive.load)) {
+            state = drive.rest();
+            return true;
+        }
+        state = strainwave::initial::state(drive, known, content.acting);
+        if (!(fabs(state.continuous.transmission_error) <= strainwave::kernel::largest))
+            return fail("no state of the drive has these initial quantities; set others");
+        return true;
+    }
+
+    bool advance(double length) {
+        double count = ceil(length / max_step() * (1.0 - same_length));
+        if (count < 1.0) count = 1.0;
+        double dt = length / count;
+        if (fabs(dt - max_step()) <= same_length * max_step()) dt = max_step();
+        for (double i = 0.0; i < count; ++i)
+            if (!through(i * dt, dt)) return false;
+        return true;
+    }
+    // An internal step of `dt` [s], cut where a sampled controller acts.
+    bool through(double done, double dt) {
+        for (double within = 0.0;;) {
+            const double left = dt - within, next = next_instant(left), tolerance = same_length * max_step();
+            const bool is_last = next >= left - tolerance;
+            const double stretch = is_last ? left : next;
+            sample(done + within, stretch);
+            if (!take(done + within, stretch)) return false;
+            if (is_last) return true;
+            within += stretch;
+        }
+    }
+    // The time to the next instant at which a sampled controller acts, later than now; `most` [s] if there is none before.
+    double next_instant(double most) const {
+        const auto schedule = drive.schedule(content.here.state);
+        if (!(schedule.period > 0.0)) return most;
+        const double first = schedule.first, given = first + schedule.delay;
+        double next = most;
+        for (const double each : {given - schedule.period, first, given, first + schedule.period})
+            if (each > same_length * max_step() && each < next) next = each;
+        return next;
+    }
+    void sample(double from, double dt) {
+        if (strainwave::system::due(drive, content.here.state, 0.5 * dt))
+            content.here = strainwave::system::sampled(drive, content.here, at(from), 0.5 * dt);
+    }
+    bool take(double from, double dt) {
+        const Interval<Input<double>> u{at(from), at(from + 0.5 * dt), at(from + dt)};
+        const auto smooth = [this](const Compiled& moved, const auto& start, const auto& over, double h) {
+            return strainwave::kernel::smooth_step(moved, start, over, h, steps);
+        };
+        steps.begin(dt);
+        content.here = strainwave::step(drive, content.here, u, dt, smooth);
+        return !drive.has_bounds() || is_valid(content.time + from + dt);
+    }
+    bool is_valid(double time) {
+        strainwave::kernel::Outcome outcome;
+        if (strainwave::kernel::within_bounds<double>(drive, content.here, time, outcome)) return true;
+        const auto& domain = outcome.domain;
+        return fail("at t = %g s %s leaves its range: %s = %g %s, valid within [%g, %g]", time, outcome.part, domain.name,
+                    domain.value, domain.unit, domain.low, domain.high);
+    }
+    bool show(const char* what) {
+        const auto all = strainwave::kernel::shown<double>(drive, content.here, content.acting);
+        const auto places = strainwave::kernel::outputs_of(drive);
+        for (int i = 0; i < output_count; ++i) {
+            const double value = all[places.slot[channels[i]]];
+            if (!(fabs(value) <= strainwave::kernel::largest))
+                return fail("the simulation %s at t = %g s with %s = %g; set a smaller %s or check the parameters", what,
+                            content.time, output_names[i], value, parameters[0].name);
+            content.outputs[i] = value;
+        }
+        return true;
+    }
+};
+
+}  // namespace fmu

@@ -1,0 +1,115 @@
+"""Variables of an FMU: inputs, outputs and parameters of a drive, with their units, ranges and value references."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Literal
+
+from strainwave import Drive, _core
+from strainwave.simulation import signals
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
+
+Causality = Literal["input", "output", "parameter"]
+FIRST_INPUT = 1  # value references; 0 is the time
+FIRST_OUTPUT = 101
+FIRST_PARAMETER = 1001
+STEP_NAME = "internal_step"
+MIN_STEP, MAX_STEP = 1e-7, 0.1  # s
+INITIAL = ("output_angle", "output_speed", "torque")  # quantities that a run can begin with; 0 has no effect
+RATES = {"rad": "rad/s", "1": "1/s", "rad/s": "rad/s2"}
+SHOWN_BY = {"angle": "deg", "speed": "rpm", "twist": "arcmin", "error": "arcmin", "temperature": "degC"}  # by end of the name
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of an FMU.
+
+    Attributes:
+        name: unique in the FMU
+        reference: value reference
+        causality: input, output or parameter
+        unit: in the spelling of Modelica and FMI
+        description: one line
+        start: value at the start; None for an output
+        low, high: range, infinite without a bound
+        display_unit: unit in which tools show it; empty for `unit`
+    """
+
+    name: str
+    reference: int
+    causality: Causality
+    unit: str
+    description: str
+    start: float | None = None
+    low: float = -inf
+    high: float = inf
+    display_unit: str = ""
+
+
+def variables(drive: Drive, step: float) -> list[Variable]:
+    """Return the variables of the FMU of a drive whose internal step is `step` [s]: inputs, outputs, parameters.
+
+    >>> import strainwave as sw
+    >>> [each.name for each in variables(sw.Drive(), 2e-4)][:4]
+    ['command', 'command_rate', 'load_torque', 'load_torque_rate']
+    """
+    inputs = list(_inputs(drive))
+    return [*inputs, *_outputs(drive, {each.name for each in inputs}), *_parameters(drive, step)]
+
+
+def recorded(drive: Drive, found: list[Variable]) -> Mapping[str, signals.Output]:
+    """Return the outputs of a drive by the names that they have in its FMU."""
+    outputs = [each for each in signals.outputs(drive).values() if each.name != "command"]
+    names = [each.name for each in found if each.causality == "output"]
+    return dict(zip(names, outputs, strict=True))
+
+
+def _inputs(drive: Drive) -> Iterator[Variable]:
+    """Yield what acts on a drive, in the order of the C++ struct `Input`: each with its rate."""
+    load, load_unit, load_doc = _core.load_input(drive)
+    pairs = (
+        ("command", signals.command_unit(drive), "Command of the controller, or of the motor in open loop", 0.0, -inf),
+        (load, load_unit, load_doc, 0.0, -inf),
+        ("temperature", "K", "Temperature around the drive", ROOM_TEMPERATURE, 0.0),
+    )
+    for i, (name, unit, doc, start, low) in enumerate(pairs):
+        place = FIRST_INPUT + 2 * i
+        shown = _display_unit(name, unit)
+        yield Variable(name, place, "input", unit, doc, start, low, display_unit=shown)
+        rate = f"{name}_rate" if name != "output_angle" else "output_angle_rate"
+        what = f"Rate of {name}: it runs on at this rate within a step; 0 if it is held"
+        yield Variable(rate, place + 1, "input", RATES.get(unit, f"{unit}/s"), what, 0.0)
+
+
+def _outputs(drive: Drive, inputs: set[str]) -> Iterator[Variable]:
+    """Yield what a drive shows of itself; an output with the name of an input gets the prefix `drive_`."""
+    shown = [each for each in signals.outputs(drive).values() if each.name != "command"]
+    for i, each in enumerate(shown):
+        name = f"drive_{each.name}" if each.name in inputs else each.path
+        yield Variable(name, FIRST_OUTPUT + i, "output", each.unit, each.doc, display_unit=_display_unit(each.name, each.unit))
+
+
+def _parameters(drive: Drive, step: float) -> Iterator[Variable]:
+    """Yield the internal step, initial quantities, and the numbers of the drive, in the order of the C++ array."""
+    own = [(STEP_NAME, step, "s", "Largest internal step; a communication step is cut into such steps", MIN_STEP, MAX_STEP)]
+    fields = {name: (unit, doc) for name, unit, doc in _core.quantities}
+    own += [
+        (f"initial.{name}", 0.0, fields[name][0], f"{fields[name][1]} at the start; 0 has no effect", -inf, inf)
+        for name in initial_names(drive)
+    ]
+    for i, (name, value, unit, doc, low, high) in enumerate([*own, *_core.parameters(drive)]):
+        yield Variable(name, FIRST_PARAMETER + i, "parameter", unit, " ".join(doc.split()), value, low, high)
+
+
+def initial_names(drive: Drive) -> tuple[str, ...]:
+    """Return the quantities that the FMU of a drive can begin with."""
+    return INITIAL[2:] if signals.load_input(drive) == "output_angle" else INITIAL
+
+
+def _display_unit(name: str, unit: str) -> str:
+    """Return the unit in which tools show an input or output."""
+    if name == "command":
+        return {"rad": "deg", "rad/s": "rpm"}.get(unit, "")
+    return SHOWN_BY.get(name.rpartition("_")[2], "")
