@@ -136,7 +136,8 @@ public:
         if (!resolves()) return false;
         State state;
         if (!begin(state)) return false;
-        new (&content.here) Evaluation(strainwave::kernel::begun(drive, state, content.acting, 0.5 * max_step()));
+        new (&content.here) Evaluation(drive.evaluate(drive.consistent(state), content.acting));
+        sample(0.0, next_instant(max_step()));
         return show("begins");
     }
 

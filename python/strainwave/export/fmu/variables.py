@@ -87,7 +87,7 @@ def _outputs(drive: Drive, inputs: set[str]) -> Iterator[Variable]:
     """Yield what a drive shows of itself; an output with the name of an input gets the prefix `drive_`."""
     shown = [each for each in signals.outputs(drive).values() if each.name != "command"]
     for i, each in enumerate(shown):
-        name = f"drive_{each.name}" if each.name in inputs else each.path
+        name = f"drive_{each.name}" if each.name in inputs else each.name
         yield Variable(name, FIRST_OUTPUT + i, "output", each.unit, each.doc, display_unit=_display_unit(each.name, each.unit))
 
 
