@@ -74,6 +74,26 @@ def bam(
     _write(exported(GearSet.read(gear), actuator=actuator, max_torque=max_torque), out)
 
 
+@export.command("fmu")
+def fmu(
+    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")],
+    version: Annotated[int, typer.Option(help="Of FMI: 2 or 3.")] = 2,
+    platform: Annotated[
+        list[str] | None,
+        typer.Option(help="Of a binary, as x86_64-windows; may be repeated. `source` makes no binary. Default: this machine."),
+    ] = None,
+    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    name: Annotated[str | None, typer.Option(help="Of the model and of the file.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/fmu"),
+) -> None:
+    """The whole drive as an FMU for co-simulation in Simulink, OpenModelica, Dymola, FMPy."""
+    from strainwave.export.fmu import fmu as exported
+    from strainwave.files.gear_set import GearSet
+
+    platforms = None if platform is None else [each for each in platform if each != "source"]
+    _write(exported(GearSet.read(drive), version=version, platforms=platforms, step=step, name=name), out)
+
+
 @export.command("from-bam")
 def from_bam(
     file: Annotated[Path, typer.Argument(help="Parameter file of BAM.")],

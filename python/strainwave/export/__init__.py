@@ -1,4 +1,4 @@
-"""Export a gear or parts of a drive to other programs: MuJoCo, URDF, BAM, and controllers as firmware.
+"""Export a gear or a drive to other programs: MuJoCo, URDF, BAM, FMU, and controllers as firmware.
 
 >>> from pathlib import Path
 >>> from tempfile import TemporaryDirectory
@@ -12,7 +12,8 @@
 from strainwave.export.bam_parameters import bam, read_bam
 from strainwave.export.exported import Exported, Loss
 from strainwave.export.firmware import Firmware, firmware
+from strainwave.export.fmu import fmu
 from strainwave.export.joint_numbers import joint
 from strainwave.export.mujoco import mjcf
 
-__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "joint", "mjcf", "read_bam"]
+__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "read_bam"]

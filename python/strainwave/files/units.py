@@ -216,8 +216,9 @@ def base_exponents(unit: str) -> tuple[float, dict[str, int]]:
 
     parsed = _parse(unit)
     _, base = _registry().get_base_units(parsed)
-    powers = {_registry().get_symbol(name): int(power) for name, power in to_units_container(base).items()}
-    return float(_registry().convert(1.0, parsed, base)), dict(sorted(powers.items()))
+    powers = cast("dict[str, int]", to_units_container(base))
+    exponents = {_registry().get_symbol(name): int(power) for name, power in powers.items()}
+    return float(_registry().convert(1.0, parsed, base)), dict(sorted(exponents.items()))
 
 
 def counts(unit: str) -> bool:

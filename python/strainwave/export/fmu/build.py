@@ -30,9 +30,8 @@ VERSIONS = (2, 3)
 STEP = 2e-4  # s, the internal step of a drive that needs no shorter one
 MAX_NAME_LENGTH = 60  # characters of a file name
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal drives have equal FMUs
-NOT_AS_LIBRARY = "-Wl,--as-needed", "-Wl,-z,defs", "-lm"  # no C++ library, and no symbol without a library
+LIBRARIES = "-Wl,--as-needed", "-Wl,-z,defs", "-lm"  # no C++ library, and no symbol without a library
 MAX_HALVINGS = 20  # of the step, for bristles
-RESERVED = {"model", "drive", "fmu", "strainwave"}
 
 
 @dataclass(frozen=True)
@@ -71,8 +70,8 @@ def fmu(
     """Return the FMU of a drive for co-simulation: motor, controller, sensors, gear and load as one block.
 
     The FMU steps the drive by the code that `sw.simulate` runs, with steps of a fixed length, into which it cuts communication
-    steps. Inputs are the command, the input of the load and the temperature, each with its rate. All outputs of a simulation are
-    outputs, and all numbers of the drive parameters. The FMU always contains its sources.
+    steps. Inputs are the command, the input of the load and the temperature, each with its rate. Outputs are all outputs of a
+    simulation, parameters all numbers of the drive. The FMU always contains its sources.
 
     Args:
         drive: a drive, or a gear set with one
@@ -111,7 +110,6 @@ def fmu(
     losses = []
     if set(own_platform()) <= set(binaries):
         losses = difference_to_simulation(content, drive, found, version, step)
-    numbers = {"internal_step": (step, "s"), "size": (len(content) / 1e3, "1")}
     return Exported(
         f"FMU for co-simulation, FMI {version}.0",
         model.name if isinstance(model, GearSet) else name,
@@ -119,7 +117,7 @@ def fmu(
         {"internal_step": (step, "s")},
         tuple(losses),
         tuple(_left_out(drive)),
-        tuple(_remarks(about, binaries, seconds, len(content), numbers)),
+        tuple(_remarks(about, binaries, seconds, len(content))),
     )
 
 
@@ -174,10 +172,8 @@ def _left_out(drive: Drive) -> Iterable[str]:
         yield "counts and options of the models: they are constants of the FMU, as the models themselves are"
 
 
-def _remarks(
-    about: Description, binaries: dict[str, bytes], seconds: dict[str, float], size: int, numbers: object
-) -> Iterable[str]:
-    del numbers
+def _remarks(about: Description, binaries: dict[str, bytes], seconds: dict[str, float], size: int) -> Iterable[str]:
+    yield "the FMU steps the drive by the C++ code of sw.simulate"
     yield f"{size / 1e3:.0f} kB; {_counted(about.variables)}"
     for each, content in binaries.items():
         yield f"binary for {each}: {len(content) / 1e3:.0f} kB, compiled in {seconds[each]:.1f} s"
@@ -215,7 +211,7 @@ def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
         except NoCompilerError as error:
             raise NoCompilerError(f"{error}; {instead}") from None
         if compiler.name != "zig c++" and name.endswith("-linux"):
-            return compiler, FLAGS, NOT_AS_LIBRARY
+            return compiler, FLAGS, LIBRARIES
     zig = zig_program()
     if zig is None:
         raise NoCompilerError(f"a binary for {name} needs the package ziglang: `pip install strainwave[compiler]`, {instead}")
@@ -251,8 +247,8 @@ def _documentation(about: Description) -> str:
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(about.name)}</title></head><body>
 <h1>{escape(about.name)}</h1>
-<p>A drive with strain wave gear, by strainwave: {escape(about.text)}. Communication steps are cut into internal steps of at most
-{about.step!r} s.</p>
+<p>A drive with strain wave gear, by strainwave: {escape(about.text)}.
+Communication steps are cut into internal steps of at most {about.step!r} s.</p>
 <table>
 <tr><th>name</th><th>causality</th><th>unit</th><th>meaning</th></tr>
 {lines}</table>

@@ -55,31 +55,28 @@ class Block:
     """An instance of an FMU in this process."""
 
     def __init__(self, slave: Any, references: Mapping[str, int], version: int) -> None:
-        self._slave, self._references, self._version = slave, references, version
+        self.slave, self._references, self._version = slave, references, version
 
     def start(self, values: Mapping[str, float]) -> None:
         """Initialise with values of inputs and parameters."""
         if self._version == 2:
-            self._slave.setupExperiment(startTime=0.0)
+            self.slave.setupExperiment(startTime=0.0)
         self.set(values)
-        self._slave.enterInitializationMode()
-        self._slave.exitInitializationMode()
+        self.slave.enterInitializationMode()
+        self.slave.exitInitializationMode()
 
     def set(self, values: Mapping[str, float]) -> None:
         references = [self._references[name] for name in values]
-        set_reals = self._slave.setReal if self._version == 2 else self._slave.setFloat64
+        set_reals = self.slave.setReal if self._version == 2 else self.slave.setFloat64
         set_reals(references, list(values.values()))
 
     def get(self, names: list[str]) -> list[float]:
-        get_reals = self._slave.getReal if self._version == 2 else self._slave.getFloat64
+        get_reals = self.slave.getReal if self._version == 2 else self.slave.getFloat64
         found: list[float] = get_reals([self._references[name] for name in names])
         return found
 
     def step(self, time: float, length: float) -> None:
-        self._slave.doStep(currentCommunicationPoint=time, communicationStepSize=length)
-
-    def state(self) -> Any:
-        return self._slave.getFMUstate() if self._version == 2 else self._slave.getFMUState()
+        self.slave.doStep(currentCommunicationPoint=time, communicationStepSize=length)
 
 
 @contextmanager

@@ -52,14 +52,14 @@ def model_description(about: Description, version: int) -> bytes:
     root.append(_unit_definitions({each.unit for each in about.variables} | {"s"}))
     categories = ElementTree.SubElement(root, "LogCategories")
     ElementTree.SubElement(categories, "Category", name="logStatusError", description="Errors")
-    step = {"stepSize": repr(about.step)}
-    ElementTree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(STOP_TIME), **step)
+    experiment = {"startTime": "0.0", "stopTime": repr(STOP_TIME), "stepSize": repr(about.step)}
+    ElementTree.SubElement(root, "DefaultExperiment", experiment)
     listed = ElementTree.SubElement(root, "ModelVariables")
     if version == 2:
         listed.extend(_variable_2(each) for each in about.variables)
     else:
-        time = {"causality": "independent", "variability": "continuous", "unit": "s"}
-        ElementTree.SubElement(listed, "Float64", name="time", valueReference="0", **time)
+        time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous", "unit": "s"}
+        ElementTree.SubElement(listed, "Float64", time)
         listed.extend(_variable_3(each) for each in about.variables)
     root.append(_structure_2(about.variables) if version == 2 else _structure_3(about.variables))
     return _xml(root)
@@ -77,11 +77,11 @@ def build_description(about: Description, version: int) -> bytes:
 
 def _co_simulation(about: Description, version: int) -> Element:
     names = {
-        2: ("canHandleVariableCommunicationStepSize", "canNotUseMemoryManagementFunctions", "canInterpolateInputs")
-        + ("canGetAndSetFMUstate", "canSerializeFMUstate"),
-        3: ("canHandleVariableCommunicationStepSize", "canGetAndSetFMUState", "canSerializeFMUState"),
+        2: ("canGetAndSetFMUstate", "canSerializeFMUstate", "canNotUseMemoryManagementFunctions", "canInterpolateInputs"),
+        3: ("canGetAndSetFMUState", "canSerializeFMUState"),
     }
-    found = Element("CoSimulation", modelIdentifier=about.identifier, **dict.fromkeys(names[version], "true"))
+    abilities = dict.fromkeys(("canHandleVariableCommunicationStepSize", *names[version]), "true")
+    found = Element("CoSimulation", {"modelIdentifier": about.identifier} | abilities)
     if version == 2:
         ElementTree.SubElement(ElementTree.SubElement(found, "SourceFiles"), "File", name="fmi2.cpp")
     return found
@@ -95,10 +95,10 @@ def _unit_definitions(units: Iterable[str]) -> Element:
         base = {name: str(power) for name, power in exponents.items()}
         if factor != 1.0:
             base["factor"] = repr(factor)
-        ElementTree.SubElement(definition, "BaseUnit", **base)
+        ElementTree.SubElement(definition, "BaseUnit", base)
         for name, scale, offset in DISPLAY_UNITS.get(unit, ()):
-            shift = {"offset": repr(offset)} if offset else {}
-            ElementTree.SubElement(definition, "DisplayUnit", name=name, factor=repr(scale), **shift)
+            shown = {"name": name, "factor": repr(scale)} | ({"offset": repr(offset)} if offset else {})
+            ElementTree.SubElement(definition, "DisplayUnit", shown)
     return found
 
 

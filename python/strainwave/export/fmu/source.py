@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from hashlib import sha256
 from importlib import resources
 from math import isfinite
@@ -12,7 +12,6 @@ from strainwave.export import cplusplus
 from strainwave.export.fmu import variables as names
 from strainwave.export.fmu.variables import Variable
 from strainwave.native.static_type import in_words, static_type
-from strainwave.simulation import signals
 
 RUN_HEADERS = ("strainwave/kernel/assemble.hpp", "strainwave/kernel/run.hpp")
 HEADERS_OF_VERSION = {
@@ -94,8 +93,8 @@ inline constexpr Parameter parameters[] = {{
 """
 
 
-def _listed(items: object) -> str:
-    return ", ".join(str(each) for each in items)  # type: ignore[attr-defined]
+def _listed(items: Iterable[object]) -> str:
+    return ", ".join(str(each) for each in items)
 
 
 def _text(text: str) -> str:
