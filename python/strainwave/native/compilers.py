@@ -19,6 +19,7 @@ from tempfile import TemporaryDirectory
 from strainwave.messages import one_line
 
 MAX_COMPILE_SECONDS = 300.0  # of one command; the largest kernel takes some 10 s alone on two cores
+MAX_LIBRARY_SECONDS = 1200.0  # of one command that also builds a C library; zig takes 140 s of one core for that of Windows
 MAX_CHECK_SECONDS = 30.0  # until a compiler has named its version
 OLDEST = {"__clang_major__": 14, "__GNUC__": 12}  # versions that compile the headers; Clang has both macros
 CPLUSPLUS_20 = 202002  # of __cplusplus
@@ -58,23 +59,26 @@ class Compiler:
     link: tuple[str, ...]
     identity: str
 
-    def build(self, source: Path, flags: Sequence[str], libraries: Sequence[str] = ()) -> Path:
+    def build(self, source: Path, flags: Sequence[str], libraries: Sequence[str] = (), *, keep_cache: bool = False) -> Path:
         """Compile a source to a shared object in the same folder, which takes all temporary files, and return its path.
 
         Args:
             source: file in C++
             flags: of the compilation
             libraries: and other arguments of the linker
+            keep_cache: let zig keep what it builds of a C library in its own cache, and allow the time that this takes
 
         Raises:
             CompileError: the compiler reports an error, crashes, or takes longer than `MAX_COMPILE_SECONDS`
         """
+        temporary = TEMPORARY_FOLDERS[:-1] if keep_cache else TEMPORARY_FOLDERS
+        seconds = MAX_LIBRARY_SECONDS if keep_cache else MAX_COMPILE_SECONDS
         unlinked, shared = source.with_suffix(".o"), source.with_suffix(".so")
         for command in (
             (*self.command, *flags, "-c", str(source), "-o", str(unlinked)),
             (*self.link, str(unlinked), *libraries, "-o", str(shared)),
         ):
-            status, output = _run(command, MAX_COMPILE_SECONDS, str(source.parent))
+            status, output = _run(command, seconds, str(source.parent), temporary)
             if status != 0:
                 raise CompileError(f"{self.name} compiled no kernel: {_first_error(status, output)}", output)
         return shared
@@ -147,20 +151,21 @@ def _identity(path: str) -> str:
     return f"{real} {found.st_size} {found.st_mtime_ns}"
 
 
-def _run(command: Sequence[str], seconds: float, folder: str) -> tuple[int, str]:
+def _run(command: Sequence[str], seconds: float, folder: str, temporary: Sequence[str] = TEMPORARY_FOLDERS) -> tuple[int, str]:
     """Return the exit status and the output of a command. Whatever ends the wait ends the processes of the command, too.
 
     Args:
         command: program and arguments
         seconds: after which it is ended
         folder: for temporary files, so that those of a killed command lie where they are cleared
+        temporary: environment variables that name such folders
     """
     process = subprocess.Popen(
         command,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        env={**os.environ, "LC_ALL": "C", **dict.fromkeys(TEMPORARY_FOLDERS, folder)},
+        env={**os.environ, "LC_ALL": "C", **dict.fromkeys(temporary, folder)},
         process_group=0,  # a compiler starts others, which would outlive it
     )
     try:

@@ -199,7 +199,8 @@ def _binary(name: str, files: dict[str, str], version: int) -> bytes:
             target = Path(folder, path)
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, "utf-8")
-        return compiler.build(Path(folder, f"fmi{version}.cpp"), (*flags, f"-I{folder}"), libraries).read_bytes()
+        source, is_zig = Path(folder, f"fmi{version}.cpp"), compiler.name == "zig c++"
+        return compiler.build(source, (*flags, f"-I{folder}"), libraries, keep_cache=is_zig).read_bytes()
 
 
 def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
