@@ -136,7 +136,7 @@ def default_step(drive: Drive) -> float:
     >>> default_step(Drive())
     0.0002
     """
-    step = fine_enough(drive, STEP, MIN_STEP)
+    step = float(fine_enough(drive, STEP, MIN_STEP))
     stiffest = _core.bristle_frequency(drive)
     for _ in range(MAX_HALVINGS):
         if step * stiffest <= FASTEST_ON_BRISTLES:

@@ -45,10 +45,12 @@ def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable]
             block.step(i * step, step)
             values.append(block.get([names[each] for each in chosen]))
     over = f"a step of the command by {size:g} {signals.command_unit(drive)}, {duration:.3g} s"
-    columns = zip(chosen, np.array(values).T, strict=True)
-    return [
-        Loss.between(name, column - run[name], run.unit(name), float(np.abs(run[name]).max()), over) for name, column in columns
-    ]
+    losses = []
+    for name, column in zip(chosen, np.array(values).T, strict=True):
+        size = float(np.abs(run[name]).max())
+        if size > 0.0 or column.any():  # an angle that the load holds at 0 compares nothing
+            losses.append(Loss.between(name, column - run[name], run.unit(name), size, over))
+    return losses
 
 
 class Block:
