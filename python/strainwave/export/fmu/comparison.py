@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import warnings
 from collections.abc import Mapping
 from contextlib import ExitStack, contextmanager
@@ -17,32 +18,32 @@ from strainwave import Drive
 from strainwave.export.exported import Loss
 from strainwave.export.fmu.variables import Variable, recorded
 from strainwave.simulation import scenario, signals
-from strainwave.simulation.run import simulate
+from strainwave.simulation.run import Run, simulate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 Array = NDArray[np.float64]
-STEPS = 1000  # of the compared run
+COMMUNICATION_STEPS = 1000  # of the compared run
+MIN_DURATION = 0.2  # s, of that run
 COMMANDS = {"rad": 0.1, "rad/s": 1.0}  # size of the command by its unit
 OTHER_COMMAND = 0.1  # in other units: V, A, N.m
+MAX_COMMAND_FACTOR = 1000.0  # by which the command is raised until the drive moves
 COMPARED = ("input_angle", "output_angle", "twist", "torque")
 
 
 def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable], version: int, step: float) -> list[Loss]:
     """Return what an FMU loses against `sw.simulate` over a step of the command, in some of its outputs."""
-    duration = STEPS * step
-    size = COMMANDS.get(signals.command_unit(drive), OTHER_COMMAND)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        run = simulate(drive, scenario.constant(size, duration), step)
+    interval = max(1, math.ceil(MIN_DURATION / COMMUNICATION_STEPS / step)) * step
+    duration = COMMUNICATION_STEPS * interval
+    size, run = _moving_run(drive, duration, step, interval)
     names = {output.name: name for name, output in recorded(drive, found).items()}
     chosen = [name for name in COMPARED if name in names]
     with instance(content, found, version) as block:
         block.start({"command": size})
         values = [block.get([names[each] for each in chosen])]
-        for i in range(STEPS):
-            block.step(i * step, step)
+        for i in range(COMMUNICATION_STEPS):
+            block.step(i * interval, interval)
             values.append(block.get([names[each] for each in chosen]))
     over = f"a step of the command by {size:g} {signals.command_unit(drive)}, {duration:.3g} s"
     losses = []
@@ -51,6 +52,19 @@ def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable]
         if size > 0.0 or column.any():  # an angle that the load holds at 0 compares nothing
             losses.append(Loss.between(name, column - run[name], run.unit(name), size, over))
     return losses
+
+
+def _moving_run(drive: Drive, duration: float, step: float, interval: float) -> tuple[float, Run]:
+    """Return the size of a constant command at which a drive moves, and its run; the largest tried if it does not move."""
+    size = COMMANDS.get(signals.command_unit(drive), OTHER_COMMAND)
+    largest = MAX_COMMAND_FACTOR * size
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        while True:
+            run = simulate(drive, scenario.constant(size, duration), step, sample=interval)
+            if run["input_angle"].any() or size >= largest:
+                return size, run
+            size *= 10.0
 
 
 class Block:
