@@ -82,16 +82,20 @@ def fmu(
         list[str] | None,
         typer.Option(help="Of a binary, as x86_64-windows; may be repeated. `source` makes no binary. Default: this machine."),
     ] = None,
+    model_exchange: Annotated[bool, typer.Option("--model-exchange", help="For the solver of the tool.")] = False,
     step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
     name: Annotated[str | None, typer.Option(help="Of the model and of the file.")] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/fmu"),
 ) -> None:
-    """The whole drive as an FMU for co-simulation in Simulink, OpenModelica, Dymola, FMPy."""
+    """The whole drive as an FMU for Simulink, OpenModelica, Dymola or FMPy."""
     from strainwave.export.fmu import fmu as exported
     from strainwave.files.gear_set import GearSet
 
     platforms = None if platform is None else [each for each in platform if each != "source"]
-    _write(exported(GearSet.read(drive), version=version, platforms=platforms, step=step, name=name), out)
+    found = exported(
+        GearSet.read(drive), version=version, platforms=platforms, model_exchange=model_exchange, step=step, name=name
+    )
+    _write(found, out)
 
 
 @export.command("from-bam")

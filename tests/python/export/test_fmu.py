@@ -29,6 +29,7 @@ COMMUNICATION = 1e-3  # s
 DURATION = 2.0  # s
 CHAINED = 500  # communication steps of chained runs
 ROUNDING_OF_TIME = 1e-11  # an instant of 2 s is rounded by 2e-16 s, which is 1e-12 of an internal step
+PRESCRIBED = sw.Drive(load=sw.loads.Prescribed())
 BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -106,6 +107,22 @@ def test_fmpy_runs_it_by_default_settings(tmp_path):
     result = fmpy.simulate_fmu(str(path), stop_time=0.5, start_values={"command": 0.1}, output=["output_angle"])
     run = sw.simulate(drive_of(3), sw.scenario.constant(0.1, 0.5), STEP)
     assert result["output_angle"][-1] == pytest.approx(run["output_angle"][-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("version", DRIVES)
+def test_solver_of_a_tool_comes_closer_with_its_tolerance(version, tmp_path):
+    drive, path = drive_of(5 - version), tmp_path / "block.fmu"  # the drive that the other version is not tested with
+    path.write_bytes(sw.export.fmu(drive, version=version, model_exchange=True, name="block").files["block.fmu"])
+    assert fmpy.validation.validate_fmu(str(path)) == []
+    run = sw.simulate_adaptively(drive, sw.scenario.constant(0.1, 0.3), 1e-9, sample=1e-3)
+    errors = []
+    for tolerance in (1e-4, 1e-7):
+        found = fmpy.simulate_fmu(
+            str(path), fmi_type="ModelExchange", solver="CVode", relative_tolerance=tolerance, stop_time=0.3, output_interval=1e-3,
+            start_values={"command": 0.1}, output=["output_angle", "torque"], record_events=False,
+        )  # fmt: skip
+        errors.append([np.abs(found[name] - run[name]).max() / np.abs(run[name]).max() for name in ("output_angle", "torque")])
+    assert np.all(np.array(errors) < [[1e-2, 1e-2], [1e-5, 1e-4]]), errors
 
 
 @pytest.mark.parametrize("version", DRIVES)
@@ -295,6 +312,7 @@ def test_source_fmu_compiles_by_a_plain_command(tmp_path):
         ({"platforms": ["amiga"]}, r"the platform \"amiga\" is not known; give some of x86_64-linux, "),
         ({"version": 1}, r"version = 1 must be 2 or 3"),
         ({"step": 0.0}, r"step = 0\.0 s must lie in"),
+        ({"drive": PRESCRIBED, "model_exchange": True}, r"model exchange needs an output shaft that torques move"),
         ({"name": "///"}, r"name = \"///\" must contain letters or digits"),
     ],
 )

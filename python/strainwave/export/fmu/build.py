@@ -18,13 +18,14 @@ from strainwave.export.exported import Exported
 from strainwave.export.fmu.comparison import difference_to_simulation
 from strainwave.export.fmu.description import Description, build_description, model_description
 from strainwave.export.fmu.source import sources
-from strainwave.export.fmu.variables import MIN_STEP, Variable, variables
+from strainwave.export.fmu.variables import MIN_STEP, Variable, has_events, state_variables, variables
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import quoted
 from strainwave.native.compilers import FLAGS, Compiler, NoCompilerError, find_compiler, zig_program
 from strainwave.native.static_type import in_words
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, fine_enough
+from strainwave.simulation.signals import load_input
 
 VERSIONS = (2, 3)
 STEP = 2e-4  # s, the internal step of a drive that needs no shorter one
@@ -64,6 +65,7 @@ def fmu(
     *,
     version: int = 2,
     platforms: Iterable[str] | None = None,
+    model_exchange: bool = False,
     step: float | None = None,
     name: str | None = None,
 ) -> Exported:
@@ -78,6 +80,8 @@ def fmu(
         version: of FMI, 2 or 3
         platforms: for which it has binaries, of `PLATFORMS`; by default that of this machine; none makes a source FMU, which
             needs no compiler. Platforms other than this machine need the extra `compiler`
+        model_exchange: the solver of the tool moves the drive. Co-simulation is recommended: it is faster, and has the steps of
+            the simulation
         step: internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the model and the file; by default that of the gear set
 
@@ -98,9 +102,12 @@ def fmu(
     targets = own_platform() if platforms is None else [_platform(each) for each in platforms]
     step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
     name = _file_name(name, model)
-    found = variables(drive, step)
-    files, token = sources(drive, found, version)
-    about = Description(name, re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII), token, in_words(drive), step, found)
+    found, states = variables(drive, step), state_variables(drive) if model_exchange else []
+    if model_exchange and load_input(drive) == "output_angle":
+        raise ValueError("model exchange needs an output shaft that torques move; the load of this drive prescribes its motion")
+    files, token = sources(drive, found, version, model_exchange)
+    identifier = re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII)
+    about = Description(name, identifier, token, in_words(drive), step, found, states, has_events(drive))
     binaries, seconds = {}, {}
     for each in dict.fromkeys(targets):
         began = time.perf_counter()
@@ -108,10 +115,10 @@ def fmu(
         seconds[each] = time.perf_counter() - began
     content = _archive(about, files, binaries, version)
     losses = []
-    if set(own_platform()) <= set(binaries):
+    if not model_exchange and set(own_platform()) <= set(binaries):
         losses = difference_to_simulation(content, drive, found, version, step)
     return Exported(
-        f"FMU for co-simulation, FMI {version}.0",
+        f"FMU for {'model exchange' if model_exchange else 'co-simulation'}, FMI {version}.0",
         model.name if isinstance(model, GearSet) else name,
         {f"{name}.fmu": content},
         {"internal_step": (step, "s")},
@@ -167,13 +174,16 @@ def _file_name(name: str | None, model: Drive | GearSet) -> str:
 
 
 def _left_out(drive: Drive) -> Iterable[str]:
-    yield "model exchange, directional derivatives, and adaptive steps"
+    yield "directional derivatives"
     if _core.parts(drive)[1]:
         yield "counts and options of the models: they are constants of the FMU, as the models themselves are"
 
 
 def _remarks(about: Description, binaries: dict[str, bytes], seconds: dict[str, float], size: int) -> Iterable[str]:
-    yield "the FMU steps the drive by the C++ code of sw.simulate"
+    if about.states:
+        yield "the solver of the tool integrates the rates of sw.simulate; its tolerance determines the error"
+    else:
+        yield "the FMU steps the drive by the C++ code of sw.simulate"
     yield f"{size / 1e3:.0f} kB; {_counted(about.variables)}"
     for each, content in binaries.items():
         yield f"binary for {each}: {len(content) / 1e3:.0f} kB, compiled in {seconds[each]:.1f} s"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from xml.etree import ElementTree
 
-from strainwave.export.fmu.variables import Variable
+from strainwave.export.fmu.variables import Variable, nominal
 from strainwave.files.units import base_exponents
 
 Element = ElementTree.Element
@@ -31,6 +31,8 @@ class Description:
         text: one line on the drive
         step: default communication step [s]
         variables: in the order of the value references
+        states: of model exchange: states, their derivatives, and an event indicator; empty for co-simulation
+        has_events: whether the event indicator is used
     """
 
     name: str
@@ -39,6 +41,13 @@ class Description:
     text: str
     step: float
     variables: list[Variable]
+    states: list[Variable]
+    has_events: bool
+
+    @property
+    def state_count(self) -> int:
+        """Number of continuous states."""
+        return len(self.states) // 2
 
 
 def model_description(about: Description, version: int) -> bytes:
@@ -48,8 +57,10 @@ def model_description(about: Description, version: int) -> bytes:
     root.set("description", about.text)
     root.set("generationTool", f"strainwave {metadata.version('strainwave')}")
     root.set("variableNamingConvention", "structured")
-    root.append(_co_simulation(about, version))
-    root.append(_unit_definitions({each.unit for each in about.variables} | {"s"}))
+    if version == 2 and about.states:
+        root.set("numberOfEventIndicators", str(int(about.has_events)))
+    root.append(_interface(about, version))
+    root.append(_unit_definitions({each.unit for each in (*about.variables, *about.states)} | {"s"}))
     categories = ElementTree.SubElement(root, "LogCategories")
     ElementTree.SubElement(categories, "Category", name="logStatusError", description="Errors")
     experiment = {"startTime": "0.0", "stopTime": repr(STOP_TIME), "stepSize": repr(about.step)}
@@ -57,11 +68,13 @@ def model_description(about: Description, version: int) -> bytes:
     listed = ElementTree.SubElement(root, "ModelVariables")
     if version == 2:
         listed.extend(_variable_2(each) for each in about.variables)
+        listed.extend(_state_2(about, i) for i in range(2 * about.state_count))
     else:
         time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous", "unit": "s"}
         ElementTree.SubElement(listed, "Float64", time)
         listed.extend(_variable_3(each) for each in about.variables)
-    root.append(_structure_2(about.variables) if version == 2 else _structure_3(about.variables))
+        listed.extend(_state_3(about, i) for i in range(2 * about.state_count + about.has_events))
+    root.append(_structure_2(about) if version == 2 else _structure_3(about))
     return _xml(root)
 
 
@@ -75,13 +88,15 @@ def build_description(about: Description, version: int) -> bytes:
     return _xml(root)
 
 
-def _co_simulation(about: Description, version: int) -> Element:
+def _interface(about: Description, version: int) -> Element:
     names = {
         2: ("canGetAndSetFMUstate", "canSerializeFMUstate", "canNotUseMemoryManagementFunctions", "canInterpolateInputs"),
         3: ("canGetAndSetFMUState", "canSerializeFMUState"),
     }
-    abilities = dict.fromkeys(("canHandleVariableCommunicationStepSize", *names[version]), "true")
-    found = Element("CoSimulation", {"modelIdentifier": about.identifier} | abilities)
+    abilities = names[version] if about.states else ("canHandleVariableCommunicationStepSize", *names[version])
+    chosen = [each for each in abilities if not (about.states and each == "canInterpolateInputs")]
+    kind = "ModelExchange" if about.states else "CoSimulation"
+    found = Element(kind, {"modelIdentifier": about.identifier} | dict.fromkeys(chosen, "true"))
     if version == 2:
         ElementTree.SubElement(ElementTree.SubElement(found, "SourceFiles"), "File", name="fmi2.cpp")
     return found
@@ -138,24 +153,66 @@ def _variable_3(variable: Variable) -> Element:
     return Element("Float64", _common(variable) | _real(variable))
 
 
-def _structure_2(variables: list[Variable]) -> Element:
-    found = Element("ModelStructure")
-    places = [str(1 + i) for i, each in enumerate(variables) if each.causality == "output"]
-    outputs, unknown = ElementTree.SubElement(found, "Outputs"), ElementTree.SubElement(found, "InitialUnknowns")
-    for place in places:
-        ElementTree.SubElement(outputs, "Unknown", index=place, dependencies="")
-        ElementTree.SubElement(unknown, "Unknown", index=place)
+def _state_2(about: Description, i: int) -> Element:
+    """Return the variable of a continuous state, or of the derivative of one."""
+    found = Element("ScalarVariable", _common(about.states[i]))
+    real = _real(about.states[i]) | _nominal(about, i)
+    if i >= about.state_count:
+        real["derivative"] = str(1 + len(about.variables) + i - about.state_count)
+    ElementTree.SubElement(found, "Real", real)
     return found
 
 
-def _structure_3(variables: list[Variable]) -> Element:
+def _nominal(about: Description, i: int) -> dict[str, str]:
+    """Return the nominal value of a continuous state, nothing for other variables."""
+    return {"nominal": repr(nominal(about.states[i].name.removeprefix("state.")))} if i < about.state_count else {}
+
+
+def _state_3(about: Description, i: int) -> Element:
+    """Return the variable of a continuous state, of the derivative of one, or of the event indicator."""
+    found = _common(about.states[i]) | _real(about.states[i]) | _nominal(about, i)
+    if about.state_count <= i < 2 * about.state_count:
+        found["derivative"] = str(about.states[i - about.state_count].reference)
+    return Element("Float64", found)
+
+
+def _structure_2(about: Description) -> Element:
     found = Element("ModelStructure")
-    references = [str(each.reference) for each in variables if each.causality == "output"]
-    for reference in references:
-        ElementTree.SubElement(found, "Output", valueReference=reference, dependencies="")
-    for reference in references:
+    outputs = ElementTree.SubElement(found, "Outputs")
+    derivatives = ElementTree.SubElement(found, "Derivatives") if about.states else None
+    unknown = ElementTree.SubElement(found, "InitialUnknowns")
+    for place, each in enumerate(about.variables, 1):
+        if each.causality == "output":
+            ElementTree.SubElement(outputs, "Unknown", {"index": str(place)} | _dependencies(about))
+            ElementTree.SubElement(unknown, "Unknown", index=str(place))
+    for i in range(2 * about.state_count):
+        index = str(1 + len(about.variables) + i)
+        ElementTree.SubElement(unknown, "Unknown", index=index)
+        if derivatives is not None and i >= about.state_count:
+            ElementTree.SubElement(derivatives, "Unknown", index=index)
+    return found
+
+
+def _structure_3(about: Description) -> Element:
+    found = Element("ModelStructure")
+    outputs = [str(each.reference) for each in about.variables if each.causality == "output"]
+    states = [str(each.reference) for each in about.states]
+    derivatives = states[about.state_count : 2 * about.state_count]
+    for reference in outputs:
+        ElementTree.SubElement(found, "Output", {"valueReference": reference} | _dependencies(about))
+    for reference in derivatives:
+        ElementTree.SubElement(found, "ContinuousStateDerivative", valueReference=reference)
+    indicators = states[-1:] if about.has_events else []
+    for reference in [*outputs, *states[: about.state_count], *derivatives]:
         ElementTree.SubElement(found, "InitialUnknown", valueReference=reference)
+    for reference in indicators:
+        ElementTree.SubElement(found, "EventIndicator", valueReference=reference)
     return found
+
+
+def _dependencies(about: Description) -> dict[str, str]:
+    """Return that an output of co-simulation depends on no input of the same instant; else it may depend on all."""
+    return {} if about.states else {"dependencies": ""}
 
 
 def _xml(root: Element) -> bytes:

@@ -27,7 +27,7 @@ fmi2Status checked(fmi2Component c, bool done) {
 fmi2Status unsupported(fmi2Component c, const char* what) { return checked(c, model_of(c).fail("%s", what)); }
 
 constexpr auto no_such_type = "all variables of this FMU are of type Real";
-constexpr auto no_model_exchange = "this FMU is for co-simulation only";
+constexpr auto wrong_kind = "this FMU is not of the kind that was asked for: co-simulation or model exchange";
 
 }  // namespace
 
@@ -42,7 +42,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
     const fmi2CallbackLogger logger = functions ? functions->logger : nullptr;
     const fmi2ComponentEnvironment environment = functions ? functions->componentEnvironment : nullptr;
     const char* refused = nullptr;
-    if (type != fmi2CoSimulation) refused = no_model_exchange;
+    if ((type == fmi2ModelExchange) != fmu::is_model_exchange) refused = wrong_kind;
     if (!token || strcmp(token, fmu::token) != 0) refused = "the GUID differs from that of modelDescription.xml";
     void* const memory = refused ? nullptr : malloc(sizeof(Instance));
     if (!memory) {
@@ -51,6 +51,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
     }
     auto* const instance = new (memory) Instance{{}, logger, environment, {}};
     snprintf(instance->name, sizeof instance->name, "%s", name ? name : "");
+    if (fmu::is_model_exchange) instance->model.exchange();
     return instance;
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }
@@ -65,6 +66,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 }
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     const bool done = model_of(c).prepare();
+    if (fmu::is_model_exchange) model_of(c).begin_exchange();
     model_of(c).enter(done ? fmu::Phase::stepping : fmu::Phase::failed);
     return checked(c, done);
 }
@@ -74,6 +76,7 @@ fmi2Status fmi2Terminate(fmi2Component c) {
 }
 fmi2Status fmi2Reset(fmi2Component c) {
     model_of(c).reset();
+    if (fmu::is_model_exchange) model_of(c).exchange();
     return fmi2OK;
 }
 
@@ -158,6 +161,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return unsupported(c, "this FMU gives no derivatives of its outputs");
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real length, fmi2Boolean) {
+    if (fmu::is_model_exchange) return unsupported(c, wrong_kind);
     if (model_of(c).phase() != fmu::Phase::stepping) return unsupported(c, "a step needs an FMU that was initialised");
     return checked(c, model_of(c).step(time, length));
 }
@@ -174,17 +178,42 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component, const fmi2StatusKind, fmi2Boolean
 }
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind, fmi2String*) { return unsupported(c, "no step is pending"); }
 
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo*) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean*, fmi2Boolean*) {
-    return unsupported(c, no_model_exchange);
+fmi2Status fmi2EnterEventMode(fmi2Component) { return fmi2OK; }
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
+    bool has_changed = false;
+    double next = 0.0;
+    const bool done = model_of(c).apply_events(has_changed, next);
+    *info = {fmi2False, fmi2False, fmi2False, has_changed, next < strainwave::unbounded, next};
+    return checked(c, done);
 }
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real[], size_t) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real[], size_t) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real[], size_t) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real[], size_t) { return unsupported(c, no_model_exchange); }
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real[], size_t) { return unsupported(c, no_model_exchange); }
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component) { return fmi2OK; }
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* event, fmi2Boolean* terminate) {
+    *event = model_of(c).complete();
+    *terminate = fmi2False;
+    return fmi2OK;
+}
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
+    model_of(c).set_time(time);
+    return fmi2OK;
+}
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t count) {
+    return checked(c, model_of(c).set_states(x, count));
+}
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t) {
+    model_of(c).get_derivatives(derivatives);
+    return fmi2OK;
+}
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t count) {
+    if (count > 0) indicators[0] = model_of(c).event_indicator();
+    return fmi2OK;
+}
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t) {
+    model_of(c).get_states(x);
+    return fmi2OK;
+}
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component, fmi2Real nominals[], size_t count) {
+    for (size_t i = 0; i < count; ++i) nominals[i] = fmu::state_nominals[i];
+    return fmi2OK;
+}
 
 }  // extern "C"

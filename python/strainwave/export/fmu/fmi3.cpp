@@ -12,6 +12,10 @@ struct Instance {
     fmi3InstanceEnvironment environment;
 };
 
+constexpr auto wrong_kind = "this FMU is not of the kind that was asked for: co-simulation or model exchange";
+constexpr auto wrong_token = "the instantiation token differs from that of modelDescription.xml";
+constexpr auto no_clocks = "this FMU has no clocks";
+
 fmu::Model& model_of(fmi3Instance c) { return static_cast<Instance*>(c)->model; }
 
 fmi3Status checked(fmi3Instance c, bool done) {
@@ -21,9 +25,20 @@ fmi3Status checked(fmi3Instance c, bool done) {
     return fmi3Error;
 }
 fmi3Status unsupported(fmi3Instance c, const char* what) { return checked(c, model_of(c).fail("%s", what)); }
-
-constexpr auto no_model_exchange = "this FMU is for co-simulation only";
-constexpr auto no_clocks = "this FMU has no clocks";
+fmi3Instance refused(fmi3LogMessageCallback logger, fmi3InstanceEnvironment environment, const char* why) {
+    if (logger) logger(environment, fmi3Error, "logStatusError", why);
+    return nullptr;
+}
+fmi3Instance instantiated(bool is_model_exchange, fmi3String token, fmi3LogMessageCallback logger,
+                          fmi3InstanceEnvironment environment) {
+    if (is_model_exchange != fmu::is_model_exchange) return refused(logger, environment, wrong_kind);
+    if (!token || strcmp(token, fmu::token) != 0) return refused(logger, environment, wrong_token);
+    void* const memory = malloc(sizeof(Instance));
+    if (!memory) return refused(logger, environment, "there is no memory left");
+    auto* const instance = new (memory) Instance{{}, logger, environment};
+    if (is_model_exchange) instance->model.exchange();
+    return instance;
+}
 
 }  // namespace
 
@@ -46,24 +61,16 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance, fmi3Boolean, size_t, const fmi3Stri
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String token, fmi3String, fmi3Boolean, fmi3Boolean, fmi3Boolean,
                                          fmi3Boolean, References, size_t, fmi3InstanceEnvironment environment,
                                          fmi3LogMessageCallback logger, fmi3IntermediateUpdateCallback) {
-    const bool fits = token && strcmp(token, fmu::token) == 0;
-    void* const memory = fits ? malloc(sizeof(Instance)) : nullptr;
-    if (memory) return new (memory) Instance{{}, logger, environment};
-    if (logger)
-        logger(environment, fmi3Error, "logStatusError",
-               fits ? "there is no memory left" : "the instantiation token differs from that of modelDescription.xml");
-    return nullptr;
+    return instantiated(false, token, logger, environment);
 }
-fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
+fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String token, fmi3String, fmi3Boolean, fmi3Boolean,
                                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
-    if (logger) logger(environment, fmi3Error, "logStatusError", no_model_exchange);
-    return nullptr;
+    return instantiated(true, token, logger, environment);
 }
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
                                                fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
                                                fmi3ClockUpdateCallback, fmi3LockPreemptionCallback, fmi3UnlockPreemptionCallback) {
-    if (logger) logger(environment, fmi3Error, "logStatusError", no_model_exchange);
-    return nullptr;
+    return refused(logger, environment, wrong_kind);
 }
 void fmi3FreeInstance(fmi3Instance c) { free(c); }
 
@@ -74,16 +81,20 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean, fmi3Float64,
 }
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
     const bool done = model_of(c).prepare();
+    if (fmu::is_model_exchange) model_of(c).begin_exchange();
     model_of(c).enter(done ? fmu::Phase::stepping : fmu::Phase::failed);
     return checked(c, done);
 }
-fmi3Status fmi3EnterEventMode(fmi3Instance c) { return unsupported(c, "this FMU has no event mode"); }
+fmi3Status fmi3EnterEventMode(fmi3Instance c) {
+    return fmu::is_model_exchange ? fmi3OK : unsupported(c, "this FMU has no event mode");
+}
 fmi3Status fmi3Terminate(fmi3Instance c) {
     model_of(c).enter(fmu::Phase::ended);
     return fmi3OK;
 }
 fmi3Status fmi3Reset(fmi3Instance c) {
     model_of(c).reset();
+    if (fmu::is_model_exchange) model_of(c).exchange();
     return fmi3OK;
 }
 
@@ -193,10 +204,14 @@ fmi3Status fmi3SetShiftDecimal(fmi3Instance c, References, size_t, const fmi3Flo
 fmi3Status fmi3SetShiftFraction(fmi3Instance c, References, size_t, const fmi3UInt64[], const fmi3UInt64[]) {
     return unsupported(c, no_clocks);
 }
-fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) { return unsupported(c, "this FMU has no event mode"); }
-fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean*, fmi3Boolean*, fmi3Boolean*, fmi3Boolean*, fmi3Boolean*,
-                                    fmi3Float64*) {
-    return unsupported(c, "this FMU has no event mode");
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* again, fmi3Boolean* terminate, fmi3Boolean* nominals,
+                                    fmi3Boolean* values, fmi3Boolean* next_defined, fmi3Float64* next) {
+    if (!fmu::is_model_exchange) return unsupported(c, "this FMU has no event mode");
+    *again = *terminate = *nominals = *values = *next_defined = fmi3False;
+    const bool done = model_of(c).apply_events(*values, *next);
+    *next_defined = *next < strainwave::unbounded;
+    return checked(c, done);
 }
 
 fmi3Status fmi3EnterStepMode(fmi3Instance c) { return unsupported(c, "this FMU has no event mode"); }
@@ -205,6 +220,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, References, size_t, const fm
 }
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 length, fmi3Boolean, fmi3Boolean* event, fmi3Boolean* terminate,
                       fmi3Boolean* early, fmi3Float64* last) {
+    if (fmu::is_model_exchange) return unsupported(c, wrong_kind);
     if (model_of(c).phase() != fmu::Phase::stepping) return unsupported(c, "a step needs an FMU that was initialised");
     *event = *terminate = *early = fmi3False;
     const bool done = model_of(c).step(time, length);
@@ -213,22 +229,41 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 length, fmi3
 }
 fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference, fmi3Float64) { return unsupported(c, no_clocks); }
 
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) { return unsupported(c, no_model_exchange); }
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean, fmi3Boolean*, fmi3Boolean*) {
-    return unsupported(c, no_model_exchange);
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance) { return fmi3OK; }
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean, fmi3Boolean* event, fmi3Boolean* terminate) {
+    *event = model_of(c).complete();
+    *terminate = fmi3False;
+    return fmi3OK;
 }
-fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64) { return unsupported(c, no_model_exchange); }
-fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64[], size_t) { return unsupported(c, no_model_exchange); }
-fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64[], size_t) { return unsupported(c, no_model_exchange); }
-fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64[], size_t) { return unsupported(c, no_model_exchange); }
-fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64[], size_t) { return unsupported(c, no_model_exchange); }
-fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64[], size_t) { return unsupported(c, no_model_exchange); }
+fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time) {
+    model_of(c).set_time(time);
+    return fmi3OK;
+}
+fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t count) {
+    return checked(c, model_of(c).set_states(x, count));
+}
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 derivatives[], size_t) {
+    model_of(c).get_derivatives(derivatives);
+    return fmi3OK;
+}
+fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 indicators[], size_t count) {
+    if (count > 0) indicators[0] = model_of(c).event_indicator();
+    return fmi3OK;
+}
+fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t) {
+    model_of(c).get_states(x);
+    return fmi3OK;
+}
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance, fmi3Float64 nominals[], size_t count) {
+    for (size_t i = 0; i < count; ++i) nominals[i] = fmu::state_nominals[i];
+    return fmi3OK;
+}
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance, size_t* count) {
-    *count = 0;
+    *count = fmu::indicator_count;
     return fmi3OK;
 }
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance, size_t* count) {
-    *count = 0;
+    *count = fmu::state_count;
     return fmi3OK;
 }
 

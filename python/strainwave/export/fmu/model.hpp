@@ -23,9 +23,12 @@ using State = Compiled::State;
 inline constexpr double same_length = 1e-9;    // relative: steps closer than this are of one length
 inline constexpr double max_step_rate = 1.0;   // internal step times the fastest angular frequency of the drive
 inline constexpr double max_bristle_rate = 2.0;  // internal step times the angular frequency of a shaft on its bristles
+inline constexpr double event_tolerance = 1e-6;  // of the internal step: how far a tool may miss an instant of sampling
+inline constexpr int max_events = 16;          // at one instant
 inline constexpr int message_size = 512;       // characters
 
 enum class Phase : int32_t { instantiated, initialising, stepping, failed, ended };
+using Continuous = Compiled::Continuous;
 
 // All that a state of the FMU contains, so that a copy of it is a copy of the state.
 struct Content {
@@ -38,6 +41,9 @@ struct Content {
     double outputs[output_count];
     Input<double> acting;  // inputs at this instant
     Evaluation here;
+    bool is_exchanged, is_on_trial;  // model exchange; whether the solver has moved away from `here`
+    double reached;                  // time of `here`
+    Continuous trial;                // numbers that the solver tries
 };
 static_assert(__is_trivially_copyable(Content));
 
@@ -93,9 +99,18 @@ public:
             value = content.inputs[reference - first_input];
         } else if (is(reference, first_output, output_count)) {
             if (content.phase == Phase::initialising && !prepare()) return false;
+            if (content.phase == Phase::stepping && content.is_exchanged && !show_trial()) return false;
             value = content.outputs[reference - first_output];
         } else if (is(reference, first_parameter, parameter_count)) {
             value = content.numbers[reference - first_parameter];
+        } else if (is(reference, first_state, 2 * state_count + 1)) {
+            if (content.phase == Phase::initialising && !prepare()) return false;
+            if (!content.has_begun) content.trial = content.here.state.continuous;
+            double numbers[2 * state_count + 1];
+            write(content.trial, numbers);
+            write(tried().derivatives.rate, numbers + state_count);
+            numbers[2 * state_count] = event_indicator();
+            value = numbers[reference - first_state];
         } else {
             return fail("there is no variable with value reference %u", unsigned(reference));
         }
@@ -162,6 +177,74 @@ public:
         return show("diverged");
     }
 
+    // Model exchange: the solver of a tool moves the continuous numbers, this model its memory at the end of each step.
+
+    void exchange() { content.is_exchanged = true; }
+    void begin_exchange() {
+        content.has_begun = true;
+        content.reached = content.time;
+        content.trial = content.here.state.continuous;
+    }
+    void set_time(double time) {
+        content.time = time;
+        content.is_on_trial = true;
+    }
+    bool set_states(const double* numbers, size_t count) {
+        if (count != size_t(state_count)) return fail("the model has %d continuous states", state_count);
+        auto scalars = strainwave::flattened<double>(content.trial);
+        for (int i = 0; i < state_count; ++i) scalars[i] = numbers[i];
+        content.trial = strainwave::refilled(content.trial, scalars);
+        content.is_on_trial = true;
+        return true;
+    }
+    void get_states(double* numbers) const { write(content.trial, numbers); }
+    void get_derivatives(double* numbers) const { write(tried().derivatives.rate, numbers); }
+    // Positive until a shaft stops or breaks away.
+    double event_indicator() const { return strainwave::system::event_function<double>(drive, tried()); }
+    // The end of a step of the solver. True if a number has changed beside, as an angle that is reduced to one turn.
+    bool complete() {
+        if (!content.is_on_trial) return false;
+        State x = content.here.state;
+        const auto now = tried().derivatives;
+        x.continuous = strainwave::system::update_mode(drive, strainwave::system::clamped(drive, content.trial, now), now);
+        strainwave::system::finish_step(drive, x, content.time - content.reached);
+        content.acting = at(0.0);
+        content.here = drive.evaluate(x, content.acting);
+        content.reached = content.time;
+        double before[state_count], after[state_count];
+        write(content.trial, before);
+        write(content.here.state.continuous, after);
+        content.trial = content.here.state.continuous;
+        content.is_on_trial = false;
+        return memcmp(before, after, sizeof after) != 0;
+    }
+    // Events at this instant: samples, shafts that stop or break away. `next` is the time of the next sample, or infinite.
+    bool apply_events(bool& has_changed, double& next) {
+        double before[state_count], after[state_count];
+        write(content.trial, before);
+        complete();
+        content.acting = at(0.0);
+        auto& here = content.here;
+        here = drive.evaluate(here.state, content.acting);
+        const double within = event_tolerance * max_step();
+        here = strainwave::system::up_to_date(drive, here, content.acting, within);
+        for (int i = 0; i < max_events && strainwave::system::has_events(drive); ++i) {
+            if (strainwave::system::breaks_away(drive, here))
+                here = strainwave::system::break_away(drive, here, content.acting);
+            else if (strainwave::system::event_function<double>(drive, here) < 0.0)
+                here = drive.evaluate(strainwave::system::apply_event(drive, here, content.acting, true), content.acting);
+            else
+                break;
+        }
+        content.trial = here.state.continuous;
+        content.is_on_trial = false;
+        write(content.trial, after);
+        has_changed = memcmp(before, after, sizeof after) != 0;
+        const double never = strainwave::unbounded, instant = next_instant(never);
+        next = instant < never ? content.time + instant : never;
+        return (!drive.has_bounds() || is_valid(content.time)) && show("diverged");
+    }
+
     // States, as copies.
     static constexpr size_t state_size = sizeof(Content);
     void save(void* to) const { memcpy(to, &content, sizeof content); }
@@ -188,6 +271,23 @@ private:
         return reference >= first && reference < first + uint32_t(count);
     }
     double max_step() const { return content.numbers[0]; }
+
+    static void write(const Continuous& y, double* numbers) {
+        const auto scalars = strainwave::flattened<double>(y);
+        for (int i = 0; i < state_count; ++i) numbers[i] = scalars[i];
+    }
+    // The numbers that the solver tries, with the memory of the last step that it completed.
+    Evaluation tried() const {
+        State x = content.here.state;
+        x.continuous = content.trial;
+        return {x, drive.derivatives(content.here.state, content.trial, at(0.0))};
+    }
+    bool show_trial() {
+        const auto all = strainwave::kernel::shown<double>(drive, tried(), at(0.0));
+        const auto places = strainwave::kernel::outputs_of(drive);
+        for (int i = 0; i < output_count; ++i) content.outputs[i] = all[places.slot[channels[i]]];
+        return true;
+    }
 
     // The inputs `after` [s] from now.
     Input<double> at(double after) const {

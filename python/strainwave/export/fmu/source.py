@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from hashlib import sha256
 from importlib import resources
 from math import isfinite
@@ -18,10 +19,11 @@ HEADERS_OF_VERSION = {
     2: ("fmi2FunctionTypes.h", "fmi2Functions.h", "fmi2TypesPlatform.h"),
     3: ("fmi3FunctionTypes.h", "fmi3Functions.h", "fmi3PlatformTypes.h"),
 }
+DIGEST_LENGTH = 32  # hexadecimal digits of a token
 UNBOUNDED = 1.7976931348623157e308  # as the C++ headers write it
 
 
-def sources(drive: Drive, found: list[Variable], version: int) -> tuple[dict[str, str], str]:
+def sources(drive: Drive, found: list[Variable], version: int, is_model_exchange: bool) -> tuple[dict[str, str], str]:
     """Return the source files of the FMU of a drive by their names, and the token that ties a binary to its description.
 
     Raises:
@@ -31,8 +33,10 @@ def sources(drive: Drive, found: list[Variable], version: int) -> tuple[dict[str
     files = {name: own.joinpath(name).read_text("utf-8") for name in ("model.hpp", f"fmi{version}.cpp")}
     files |= _fmi_headers(version)
     files |= cplusplus.closure([*cplusplus.headers_of(drive), *RUN_HEADERS])
-    token = "{" + sha256("\0".join([*files.values(), _drive_header(drive, found, "")]).encode()).hexdigest()[:32] + "}"
-    return {**files, "drive.hpp": _drive_header(drive, found, token)}, token
+    header = partial(_drive_header, drive, found, is_model_exchange)
+    digest = sha256("\0".join([*files.values(), header("")]).encode()).hexdigest()[:DIGEST_LENGTH]
+    token = f"{{{digest}}}"
+    return {**files, "drive.hpp": header(token)}, token
 
 
 def _fmi_headers(version: int) -> dict[str, str]:
@@ -45,13 +49,14 @@ def _fmi_headers(version: int) -> dict[str, str]:
     return {name: (folder / name).read_text("utf-8") for name in HEADERS_OF_VERSION[version]}
 
 
-def _drive_header(drive: Drive, found: list[Variable], token: str) -> str:
+def _drive_header(drive: Drive, found: list[Variable], is_model_exchange: bool, token: str) -> str:
     """Return the header with the static type of a drive, its numbers and the names of its variables."""
     laws, shape, _ = _core.parts(drive)
     by_causality = {kind: [each for each in found if each.causality == kind] for kind in ("input", "output", "parameter")}
     inputs, outputs, parameters = by_causality.values()
     channels = [each.channel for each in names.recorded(drive, found).values()]
     initial = [f"strainwave::initial::{each}" for each in names.initial_names(drive)]
+    states = names.continuous_states(drive)
     is_short = isinstance(drive.gear.structure, structure.Lumped)  # else to inline each stage of a step takes minutes
     lines = "".join(
         f"    {{{_text(each.name)}, {_text(each.unit)}, {each.start!r}, {_bound(each.low)}, {_bound(each.high)}}},\n"
@@ -72,7 +77,10 @@ inline constexpr int laws[] = {{{_listed([*laws, 0])}}};    // one more than the
 inline constexpr int shape[] = {{{_listed([*shape, 0])}}};  // so that none is empty
 
 inline constexpr unsigned first_input = {names.FIRST_INPUT}, first_output = {names.FIRST_OUTPUT};
-inline constexpr unsigned first_parameter = {names.FIRST_PARAMETER};
+inline constexpr unsigned first_parameter = {names.FIRST_PARAMETER}, first_state = {names.FIRST_STATE};
+inline constexpr bool is_model_exchange = {str(is_model_exchange).lower()};
+inline constexpr int state_count = {len(states)}, indicator_count = {int(names.has_events(drive))};
+inline constexpr double state_nominals[] = {{{_listed(names.nominal(name) for name, _ in states)}}};
 inline constexpr int output_count = {len(outputs)}, parameter_count = {len(parameters)};
 inline constexpr const char* names[] = {{{_listed(_text(each.name) for each in inputs)}}};
 inline constexpr double input_starts[] = {{{_listed(repr(each.start) for each in inputs)}}};

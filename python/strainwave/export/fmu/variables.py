@@ -8,17 +8,20 @@ from math import inf
 from typing import Literal
 
 from strainwave import Drive, _core
+from strainwave.files import units
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
-Causality = Literal["input", "output", "parameter"]
+Causality = Literal["input", "output", "parameter", "local"]
 FIRST_INPUT = 1  # value references; 0 is the time
 FIRST_OUTPUT = 101
 FIRST_PARAMETER = 1001
+FIRST_STATE = 100_001  # then the derivatives, then the event indicator
 STEP_NAME = "internal_step"
 MIN_STEP, MAX_STEP = 1e-7, 0.1  # s
 INITIAL = ("output_angle", "output_speed", "torque")  # quantities that a run can begin with; 0 has no effect
 RATES = {"rad": "rad/s", "1": "1/s", "rad/s": "rad/s2"}
+NOMINAL_ERROR = 1e-4  # rad, of the transmission error, whose twist makes the torque
 SHOWN_BY = {"angle": "deg", "speed": "rpm", "twist": "arcmin", "error": "arcmin", "temperature": "degC"}  # by end of the name
 
 
@@ -29,7 +32,7 @@ class Variable:
     Attributes:
         name: unique in the FMU
         reference: value reference
-        causality: input, output or parameter
+        causality: input, output, parameter, or local for a state, its derivative or an event indicator
         unit: in the spelling of Modelica and FMI
         description: one line
         start: value at the start; None for an output
@@ -57,6 +60,39 @@ def variables(drive: Drive, step: float) -> list[Variable]:
     """
     inputs = list(_inputs(drive))
     return [*inputs, *_outputs(drive, {each.name for each in inputs}), *_parameters(drive, step)]
+
+
+def continuous_states(drive: Drive) -> list[tuple[str, str]]:
+    """Return name and unit of each number of a drive that a solver integrates, in the order of the C++ state."""
+    found = _core.state(drive)[0]
+    moved = 1 + [name for name, _, _ in found].index("output_speed")
+    memory = (i for i, (_, _, part) in enumerate(found) if i >= moved and part in ("control", "hysteresis", "held_twist"))
+    return [(name, unit) for name, unit, _ in found[: next(memory)]]
+
+
+def state_variables(drive: Drive) -> list[Variable]:
+    """Return the variables that model exchange adds: states, their derivatives in the same order, and an event indicator."""
+    states = continuous_states(drive)
+    derivatives = [(f"der(state.{name})", RATES.get(unit, _per_second(unit))) for name, unit in states]
+    listed = [*((f"state.{name}", unit) for name, unit in states), *derivatives, ("event_indicator", "1")]
+    return [Variable(name, FIRST_STATE + i, "local", unit, "") for i, (name, unit) in enumerate(listed)]
+
+
+def nominal(state: str) -> float:
+    """Return the size of a continuous state that tolerances of a solver refer to, in its unit."""
+    return NOMINAL_ERROR if state == "transmission_error" else 1.0
+
+
+def _per_second(unit: str) -> str:
+    """Return the unit of the rate of a quantity."""
+    numerator, _, denominator = unit.partition("/")
+    return units.check({"": f"{numerator}/s", "s": f"{numerator}/s2"}.get(denominator, f"{numerator}/({denominator}.s)"))
+
+
+def has_events(drive: Drive) -> bool:
+    """True if a shaft of the drive can stick."""
+    rest = drive.rest()
+    return not (rest.input_slip_direction and rest.output_slip_direction)
 
 
 def recorded(drive: Drive, found: list[Variable]) -> Mapping[str, signals.Output]:
