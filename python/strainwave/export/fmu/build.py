@@ -107,7 +107,7 @@ def fmu(
         raise ValueError("model exchange needs an output shaft that torques move; the load of this drive prescribes its motion")
     files, token = sources(drive, found, version, model_exchange)
     identifier = re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII)
-    about = Description(name, identifier, token, in_words(drive), step, found, states, has_events(drive))
+    about = Description(name, identifier, token, in_words(drive), step, found, states, model_exchange and has_events(drive))
     binaries, seconds = {}, {}
     for each in dict.fromkeys(targets):
         began = time.perf_counter()

@@ -24,6 +24,7 @@ inline constexpr double same_length = 1e-9;    // relative: steps closer than th
 inline constexpr double max_step_rate = 1.0;   // internal step times the fastest angular frequency of the drive
 inline constexpr double max_bristle_rate = 2.0;  // internal step times the angular frequency of a shaft on its bristles
 inline constexpr double event_tolerance = 1e-6;  // of the internal step: how far a tool may miss an instant of sampling
+inline constexpr double event_delay = 1e-9;    // rad/s of a shaft that slips, N.m of one that sticks
 inline constexpr int max_events = 16;          // at one instant
 inline constexpr int message_size = 512;       // characters
 
@@ -199,8 +200,8 @@ public:
     }
     void get_states(double* numbers) const { write(content.trial, numbers); }
     void get_derivatives(double* numbers) const { write(tried().derivatives.rate, numbers); }
-    // Positive until a shaft stops or breaks away.
-    double event_indicator() const { return strainwave::system::event_function<double>(drive, tried()); }
+    // Positive until a shaft has stopped or broken away. It is zero a little later, so that a solver stops behind the event.
+    double event_indicator() const { return strainwave::system::event_function<double>(drive, tried()) + event_delay; }
     // The end of a step of the solver. True if a number has changed beside, as an angle that is reduced to one turn.
     bool complete() {
         if (!content.is_on_trial) return false;
