@@ -9,6 +9,7 @@ import time
 import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -32,6 +33,7 @@ STEP = 2e-4  # s, the internal step of a drive that needs no shorter one
 MAX_NAME_LENGTH = 60  # characters of a file name
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal drives have equal FMUs
 LIBRARIES = "-Wl,--as-needed", "-Wl,-z,defs", "-lm"  # no C++ library, and no symbol without a library
+MAX_REMEMBERED = 8  # binaries, of 0.2 MB each
 MAX_HALVINGS = 20  # of the step, for bristles
 
 
@@ -105,13 +107,13 @@ def fmu(
     found, states = variables(drive, step), state_variables(drive) if model_exchange else []
     if model_exchange and load_input(drive) == "output_angle":
         raise ValueError("model exchange needs an output shaft that torques move; the load of this drive prescribes its motion")
-    files, token = sources(drive, found, version, model_exchange)
+    files, token = sources(drive, found, version)
     identifier = re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII)
     about = Description(name, identifier, token, in_words(drive), step, found, states, model_exchange and has_events(drive))
     binaries, seconds = {}, {}
     for each in dict.fromkeys(targets):
         began = time.perf_counter()
-        binaries[each] = _binary(each, files, version)
+        binaries[each] = _binary(each, tuple(sorted(files.items())), version)
         seconds[each] = time.perf_counter() - began
     content = _archive(about, files, binaries, version)
     losses = []
@@ -196,8 +198,9 @@ def _counted(found: list[Variable]) -> str:
     return ", ".join(f"{kinds.count(kind)} {kind}s" for kind in ("input", "output", "parameter"))
 
 
-def _binary(name: str, files: dict[str, str], version: int) -> bytes:
-    """Return the shared library for a platform.
+@lru_cache(maxsize=MAX_REMEMBERED)
+def _binary(name: str, files: tuple[tuple[str, str], ...], version: int) -> bytes:
+    """Return the shared library for a platform; that of both kinds of an FMU is the same.
 
     Raises:
         NoCompilerError: there is no compiler for it
@@ -205,7 +208,7 @@ def _binary(name: str, files: dict[str, str], version: int) -> bytes:
     """
     compiler, flags, libraries = _compiler(name)
     with TemporaryDirectory() as folder:
-        for path, text in files.items():
+        for path, text in files:
             target = Path(folder, path)
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, "utf-8")

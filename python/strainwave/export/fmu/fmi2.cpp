@@ -27,7 +27,7 @@ fmi2Status checked(fmi2Component c, bool done) {
 fmi2Status unsupported(fmi2Component c, const char* what) { return checked(c, model_of(c).fail("%s", what)); }
 
 constexpr auto no_such_type = "all variables of this FMU are of type Real";
-constexpr auto wrong_kind = "this FMU is not of the kind that was asked for: co-simulation or model exchange";
+constexpr auto wrong_kind = "this instance is for model exchange, which has no communication steps";
 
 }  // namespace
 
@@ -42,7 +42,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
     const fmi2CallbackLogger logger = functions ? functions->logger : nullptr;
     const fmi2ComponentEnvironment environment = functions ? functions->componentEnvironment : nullptr;
     const char* refused = nullptr;
-    if ((type == fmi2ModelExchange) != fmu::is_model_exchange) refused = wrong_kind;
     if (!token || strcmp(token, fmu::token) != 0) refused = "the GUID differs from that of modelDescription.xml";
     void* const memory = refused ? nullptr : malloc(sizeof(Instance));
     if (!memory) {
@@ -51,7 +50,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
     }
     auto* const instance = new (memory) Instance{{}, logger, environment, {}};
     snprintf(instance->name, sizeof instance->name, "%s", name ? name : "");
-    if (fmu::is_model_exchange) instance->model.exchange();
+    if (type == fmi2ModelExchange) instance->model.exchange();
     return instance;
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }
@@ -66,7 +65,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 }
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     const bool done = model_of(c).prepare();
-    if (fmu::is_model_exchange) model_of(c).begin_exchange();
+    if (model_of(c).is_exchanged()) model_of(c).begin_exchange();
     model_of(c).enter(done ? fmu::Phase::stepping : fmu::Phase::failed);
     return checked(c, done);
 }
@@ -76,7 +75,6 @@ fmi2Status fmi2Terminate(fmi2Component c) {
 }
 fmi2Status fmi2Reset(fmi2Component c) {
     model_of(c).reset();
-    if (fmu::is_model_exchange) model_of(c).exchange();
     return fmi2OK;
 }
 
@@ -161,7 +159,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return unsupported(c, "this FMU gives no derivatives of its outputs");
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real length, fmi2Boolean) {
-    if (fmu::is_model_exchange) return unsupported(c, wrong_kind);
+    if (model_of(c).is_exchanged()) return unsupported(c, wrong_kind);
     if (model_of(c).phase() != fmu::Phase::stepping) return unsupported(c, "a step needs an FMU that was initialised");
     return checked(c, model_of(c).step(time, length));
 }

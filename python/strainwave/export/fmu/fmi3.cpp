@@ -12,7 +12,8 @@ struct Instance {
     fmi3InstanceEnvironment environment;
 };
 
-constexpr auto wrong_kind = "this FMU is not of the kind that was asked for: co-simulation or model exchange";
+constexpr auto wrong_kind = "this instance is for model exchange, which has no communication steps";
+constexpr auto no_clocked_execution = "this FMU has no scheduled execution";
 constexpr auto wrong_token = "the instantiation token differs from that of modelDescription.xml";
 constexpr auto no_clocks = "this FMU has no clocks";
 
@@ -31,7 +32,6 @@ fmi3Instance refused(fmi3LogMessageCallback logger, fmi3InstanceEnvironment envi
 }
 fmi3Instance instantiated(bool is_model_exchange, fmi3String token, fmi3LogMessageCallback logger,
                           fmi3InstanceEnvironment environment) {
-    if (is_model_exchange != fmu::is_model_exchange) return refused(logger, environment, wrong_kind);
     if (!token || strcmp(token, fmu::token) != 0) return refused(logger, environment, wrong_token);
     void* const memory = malloc(sizeof(Instance));
     if (!memory) return refused(logger, environment, "there is no memory left");
@@ -70,7 +70,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String token, fmi3Stri
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
                                                fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
                                                fmi3ClockUpdateCallback, fmi3LockPreemptionCallback, fmi3UnlockPreemptionCallback) {
-    return refused(logger, environment, wrong_kind);
+    return refused(logger, environment, no_clocked_execution);
 }
 void fmi3FreeInstance(fmi3Instance c) { free(c); }
 
@@ -81,12 +81,12 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean, fmi3Float64,
 }
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
     const bool done = model_of(c).prepare();
-    if (fmu::is_model_exchange) model_of(c).begin_exchange();
+    if (model_of(c).is_exchanged()) model_of(c).begin_exchange();
     model_of(c).enter(done ? fmu::Phase::stepping : fmu::Phase::failed);
     return checked(c, done);
 }
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-    return fmu::is_model_exchange ? fmi3OK : unsupported(c, "this FMU has no event mode");
+    return model_of(c).is_exchanged() ? fmi3OK : unsupported(c, "this FMU has no event mode");
 }
 fmi3Status fmi3Terminate(fmi3Instance c) {
     model_of(c).enter(fmu::Phase::ended);
@@ -94,7 +94,6 @@ fmi3Status fmi3Terminate(fmi3Instance c) {
 }
 fmi3Status fmi3Reset(fmi3Instance c) {
     model_of(c).reset();
-    if (fmu::is_model_exchange) model_of(c).exchange();
     return fmi3OK;
 }
 
@@ -207,7 +206,7 @@ fmi3Status fmi3SetShiftFraction(fmi3Instance c, References, size_t, const fmi3UI
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance) { return fmi3OK; }
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* again, fmi3Boolean* terminate, fmi3Boolean* nominals,
                                     fmi3Boolean* values, fmi3Boolean* next_defined, fmi3Float64* next) {
-    if (!fmu::is_model_exchange) return unsupported(c, "this FMU has no event mode");
+    if (!model_of(c).is_exchanged()) return unsupported(c, "this FMU has no event mode");
     *again = *terminate = *nominals = *values = *next_defined = fmi3False;
     const bool done = model_of(c).apply_events(*values, *next);
     *next_defined = *next < strainwave::unbounded;
@@ -220,7 +219,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, References, size_t, const fm
 }
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 length, fmi3Boolean, fmi3Boolean* event, fmi3Boolean* terminate,
                       fmi3Boolean* early, fmi3Float64* last) {
-    if (fmu::is_model_exchange) return unsupported(c, wrong_kind);
+    if (model_of(c).is_exchanged()) return unsupported(c, wrong_kind);
     if (model_of(c).phase() != fmu::Phase::stepping) return unsupported(c, "a step needs an FMU that was initialised");
     *event = *terminate = *early = fmi3False;
     const bool done = model_of(c).step(time, length);

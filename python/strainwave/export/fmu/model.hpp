@@ -78,14 +78,19 @@ class Model {
 public:
     char message[message_size];
 
-    Model() { reset(); }
+    Model() {
+        content.is_exchanged = false;
+        reset();
+    }
 
     void reset() {
+        const bool exchanged = is_exchanged();
         memset(static_cast<void*>(&content), 0, sizeof content);
         content.phase = Phase::instantiated;
         content.numbers_changed = true;
         for (int i = 0; i < parameter_count; ++i) content.numbers[i] = parameters[i].start;
         for (int i = 0; i < input_count; ++i) content.inputs[i] = input_starts[i];
+        content.is_exchanged = exchanged;
         message[0] = 0;
     }
     Phase phase() const { return content.phase; }
@@ -181,6 +186,7 @@ public:
     // Model exchange: the solver of a tool moves the continuous numbers, this model its memory at the end of each step.
 
     void exchange() { content.is_exchanged = true; }
+    bool is_exchanged() const { return content.is_exchanged; }
     void begin_exchange() {
         content.has_begun = true;
         content.reached = content.time;

@@ -23,7 +23,7 @@ DIGEST_LENGTH = 32  # hexadecimal digits of a token
 UNBOUNDED = 1.7976931348623157e308  # as the C++ headers write it
 
 
-def sources(drive: Drive, found: list[Variable], version: int, is_model_exchange: bool) -> tuple[dict[str, str], str]:
+def sources(drive: Drive, found: list[Variable], version: int) -> tuple[dict[str, str], str]:
     """Return the source files of the FMU of a drive by their names, and the token that ties a binary to its description.
 
     Raises:
@@ -33,7 +33,7 @@ def sources(drive: Drive, found: list[Variable], version: int, is_model_exchange
     files = {name: own.joinpath(name).read_text("utf-8") for name in ("model.hpp", f"fmi{version}.cpp")}
     files |= _fmi_headers(version)
     files |= cplusplus.closure([*cplusplus.headers_of(drive), *RUN_HEADERS])
-    header = partial(_drive_header, drive, found, is_model_exchange)
+    header = partial(_drive_header, drive, found)
     digest = sha256("\0".join([*files.values(), header("")]).encode()).hexdigest()[:DIGEST_LENGTH]
     token = f"{{{digest}}}"
     return {**files, "drive.hpp": header(token)}, token
@@ -49,7 +49,7 @@ def _fmi_headers(version: int) -> dict[str, str]:
     return {name: (folder / name).read_text("utf-8") for name in HEADERS_OF_VERSION[version]}
 
 
-def _drive_header(drive: Drive, found: list[Variable], is_model_exchange: bool, token: str) -> str:
+def _drive_header(drive: Drive, found: list[Variable], token: str) -> str:
     """Return the header with the static type of a drive, its numbers and the names of its variables."""
     laws, shape, _ = _core.parts(drive)
     by_causality = {kind: [each for each in found if each.causality == kind] for kind in ("input", "output", "parameter")}
@@ -78,7 +78,6 @@ inline constexpr int shape[] = {{{_listed([*shape, 0])}}};  // so that none is e
 
 inline constexpr unsigned first_input = {names.FIRST_INPUT}, first_output = {names.FIRST_OUTPUT};
 inline constexpr unsigned first_parameter = {names.FIRST_PARAMETER}, first_state = {names.FIRST_STATE};
-inline constexpr bool is_model_exchange = {str(is_model_exchange).lower()};
 inline constexpr int state_count = {len(states)}, indicator_count = {int(names.has_events(drive))};
 inline constexpr double state_nominals[] = {{{_listed(names.nominal(name) for name, _ in states)}}};
 inline constexpr int output_count = {len(outputs)}, parameter_count = {len(parameters)};
