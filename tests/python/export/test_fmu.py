@@ -21,7 +21,7 @@ from strainwave.native.compilers import NoCompilerError
 from typer.testing import CliRunner
 
 fmpy = pytest.importorskip("fmpy")
-fmi2, fmi3 = (pytest.importorskip(f"fmpy.fmi{version}") for version in (2, 3))
+fmi1, fmi2, fmi3 = (pytest.importorskip(f"fmpy.fmi{version}") for version in (1, 2, 3))
 validation = pytest.importorskip("fmpy.validation")
 etree = pytest.importorskip("lxml.etree")
 
@@ -56,6 +56,7 @@ def opened(version, stack):
     return stack.enter_context(comparison.instance(content_of(version), found, version)), recorded(drive, found)
 
 
+@cache
 def motion():
     """Knots of a command that follows a sine, and of a load that jumps at half time."""
     time = np.linspace(0.0, DURATION, round(DURATION / COMMUNICATION) + 1)
@@ -275,7 +276,7 @@ def test_block_begins_with_initial_quantities():
 def test_wrong_values_are_refused_with_a_message(values, message, capfd):
     with ExitStack() as stack:
         block, _ = opened(2, stack)
-        with pytest.raises(fmi2.FMICallException):
+        with pytest.raises(fmi1.FMICallException):
             block.start(values)
         stack.pop_all()
     output = capfd.readouterr()
