@@ -36,6 +36,7 @@ PRESCRIBED = sw.Drive(load=sw.loads.Prescribed())
 BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
+@cache
 def drive_of(version):
     return sw.GearSet.read(DRIVES[version]).drive
 
