@@ -98,6 +98,21 @@ def fmu(
     _write(found, out)
 
 
+@export.command("firmware")
+def firmware(
+    drive: Annotated[str, typer.Argument(help="A drive whose controller is sampled, as `strainwave compensate` writes it.")],
+    scalar: Annotated[str, typer.Option(help="Type of all numbers: float or double.")] = "float",
+    name: Annotated[str, typer.Option(help="Of the files, and prefix of all names in C.")] = "controller",
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/firmware"),
+) -> None:
+    """The sampled controller of a drive as C++ source for a microcontroller, with a header in C."""
+    from strainwave.export.firmware import firmware as exported
+    from strainwave.files.gear_set import GearSet
+
+    written = exported(GearSet.read(drive).drive, out, name=name, scalar=scalar)  # type: ignore[arg-type] # checked there
+    print(f"state: {', '.join(written.state)}\nwrote {written.header.name}, {written.source.name} and include to {out}")
+
+
 @export.command("from-bam")
 def from_bam(
     file: Annotated[Path, typer.Argument(help="Parameter file of BAM.")],

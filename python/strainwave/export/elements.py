@@ -261,7 +261,7 @@ def _max_torque(gear_set: GearSet, given: float | None) -> float:
             return convert(rating.value, rating.unit, "N.m")
     raise ValueError(
         f"{gear_set.name} has no rating {MAX_TORQUES[0]}, so the range of its torsion is not known; give the largest torque at "
-        "the output, as max_torque = 100"
+        "the output: --max-torque 100, in Python max_torque=100.0"
     )
 
 

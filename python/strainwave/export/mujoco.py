@@ -87,7 +87,9 @@ def _inertia(gear_set: GearSet, given: float | None) -> float:
         return arguments.number("load_inertia", given, "kg.m2", low=0.0)
     inertia = getattr(gear_set.load, "inertia", None)
     if not inertia:
-        raise ValueError(f"{gear_set.name} has no load with an inertia; give load_inertia, in kg.m2, or a robot and its joint")
+        raise ValueError(
+            f"{gear_set.name} has no load with an inertia; give --load-inertia, in Python load_inertia, in kg.m2, or a robot and its joint"
+        )
     return float(inertia)
 
 

@@ -1,0 +1,51 @@
+"""The command `strainwave export`: files of each kind, and one line for what cannot be exported."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.python.command import refused, strainwave
+
+
+def test_each_kind_writes_its_files_and_numbers(tmp_path: Path) -> None:
+    for words, file in (
+        (("joint", "csg-20-100"), "joint.urdf"),
+        (("mjcf", "csg-20-100", "--load-inertia", "1.2"), "gear.xml"),
+        (("bam", "robot-joint"), "bam.json"),
+    ):
+        done = strainwave("export", *words, "--out", words[0], folder=tmp_path)
+        assert f"{file}, " in done.stdout
+        folder = tmp_path / words[0]
+        assert (folder / file).exists()
+        assert json.loads((folder / "export.json").read_text())["kind"] == words[0]
+
+
+def test_a_controller_becomes_firmware(tmp_path: Path) -> None:
+    done = strainwave("export", "firmware", "robot-joint", "--name", "joint", "--out", "firmware", folder=tmp_path)
+    assert "wrote joint.h, joint.cpp and include to firmware" in done.stdout
+    assert (tmp_path / "firmware" / "joint.cpp").exists()
+
+
+def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
+    strainwave("export", "bam", "robot-joint", "--out", "bam", folder=tmp_path)
+    strainwave("export", "from-bam", "bam/bam.json", "--ratio", "100", "--out", "mine.toml", folder=tmp_path)
+    assert "coulomb" in (tmp_path / "mine.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (("joint", "hfuc-25-100"), "--max-torque 100"),
+        (("mjcf", "csg-20-100"), "--load-inertia"),
+        (("mjcf", "csg-20-100", "--into", "robot.xml"), "robot.xml"),
+        (("bam", "csg-20-100"), "add a [motor] to the file"),
+        (("firmware", "csg-20-100"), "has no [motor] and no [load]"),
+        (("firmware", "tilt-actuator"), "must be sampled"),
+        (("from-bam", "nothing.json", "--ratio", "100"), "nothing.json"),
+    ],
+)
+def test_what_cannot_be_exported_is_refused_in_one_line(words: tuple[str, ...], reason: str, tmp_path: Path) -> None:
+    refused(tmp_path, ("export", *words), reason)
