@@ -88,7 +88,8 @@ def _inertia(gear_set: GearSet, given: float | None) -> float:
     inertia = getattr(gear_set.load, "inertia", None)
     if not inertia:
         raise ValueError(
-            f"{gear_set.name} has no load with an inertia; give --load-inertia, in Python load_inertia, in kg.m2, or a robot and its joint"
+            f"{gear_set.name} has no load with an inertia; give --load-inertia, in Python load_inertia, in kg.m2, or a "
+            "robot and its joint"
         )
     return float(inertia)
 
