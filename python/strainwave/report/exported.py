@@ -32,8 +32,9 @@ def _lines(found: Exported) -> Iterator[str]:
 def loss_words(loss: Loss) -> str:
     """Return a loss in one sentence.
 
-    >>> loss_words(Loss("loss per cycle", 0.001, 0.001, "J", 0.1, "a torsion loop to 100 N.m"))
-    'loss per cycle: 1 % (0.001\N{NO-BREAK SPACE}J), over a torsion loop to 100 N.m'
+    >>> words = loss_words(Loss("loss per cycle", 0.001, 0.001, "J", 0.1, "a torsion loop to 100 N.m"))
+    >>> print(words.replace(NO_BREAK_SPACE, " "))
+    loss per cycle: 1 % (1 mJ), over a torsion loop to 100 N.m
     """
     if isfinite(loss.share) and loss.share < MIN_SHARE:
         return f"{loss.quantity}: none, over {loss.over}"
