@@ -136,12 +136,12 @@ def open_table(path: str | Path) -> OpenTable:
     suffix = Path(path).suffix.lower()
     if is_table_of_numbers(path):
         return open_text(path)
-    *others, last = FORMATS
-    known = f"{', '.join(others)} or {last}"
-    if Path(path).is_dir():
-        raise ValueError(one_line(f"{path} is a folder without a file of measurements; they end in {known}"))
     if suffix not in FORMATS:
-        if not Path(path).exists():
+        *others, last = FORMATS
+        known = f"{', '.join(others)} or {last}"
+        if Path(path).is_dir():
+            raise ValueError(one_line(f"{path} is a folder without a file of measurements; they end in {known}"))
+        if not suffix and not Path(path).exists():
             raise ValueError(one_line(f"{path} does not exist; check its name"))
         what = INSTEAD.get(suffix, f"use {known}")
         raise ValueError(one_line(f"{path}: suffix {quoted(suffix)} is not known; {what}"))
