@@ -1,4 +1,4 @@
-"""How probably a crack is found from the motor current, over its severity: a small version of the benchmark of the package.
+"""Probability that a crack is found from the motor current, over its severity: a small version of the detection benchmark.
 
 Units differ in friction and stiffness, days of a unit in friction and load. The comparison with healthy days of a unit is that
 of `strainwave diagnose`, at one false alarm in a thousand. The simplest detector is the change of the current's rms without its

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-CONFIDENCE = 0.95
+CONFIDENCE_LEVEL = 0.95
 
 
 def share_interval(count: int, total: int) -> tuple[float, float]:
     """Return the exact interval of a share (Clopper and Pearson)."""
     from scipy.stats import binomtest
 
-    found = binomtest(count, total).proportion_ci(CONFIDENCE, method="exact")
+    found = binomtest(count, total).proportion_ci(CONFIDENCE_LEVEL, method="exact")
     return float(found.low), float(found.high)

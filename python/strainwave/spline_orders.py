@@ -7,7 +7,7 @@ from typing import Any
 from strainwave import fault
 
 TEETH = ("flexspline_teeth", "circular_spline_teeth")
-LOBES = 2.0  # of the wave generator: order of the spline that does not turn
+WAVE_ORDER = 2.0  # passes of the two lobes over a fixed place, per revolution of the input
 SPLINES = {"flexspline": "flexspline", "circular_spline": "circular spline"}  # name in the gear, and in words
 
 
@@ -33,7 +33,7 @@ def spline_orders(kinematics: Any) -> dict[str, float]:
 
 def turning_spline_order(kinematics: Any) -> float | None:
     """Return the order of the spline that turns, per revolution of the input; None if the teeth are not known."""
-    return next((order for order in spline_orders(kinematics).values() if order != LOBES), None)
+    return next((order for order in spline_orders(kinematics).values() if order != WAVE_ORDER), None)
 
 
 def gear_facts(kinematics: Any) -> fault.Facts | None:

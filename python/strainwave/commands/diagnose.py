@@ -12,7 +12,7 @@ import typer
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
-from strainwave.diagnose.detection import DETECTION, FALSE_ALARM
+from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM
 
 if TYPE_CHECKING:
     from strainwave.diagnose.diagnosis import Diagnosis, Question
@@ -38,7 +38,9 @@ class PlanOptions:
     sample_rate: Annotated[
         float | None, numeric(f"With --plan: samples of the current per second, in Hz; usually {PLANNED_SAMPLE_RATE:g}.")
     ] = None
-    probability: Annotated[float | None, numeric(f"With --plan: that such an error is found; usually {DETECTION:g}.")] = None
+    probability: Annotated[
+        float | None, numeric(f"With --plan: that such an error is found; usually {DETECTION_PROBABILITY:g}.")
+    ] = None
 
     def check_alone(self, given: dict[str, object]) -> None:
         """Raise ValueError for an option or a recording that a plan does not use."""
@@ -184,7 +186,7 @@ def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_a
                     sample_rate=record.sample_rate,
                     noise=record.noise,
                     order=order,
-                    probability=DETECTION if planned.probability is None else planned.probability,
+                    probability=DETECTION_PROBABILITY if planned.probability is None else planned.probability,
                     false_alarm=false_alarm,
                     tests=len(wanted),
                 )

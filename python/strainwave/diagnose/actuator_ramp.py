@@ -38,7 +38,7 @@ CHANNELS = ("torque", "current", "output_angle", "input_angle")
 ASSUMED = kinematic_error.Misalignment(
     major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=np.radians(20.0)
 )
-OFFSET = 4e-3  # m: how far the section lies from the centre of tilt, assumed where the drive has none
+ASSUMED_SECTION_OFFSET = 4e-3  # m, from the centre of tilt to the section, of a drive that states none
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ def geometry(drive: Drive) -> tuple[Any, bool]:
     straight: dict[str, Any] = {
         name: 0.0 for name, kind, _ in parameters(law) if name.startswith(("housing_", "generator_")) and kind == "number"
     }
-    return law.replace(**straight, offset=law.offset or OFFSET), own is None
+    return law.replace(**straight, offset=law.offset or ASSUMED_SECTION_OFFSET), own is None
 
 
 def longest_step(drive: Drive) -> float:

@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.detection import CONFIDENCE, FALSE_ALARM
+from strainwave.diagnose.detection import CONFIDENCE_LEVEL, FALSE_ALARM
+from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
+from strainwave.orders.comb import RATIOS
 
 Array = NDArray[np.float64]
 
@@ -31,7 +33,9 @@ MIN_BLOCKS_FOR_LINE = 10  # blocks, by which a line over a condition is fitted
 MAX_LEFT_OUT_SHARE = 0.8  # of the squared error of left-out blocks [1], to which a line has to reduce it
 MAX_SPEED_RATIO = 1.25  # by which a block may be faster or slower than all blocks of the baseline
 MAX_LOAD_SHARE = 0.25  # of the spread or size of the baseline's load, by which a block may lie outside of it
-MAX_PLACE_SHARE = 0.1  # of the baseline's range of the angle, by which a block may lie outside of it
+MAX_PLACE_SHARE = 0.1  # of a range of the angle [1], by which a block may lie outside of it, or be apart from it
+MAX_SHOWN = 3  # ranges of the baseline in a reason
+MIN_PLACE_MARGIN = 0.05  # rad of the output, by which it may lie outside or apart of any range
 
 
 @dataclass(frozen=True)
@@ -183,7 +187,7 @@ def compared(
             if sum(map(len, healthy)) < MIN_BLOCKS:
                 sparse.add(name)
                 continue
-            alike, reasons = _alike(healthy, own)
+            alike, reasons = _alike(healthy, own, motion.run)
             for reason in reasons:
                 outside.setdefault(f"{name}: {reason}", []).append(f"{order:.4g}")
             if alike:
@@ -203,34 +207,77 @@ def compared(
     return Comparison(ranked, float(planned), baseline.resolution, tuple(remarks))
 
 
-def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
+def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], run: JointRecording) -> tuple[list[Cell], list[str]]:
     """Return the cells of a recording under conditions that the baseline contains, and why others are left out."""
     known = [cell for one in healthy for cell in one]
-    speeds, loads, places = (np.array([getattr(cell, name) for cell in known]) for name in ("speed", "load", "place"))
+    speeds, loads = (np.array([getattr(cell, name) for cell in known]) for name in ("speed", "load"))
     load_room = MAX_LOAD_SHARE * max(float(np.ptp(loads)), float(np.abs(loads).max()))
-    place_room = max(MAX_PLACE_SHARE * float(np.ptp(places)), 0.05)
     bounds = {
         "speed": (float(speeds.min()) / MAX_SPEED_RATIO, float(speeds.max()) * MAX_SPEED_RATIO),
         "load": (float(loads.min()) - load_room, float(loads.max()) + load_room),
-        "place": (float(places.min()) - place_room, float(places.max()) + place_room),
     }
-    ends = [cell.place + side * cell.turned for cell in known for side in (-0.5, 0.5)]
-    if float(np.ptp(ends)) > tau:  # more than a revolution: every place comes again
-        del bounds["place"]
-    left, reasons = [], list[str]()
-    for cell in own:
-        outside = [name for name, (low, high) in bounds.items() if not low <= getattr(cell, name) <= high]
-        if not outside:
+    elsewhere, reason = _elsewhere(known, own, run)
+    left, reasons = [], [reason] if reason else []
+    for cell, is_elsewhere in zip(own, elsewhere, strict=True):
+        if not is_elsewhere and all(low <= getattr(cell, name) <= high for name, (low, high) in bounds.items()):
             left.append(cell)
     for name, (low, high) in bounds.items():
         off = [getattr(cell, name) for cell in own if not low <= getattr(cell, name) <= high]
         if off:
-            label = {"speed": "speed", "load": "load", "place": "mean angle"}[name]
             reasons.append(
-                f"{len(off)} of {len(own)} blocks have a {label} from {min(off):.3g} to {max(off):.3g}, outside of the "
+                f"{len(off)} of {len(own)} blocks have a {name} from {min(off):.3g} to {max(off):.3g}, outside of the "
                 f"{low:.3g} to {high:.3g} that the baseline covers"
             )
     return left, reasons
+
+
+def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) -> tuple[list[bool], str]:
+    """Return True for each cell of a recording at a place that the baseline does not cover, and the reason.
+
+    A place is an angle of the output: lines that stand still beat with those that turn with the output. If the baseline covers
+    a revolution of the output without a gap, every place comes again.
+    """
+    ratio = 1.0 if run.side == "output" else run.ratio
+    turns = (
+        float(RATIOS[0]) if ratio is None else ratio
+    )  # of the shaft per revolution of the output; the smallest that makers offer
+    covered = _joined([(cell.first / turns, cell.last / turns) for cell in known])
+    if ratio is not None and any(last - first >= tau for first, last in covered):
+        return [False] * len(own), ""
+    elsewhere = [not _is_within(cell.first / turns, cell.last / turns, covered) for cell in own]
+    off = [cell for cell, is_elsewhere in zip(own, elsewhere, strict=True) if is_elsewhere]
+    if not off:
+        return elsewhere, ""
+    shown = 1.0 if ratio is None else turns
+    ends = min(cell.first for cell in off) / shown, max(cell.last for cell in off) / shown
+    ranges = " and ".join(f"{first * turns / shown:.3g} to {last * turns / shown:.3g}" for first, last in covered[:MAX_SHOWN])
+    more = f" and {len(covered) - MAX_SHOWN} more" if len(covered) > MAX_SHOWN else ""
+    unknown = (
+        "; the ratio is not known, by which places of the output come again: give --gear or --ratio" if ratio is None else ""
+    )
+    return elsewhere, (
+        f"{len(off)} of {len(own)} blocks are between {ends[0]:.3g} and {ends[1]:.3g} rad of the "
+        f"{'input' if ratio is None else 'output'}, outside of the {ranges}{more} that the baseline covers{unknown}"
+    )
+
+
+def _joined(ranges: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return ranges of the output angle [rad] without the gaps that count as none, in their order."""
+    joined: list[tuple[float, float]] = []
+    for first, last in sorted(ranges):
+        if joined and first - joined[-1][1] <= _margin(first, last):
+            joined[-1] = joined[-1][0], max(joined[-1][1], last)
+        else:
+            joined.append((first, last))
+    return joined
+
+
+def _is_within(first: float, last: float, covered: Sequence[tuple[float, float]]) -> bool:
+    return any(low - _margin(low, high) <= first and last <= high + _margin(low, high) for low, high in covered)
+
+
+def _margin(first: float, last: float) -> float:
+    return max(MIN_PLACE_MARGIN, MAX_PLACE_SHARE * (last - first))
 
 
 def _change(
@@ -250,7 +297,7 @@ def _change(
     fit = max(spread**2, noise) * expected.leverage(own)
     sigma = float(np.sqrt(min(shared, spread**2) + own_noise / len(own) + fit))
     change = amplitude - mean
-    reach = sigma * float(student.isf(0.5 * (1.0 - CONFIDENCE), freedom))
+    reach = sigma * float(student.isf(0.5 * (1.0 - CONFIDENCE_LEVEL), freedom))
     probability = min(1.0, tests * 2.0 * float(student.sf(abs(change) / sigma, freedom)))
     limit = sigma * float(student.isf(0.5 * allowed / tests, freedom))
     return Change(

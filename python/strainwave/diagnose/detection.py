@@ -16,9 +16,9 @@ from __future__ import annotations
 from math import inf, isfinite, sqrt
 
 MAX_SIGNAL_TO_NOISE = 1e6  # amplitude over standard deviation: beyond it noise does not matter
-CONFIDENCE = 0.95  # of intervals
+CONFIDENCE_LEVEL = 0.95  # of intervals
 FALSE_ALARM = 1e-3  # probability over all tests of a recording, if none is stated
-DETECTION = 0.9  # probability with which a line is detected that a recording shows
+DETECTION_PROBABILITY = 0.9  # of a line at the smallest amplitude that a recording shows
 
 
 def false_alarm_of(evidence: float, parts: int, freedom: float, tests: int = 1) -> float:
@@ -89,7 +89,7 @@ def needed_signal_to_noise(probability: float, false_alarm: float, freedom: floa
 
 
 def amplitude_interval(
-    amplitude: float, sigma: float, freedom: float = inf, confidence: float = CONFIDENCE
+    amplitude: float, sigma: float, freedom: float = inf, confidence: float = CONFIDENCE_LEVEL
 ) -> tuple[float, float]:
     """Return the confidence interval of the amplitude of a line.
 

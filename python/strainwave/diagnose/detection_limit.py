@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from math import hypot, inf
 
 from strainwave import Drive, arguments
-from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise
+from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 
 PROBE = ARCMINUTE  # rad: error of the first run; later ones have the limit itself
@@ -80,7 +80,7 @@ def detection_limit(
     sample_rate: float,
     noise: float,
     order: float,
-    probability: float = DETECTION,
+    probability: float = DETECTION_PROBABILITY,
     false_alarm: float = FALSE_ALARM,
     accuracy: float = MAX_CATALOGUE_AMPLITUDE,
     tests: int = 1,

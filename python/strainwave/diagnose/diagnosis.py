@@ -11,11 +11,11 @@ import numpy as np
 
 from strainwave import arguments
 from strainwave.diagnose.baseline import Comparison, baseline_of, compared
-from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise, threshold_of
+from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise, threshold_of
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current
 from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogue_life, condition, trend
 from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_orders
-from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
+from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.diagnose.response import error_response
 from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE
@@ -23,6 +23,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.messages import without_name
 from strainwave.orders.lines import Line
 from strainwave.orders.ripple import Ripple, ripple
+from strainwave.spline_orders import WAVE_ORDER
 
 Verdict = Literal["changed", "no change found", "insensitive", "not comparable", "lines found", "no line found"]
 
@@ -374,7 +375,7 @@ def _against_noise(
         there = [cell for cell in both if cell is not None]
         noisy = max(there, key=lambda cell: _threshold(cell, question.false_alarm, tests))
         threshold = _threshold(noisy, question.false_alarm, tests)
-        needed = noisy.sigma * needed_signal_to_noise(DETECTION, question.false_alarm, noisy.freedom, tests)
+        needed = noisy.sigma * needed_signal_to_noise(DETECTION_PROBABILITY, question.false_alarm, noisy.freedom, tests)
         per_error = response.per_error.get(each.per_input, nan)
         rows.append(
             OrderAgainstNoise(

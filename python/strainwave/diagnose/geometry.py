@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.diagnose.actuator_ramp import RUN_IN, ActuatorRamp
-from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise
+from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.inversion import (
     COMBINE,
     MICRON,
@@ -47,7 +47,7 @@ SHARES_OF_TILT = 11  # between eccentricity alone and tilt alone, at which the r
 MAX_TREND_SIGMA = 4.0  # a trend further from those of the drawn drives contradicts the set
 REFERENCE_ORDER = 2.0  # at which strain wave gears have most of their error
 MAX_MISFIT_RATIO = 4.0  # a way of sharing whose misfit is larger than the least by this factor is not named as possible
-LOBES = {
+WORDS_OF_SHARING = {
     "single": "one lobe carries",
     "mean": "both lobes share the load",
     "max": "the lobe further out carries",
@@ -192,7 +192,7 @@ def in_words(eccentricity: MisalignmentEstimate, tilt: MisalignmentEstimate, hei
     return (
         f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of "
         f"the housing of {_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta"
-        f"{generator} (95 %, if {LOBES[eccentricity.combine]})"
+        f"{generator} (95 %, if {WORDS_OF_SHARING[eccentricity.combine]})"
     )
 
 
@@ -337,7 +337,7 @@ def _spread(values: Complex) -> Array:
 def _sensitivity(measured: MeasuredOrders, gains: Complex, parts: CurrentPerError, error: float) -> Sensitivity:
     place = ORDERS.index(REFERENCE_ORDER)
     current = error * float(np.abs(gains[:, place].mean()))
-    needed = needed_signal_to_noise(DETECTION, FALSE_ALARM, measured.degrees, len(ORDERS))
+    needed = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, measured.degrees, len(ORDERS))
     resolved = needed * float(measured.noise[place])
     per_torque = error * abs(complex(parts.per_torque[place]))
     return Sensitivity(error, REFERENCE_ORDER, current, resolved, parts.torque, resolved / per_torque)

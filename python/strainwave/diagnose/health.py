@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.diagnose.baseline import Comparison
-from strainwave.diagnose.detection import CONFIDENCE
+from strainwave.diagnose.detection import CONFIDENCE_LEVEL
 from strainwave.files.gear_set import GearSet
 
 Array = NDArray[np.float64]
@@ -171,7 +171,7 @@ def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float)
     level = float(y.mean())
     freedom = len(x) - 2
     variance = float(((y - level - slope * (x - middle)) ** 2).sum()) / freedom
-    reach = float(student.isf(0.5 * (1.0 - CONFIDENCE), freedom))
+    reach = float(student.isf(0.5 * (1.0 - CONFIDENCE_LEVEL), freedom))
     last = float(x.max())
     crossing = middle + (threshold - level) / slope if slope > 0.0 else inf
     low, high = _fieller(slope, threshold - level, reach**2 * variance, len(x), spread)

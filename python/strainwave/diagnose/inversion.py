@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from strainwave import kinematic_error
 from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
-from strainwave.diagnose.detection import CONFIDENCE, false_alarm_of
+from strainwave.diagnose.detection import CONFIDENCE_LEVEL, false_alarm_of
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 COMBINE = ("single", "mean", "max")
-MICRON = 1e-6
+MICRON = 1e-6  # m
 ORDERS = (1.0, 2.0, 3.0, 4.0)
 NOISE_LINES = 14  # the nearest ones, from which the noise of an order is estimated
 SPECTRUM_MARGIN = 0.5  # order, by which the spectrum goes on beyond the highest one
@@ -102,14 +102,14 @@ class MisalignmentEstimate:
         """Half axes of the ellipse of 95 % confidence over standard deviations."""
         from scipy.stats import f
 
-        return float(np.sqrt(2.0 * f.ppf(CONFIDENCE, 2, self.degrees)))
+        return float(np.sqrt(2.0 * f.ppf(CONFIDENCE_LEVEL, 2, self.degrees)))
 
     @property
     def interval_factor(self) -> float:
         """Half width of an interval of 95 % over a standard deviation."""
         from scipy.stats import t
 
-        return float(t.ppf(0.5 + 0.5 * CONFIDENCE, self.degrees))
+        return float(t.ppf(0.5 + 0.5 * CONFIDENCE_LEVEL, self.degrees))
 
     @property
     def half_widths(self) -> tuple[float, float]:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.diagnose.refusals import WAVE_ORDER, JointRecording
+from strainwave.diagnose.refusals import JointRecording
 from strainwave.messages import listed
-from strainwave.spline_orders import gear_facts, spline_orders
+from strainwave.spline_orders import WAVE_ORDER, gear_facts, spline_orders, turning_spline_order
 
 MAX_HARMONIC = 12  # of an order, up to which a cause is named
 MULTIPLES = {3.0: "third harmonic", 4.0: "fourth harmonic"}  # of a crack; the lower ones need long blocks to be separated
@@ -85,7 +85,7 @@ def named_orders(
         "wave generator, second harmonic": 2.0 * WAVE_ORDER,
     }
     splines = spline_orders(kinematics)
-    passes = next((order for order in splines.values() if order != WAVE_ORDER), None)
+    passes = turning_spline_order(kinematics)
     against = {} if passes is None else {AGAINST_OTHER: passes}
     # a crack has multiples of the order of the flexspline, which is that of the wave generator if the flexspline is fixed
     cracked = {"wave generator": WAVE_ORDER} if splines.get("flexspline") == WAVE_ORDER else {}

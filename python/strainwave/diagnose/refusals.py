@@ -16,11 +16,11 @@ from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
 from strainwave.orders.ripple import MAX_PHASE_STEP, Side
 from strainwave.orders.shaft_pair import Pair, ratio_of
 from strainwave.orders.turning import evenly_turning
+from strainwave.spline_orders import WAVE_ORDER
 
 Array = NDArray[np.float64]
 
 EFFORTS = ("current", "input_torque", "torque", "joint_torque")  # in which lines are looked for: what the motor measures first
-WAVE_ORDER = 2.0  # of the wave generator: the main line of a strain wave gear per revolution of the input
 MIN_INPUT_REVOLUTIONS = 3.0  # revolutions of the input from end to end
 MIN_TRAVEL = 1e-3  # rad of the shaft: less is noise of an encoder at rest
 SLOW_SHARE = 0.05  # of the largest speed: slower samples count as rest

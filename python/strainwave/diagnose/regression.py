@@ -16,7 +16,7 @@ from strainwave.orders.smooth_part import MIN_GRAVITY_SPAN, MIN_SENSE_SHARE, flo
 
 Array = NDArray[np.float64]
 
-NEIGHBOURS = 16  # on each side of an order at most, from which the level of the noise is estimated
+MAX_NEIGHBOUR_LINES = 16  # on each side of an order, from which the level of its noise is estimated
 GUARD_LINES = 2  # next to an order on each side, into which it leaks where load or speed vary
 MIN_NEIGHBOURS = 6  # on each side at least, if the orders leave room
 NEIGHBOUR_REACH = 0.15  # of an order [1]: within it noise is taken to have one level
@@ -220,7 +220,7 @@ def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> 
     >>> neighbours_of(2.0, [2.0, 2.2], 10.0)[:4]
     [1.7, 2.3, 1.6, 2.4]
     """
-    reach = max(MIN_NEIGHBOURS, min(NEIGHBOURS, int(NEIGHBOUR_REACH * order * revolutions)))
+    reach = max(MIN_NEIGHBOURS, min(MAX_NEIGHBOUR_LINES, int(NEIGHBOUR_REACH * order * revolutions)))
     found = []
     for k in range(GUARD_LINES + 1, GUARD_LINES + reach + 1):
         for place in (order - k / revolutions, order + k / revolutions):

@@ -71,8 +71,7 @@ class Cell:
         freedom: degrees of freedom of the level of the noise
         speed: mean size of the speed there [rad/s; rad per sample if no time is known]
         load: mean load there, in the unit of the column
-        place: mean angle there [rad]
-        turned: angle there from end to end [rad]
+        first, last: ends of the range of the angle there [rad]
     """
 
     amplitude: float
@@ -80,8 +79,8 @@ class Cell:
     freedom: float
     speed: float
     load: float
-    place: float
-    turned: float
+    first: float
+    last: float
 
 
 def joint_motion(run: JointRecording) -> JointMotion:
@@ -221,8 +220,8 @@ def _block_cells(
             freedom=floor.freedom(orders[k] * speed / tau),
             speed=speed / motion.step,
             load=float(np.average(shaft.load[here], weights=share)),
-            place=float(np.average(shaft.own.angle[here], weights=share)),
-            turned=float(np.ptp(shaft.own.angle[here])),
+            first=float(shaft.own.angle[here].min()),
+            last=float(shaft.own.angle[here].max()),
         )
     return cells
 

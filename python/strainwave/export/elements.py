@@ -33,8 +33,8 @@ DEFAULT_INPUT_SPEED = 200.0  # rad/s, of a gear without a rating
 CREEP_SHARE = 0.01  # of the largest speed, from which friction is fitted
 FITTED_SPEEDS = 400  # in each sense
 FITTED_ANGLES = 61  # over a turn of the output
-SEGMENTS = 12  # of a spring without segments of its own
-SLIPS = 16  # elements of a hysteresis that is fitted, of which least squares keeps some
+FITTED_SEGMENTS = 12  # of the line that stands for a curved spring
+MAX_FITTED_SLIPS = 16  # of a hysteresis that is fitted; least squares keeps some of them
 MIN_SLIP_SHARE = 2e-3  # of the largest twist, at which the first of them slips
 LOSS_WEIGHT = 1e3  # of the loss per cycle over that of a torque of the loop
 LOOP_POINTS = 400  # of a branch of the loop in which hysteresis is compared
@@ -311,7 +311,7 @@ def _springs(law: Any, twist: float) -> tuple[Spring, ...]:
             half = 0.5 * float(law.clearance)
             return tuple(replace(spring, gap=spring.gap + half) for spring in _springs(law.law, twist - half))
         case _:
-            knots = np.linspace(0.0, twist, SEGMENTS + 1)
+            knots = np.linspace(0.0, twist, FITTED_SEGMENTS + 1)
             slopes = np.diff(np.asarray(law.torque(knots))) / np.diff(knots)
             return _stiffening(knots[:-1].tolist(), np.maximum.accumulate(slopes).tolist())
 
@@ -331,7 +331,7 @@ def _slips(law: Any, twist: float) -> tuple[tuple[float, float], ...]:
     target = np.asarray(law.trace(path))[loop]
     if not target.any():
         return ()
-    reach = twist * np.geomspace(MIN_SLIP_SHARE, 1.0, SLIPS)
+    reach = twist * np.geomspace(MIN_SLIP_SHARE, 1.0, MAX_FITTED_SLIPS)
     units = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[float(slip)]) for slip in reach]
     traces = np.stack([np.asarray(unit.trace(path))[loop] for unit in units], axis=1)
     energy = np.trapezoid(traces, path[loop], axis=0) * LOSS_WEIGHT / twist

@@ -23,7 +23,7 @@ from strainwave.tuning.drawn import drawn_gears
 
 ROTOR_MASS = 1e-6  # kg: MuJoCo refuses a body that moves without one
 ROTOR_INERTIA = 1e-9  # kg.m², at least, across the axis
-TIMESTEP = 5e-4  # s
+TIMESTEP_ALONE = 5e-4  # s, of a model that has the gear and an inertia only
 DEFAULT_TIMESTEP = 2e-3  # s, of a model that states none
 STIFF_FRICTION = "0.9999 0.9999 0.001 0.5 2"  # impedance of dry friction: by default MuJoCo gives 5 to 10 % of it away
 MAX_MODEL_BYTES = 64 << 20  # of a robot's file
@@ -126,7 +126,7 @@ def _numbers(model: str) -> dict[str, float]:
 def _alone(elements: GearElements, actuator: Any, load_inertia: float, name: str) -> str:
     root = Element("mujoco", model=name)
     ElementTree.SubElement(root, "compiler", angle="radian")
-    ElementTree.SubElement(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity="0 0 0")
+    ElementTree.SubElement(root, "option", timestep=repr(TIMESTEP_ALONE), integrator="implicitfast", gravity="0 0 0")
     world = ElementTree.SubElement(root, "worldbody")
     link = ElementTree.SubElement(world, "body", name=f"{name}_link")
     spread = " ".join([repr(load_inertia)] * 3)

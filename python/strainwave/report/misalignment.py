@@ -130,11 +130,11 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
 
 def _fits(found: MisalignmentStudy) -> Iterator[dict[str, str]]:
     for combine, fit in found.pure.fits.items():
-        told = {name: microns(value) for name, value in fit.told.items()}
+        determined = {name: microns(value) for name, value in fit.determined.items()}
         yield {
             "name": plots.WORDS[combine],
-            "m": f"{told['m_x']}, {told['m_y']}",
-            "c": told.get("c_x", ""),
+            "m": f"{determined['m_x']}, {determined['m_y']}",
+            "c": determined.get("c_x", ""),
             "rms": arcmin(fit.rms),
             "explained": percent(fit.explained),
             "possible": "" if fit.possible else "not possible: the lobes would leave the teeth",

@@ -129,7 +129,7 @@ class Recovery:
 
     @property
     def m(self) -> tuple[float, float]:
-        """What was put in, of what can be told [m]."""
+        """True values of the parameters that a record determines [m]."""
         x, y = self.law.eccentricity
         return float(x), float(y)
 

@@ -27,15 +27,15 @@ class ErrorFit:
     """`Misalignment` with one `combine`, fitted to a curve.
 
     Attributes:
-        law: what was found; of its parameters only those in `told` are determined
-        told: what the curve tells, by name: m_x and m_y [m], and c_x [m] where the lobe further out carries
+        law: fitted; of its parameters only those in `determined` follow from the curve
+        determined: parameters that the curve determines, by name: m_x and m_y [m], and c_x [m] if the lobe further out carries
         curve: the law at the angles of the measured curve, without mean [rad], shape (n,)
         rms: of what the law leaves unexplained [rad]
         explained: share of the variance of the measured curve that the law explains
     """
 
     law: Any
-    told: Mapping[str, float]
+    determined: Mapping[str, float]
     curve: Array
     rms: float
     explained: float
@@ -43,7 +43,7 @@ class ErrorFit:
     @property
     def size(self) -> float:
         """How large m is [m]."""
-        return float(np.hypot(self.told["m_x"], self.told["m_y"]))
+        return float(np.hypot(self.determined["m_x"], self.determined["m_y"]))
 
     @property
     def possible(self) -> bool:
@@ -120,10 +120,10 @@ def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:
     ).x
     rest = curve - model(found)
     variance = float(np.mean(curve**2))
-    told = dict(zip(("m_x", "m_y", "c_x"), (MICRON * found).tolist(), strict=False))
+    determined = dict(zip(("m_x", "m_y", "c_x"), (MICRON * found).tolist(), strict=False))
     return ErrorFit(
-        law=displaced(law, (told["m_x"], told["m_y"]), told.get("c_x", 0.0)),
-        told=told,
+        law=displaced(law, (determined["m_x"], determined["m_y"]), determined.get("c_x", 0.0)),
+        determined=determined,
         curve=model(found),
         rms=float(np.sqrt(np.mean(rest**2))),
         explained=1.0 - float(np.mean(rest**2)) / variance if variance else 0.0,

@@ -93,6 +93,49 @@ def test_motion_that_the_baseline_does_not_contain_is_not_compared() -> None:
     assert any("speed from" in each and "not compared" in each for each in comparison.remarks)
 
 
+def beating(seed: int, begin: float, turns: float = 8.0, ratio: float | None = 100.0) -> JointMotion:
+    """A motor to and fro from an angle [rad of the input] on, with lines of both splines alike."""
+    time = np.arange(0.0, DURATION, 1.0 / RATE)
+    angle = begin + turns * tau * 0.5 * (1.0 - np.cos(tau * 4.0 * time / DURATION))
+    current = 0.4 * np.sign(np.gradient(angle)) + 0.1 * np.cos(2.0 * angle) + 0.1 * np.cos(2.02 * angle)
+    current += np.random.default_rng(seed).normal(0.0, NOISE, len(time))
+    columns = {"time": time, "input_angle": angle, "current": current}
+    recording = sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
+    return joint_motion(usable(recording, f"run {seed}", ratio=ratio))
+
+
+def test_a_healthy_joint_at_another_place_of_the_output_is_not_compared() -> None:
+    """Orders 2 and 2.02 beat over the output: 1.2 rad further the ripple is smaller, without any change of the joint."""
+    days = [beating(seed, 0.0) for seed in range(3)]
+    moved = compared(baseline_of(days, ORDERS), beating(9, 120.0))
+    assert not moved.changes
+    assert any("blocks are between 1.2 and 1.7 rad of the output, outside of the 0 to 0.503" in each for each in moved.remarks)
+    near = compared(baseline_of(days, ORDERS), beating(9, 0.1))
+    assert near.changes
+    assert not near.alarms
+
+
+def test_two_distant_places_cover_no_revolution_between_them() -> None:
+    days = [beating(seed, begin) for seed, begin in enumerate((0.0, 0.0, 700.0))]
+    between = compared(baseline_of(days, ORDERS), beating(9, 120.0))
+    assert not between.changes
+    assert any("outside of the 0 to 0.503 and 7 to 7.5 that" in each for each in between.remarks)
+
+
+def test_a_baseline_over_a_whole_revolution_of_the_output_covers_every_place() -> None:
+    days = [beating(seed, 0.0, turns=105.0) for seed in range(2)]
+    assert compared(baseline_of(days, ORDERS), beating(9, 900.0, turns=105.0)).changes
+
+
+def test_without_a_ratio_places_of_the_input_do_not_come_again() -> None:
+    days = [beating(seed, 0.0, turns=105.0, ratio=None) for seed in range(2)]
+    near = compared(baseline_of(days, ORDERS), beating(9, 0.1, turns=105.0, ratio=None))
+    assert near.changes
+    far = compared(baseline_of(days, ORDERS), beating(9, 900.0, turns=105.0, ratio=None))
+    assert not far.changes
+    assert any("rad of the input" in each and "the ratio is not known" in each for each in far.remarks)
+
+
 def test_several_days_of_a_baseline_are_the_spread() -> None:
     """Ripple that is another each day by 20 %: one day as a baseline shows less of it than five."""
     days = [joint(10 + k, ripple=0.1 * (1.0 + 0.2 * (-1.0) ** k)) for k in range(6)]

@@ -9,7 +9,7 @@ import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
 from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
-from strainwave.diagnose.detection import DETECTION, FALSE_ALARM, needed_signal_to_noise
+from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current, ramp_of
 from strainwave.diagnose.inversion import displaced, tilted
 from strainwave.diagnose.possible_drives import PossibleDrives, trend
@@ -140,7 +140,7 @@ def test_the_least_amplitude_is_detected_as_often_as_stated() -> None:
     noise = chance.standard_normal((2, 200_000))
     threshold = np.sqrt(-2.0 * np.log(1e-3))
     assert np.mean(np.hypot(*noise) > threshold) == pytest.approx(1e-3, rel=0.25)
-    least = needed_signal_to_noise(DETECTION, FALSE_ALARM, np.inf)
+    least = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, np.inf)
     assert np.mean(np.hypot(noise[0] + least, noise[1]) > threshold) == pytest.approx(0.9, abs=0.004)
 
 

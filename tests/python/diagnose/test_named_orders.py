@@ -74,9 +74,9 @@ def test_without_teeth_no_order_is_excluded_from_the_splines() -> None:
     assert "the spline that turns, a bearing" in turning
 
 
-def changed(lines: dict[float, float]) -> RunDiagnosis:
-    healthy = [record(seed) for seed in range(3)]
-    (found,) = diagnosed([record(9, lines=lines)], Question(SETS["circular_spline"], 100.0), baseline=healthy).runs
+def changed(lines: dict[float, float], healthy: dict[float, float] | None = None) -> RunDiagnosis:
+    days = [record(seed, lines=healthy) for seed in range(3)]
+    (found,) = diagnosed([record(9, lines=lines)], Question(SETS["circular_spline"], 100.0), baseline=days).runs
     assert found.verdict == "changed"
     return found
 
@@ -96,3 +96,8 @@ def test_an_order_of_a_crack_is_one_where_the_recording_separates_it() -> None:
     assert found.comparison is not None
     assert {round(each.order, 2) for each in found.comparison.alarms} == {6.06}
     assert "a crack of the flexspline" in found.causes[0]
+
+
+def test_a_change_beside_a_line_of_the_healthy_joint_is_of_either_spline() -> None:
+    found = changed({6.0: 0.03, 6.06: 0.2}, healthy={6.0: 0.03})
+    assert "of either spline, which this record does not separate" in found.causes[0]

@@ -162,7 +162,7 @@ def test_a_curve_of_the_law_itself_is_found_again(found: MisalignmentStudy) -> N
     assert pure.source == "curve.csv"
     assert pure.best == "max"
     fit = pure.fits["max"]
-    m = abs(complex(fit.told["m_x"], fit.told["m_y"]))
+    m = abs(complex(fit.determined["m_x"], fit.determined["m_y"]))
     assert m == pytest.approx(abs(30e-6 + 10e-6j) * np.tan(radians(20.0)) / np.tan(radians(30.0)), rel=2e-3)
     assert fit.explained > 0.9999
 
@@ -173,9 +173,9 @@ def test_a_fit_finds_what_a_curve_tells(combine: str) -> None:
     law = LAW.replace(combine=combine)
     curve = displaced(law, (12e-6, -9e-6), c_x=3e-6 if combine == "max" else 0.0).error(angle)
     fit = fitted(angle, curve - turn_mean(angle, curve), law)
-    sign = 1.0 if combine == "single" or fit.told["m_x"] > 0.0 else -1.0
-    assert [sign * fit.told["m_x"], sign * fit.told["m_y"]] == pytest.approx([12e-6, -9e-6], rel=1e-5)
-    assert abs(fit.told.get("c_x", 3e-6)) == pytest.approx(3e-6, rel=1e-4)
+    sign = 1.0 if combine == "single" or fit.determined["m_x"] > 0.0 else -1.0
+    assert [sign * fit.determined["m_x"], sign * fit.determined["m_y"]] == pytest.approx([12e-6, -9e-6], rel=1e-5)
+    assert abs(fit.determined.get("c_x", 3e-6)) == pytest.approx(3e-6, rel=1e-4)
     assert fit.rms < 1e-9
 
 

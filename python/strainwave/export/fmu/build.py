@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
+from inspect import signature
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -26,10 +27,11 @@ from strainwave.messages import quoted
 from strainwave.native.compilers import FLAGS, Compiler, NoCompilerError, find_compiler, zig_program
 from strainwave.native.static_type import in_words
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, fine_enough
+from strainwave.simulation.run import simulate
 from strainwave.simulation.signals import load_input
 
 VERSIONS = (2, 3)
-STEP = 2e-4  # s, the internal step of a drive that needs no shorter one
+DEFAULT_STEP = signature(simulate).parameters["dt"].default  # s
 MAX_NAME_LENGTH = 60  # characters of a file name
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal drives have equal FMUs
 LIBRARIES = "-Wl,--as-needed", "-Wl,-z,defs", "-lm"  # no C++ library, and no symbol without a library
@@ -145,7 +147,7 @@ def default_step(drive: Drive) -> float:
     >>> default_step(Drive())
     0.0002
     """
-    step = float(fine_enough(drive, STEP, MIN_STEP))
+    step = float(fine_enough(drive, DEFAULT_STEP, MIN_STEP))
     stiffest = _core.bristle_frequency(drive)
     for _ in range(MAX_HALVINGS):
         if step * stiffest <= FASTEST_ON_BRISTLES:

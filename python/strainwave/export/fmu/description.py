@@ -23,7 +23,7 @@ DISPLAY_UNITS = {
 
 @dataclass(frozen=True)
 class Description:
-    """What both versions of FMI describe of an FMU.
+    """Content of the description of an FMU that both versions of FMI have.
 
     Attributes:
         name, identifier: of the model, and of its files

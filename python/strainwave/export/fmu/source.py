@@ -7,6 +7,7 @@ from functools import partial
 from hashlib import sha256
 from importlib import resources
 from math import isfinite
+from sys import float_info
 
 from strainwave import Drive, _core, structure
 from strainwave.export import cplusplus
@@ -20,7 +21,6 @@ HEADERS_OF_VERSION = {
     3: ("fmi3FunctionTypes.h", "fmi3Functions.h", "fmi3PlatformTypes.h"),
 }
 DIGEST_LENGTH = 32  # hexadecimal digits of a token
-UNBOUNDED = 1.7976931348623157e308  # as the C++ headers write it
 
 
 def sources(drive: Drive, found: list[Variable], version: int) -> tuple[dict[str, str], str]:
@@ -110,4 +110,4 @@ def _text(text: str) -> str:
 
 
 def _bound(bound: float) -> str:
-    return repr(bound if isfinite(bound) else UNBOUNDED if bound > 0 else -UNBOUNDED)
+    return repr(bound if isfinite(bound) else float_info.max if bound > 0 else -float_info.max)
