@@ -10,10 +10,11 @@
 """
 
 from strainwave.export.bam_parameters import bam, read_bam
-from strainwave.export.exported import Exported, Loss
+from strainwave.export.exported import Exported
 from strainwave.export.firmware import Firmware, firmware
 from strainwave.export.fmu import fmu
 from strainwave.export.joint_numbers import joint
 from strainwave.export.mujoco import mjcf
+from strainwave.tuning.loss import Loss
 
 __all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "read_bam"]

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, nnls
 
 from strainwave import Drive, Gear, friction, hysteresis, loads, motor, stiffness
-from strainwave.export.exported import Loss
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.simulation import scenario
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import simulate
+from strainwave.tuning.loss import Loss
 from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]

@@ -5,40 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Loss:
-    """Difference between an exported model and the gear.
-
-    Attributes:
-        quantity: what differs
-        rms, largest: of the difference, in `unit`
-        unit: of both
-        size: of the quantity itself in the same unit, to compare with
-        over: the loop, the speeds or the motion over which they are taken
-    """
-
-    quantity: str
-    rms: float
-    largest: float
-    unit: str
-    size: float
-    over: str
-
-    @classmethod
-    def between(cls, quantity: str, difference: Array, unit: str, size: float, over: str) -> Loss:
-        """Return the loss with root mean square and largest size of differences."""
-        return cls(quantity, float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max()), unit, size, over)
-
-    @property
-    def share(self) -> float:
-        """Root mean square over the size; not a number if that is zero."""
-        return self.rms / self.size if self.size else np.nan
+from strainwave.tuning.loss import Loss
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,11 @@ TIMESTEP_ALONE = 5e-4  # s, of a model that has the gear and an inertia only
 DEFAULT_TIMESTEP = 2e-3  # s, of a model that states none
 STIFF_FRICTION = "0.9999 0.9999 0.001 0.5 2"  # impedance of dry friction: by default MuJoCo gives 5 to 10 % of it away
 MAX_MODEL_BYTES = 64 << 20  # of a robot's file
-RANDOMISED = ("armature", "frictionloss", "damping", "stiffness", "springlength", "springyield", "resistance", "motorconst",
-              "inductance", "cogging", "lugre", "gear")  # fmt: skip # attributes that drawn gears differ in
-PLACE = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")  # attributes of a body that place it
+RANDOMISED_ATTRIBUTES = (  # that drawn gears differ in
+    *("armature", "frictionloss", "damping", "stiffness", "springlength", "springyield"),
+    *("resistance", "motorconst", "inductance", "cogging", "lugre", "gear"),
+)
+PLACING_ATTRIBUTES = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")  # of a body
 
 Element = ElementTree.Element
 
@@ -62,7 +64,7 @@ def mjcf(
 
     >>> import strainwave as sw
     >>> found = mjcf(sw.GearSet.read("csg-20-100"), load_inertia=1.2)
-    >>> [loss.quantity for loss in found.losses if loss.share > 1e-9]
+    >>> [loss.quantity for loss in found.losses if loss.rms_share > 1e-9]
     ['transmission error of a run', 'motor torque of a run']
     >>> found.left_out[0].split(";")[0]
     'kinematic error: 58.2 urad at the output'
@@ -79,7 +81,19 @@ def mjcf(
     if draws:
         files["randomisation.json"] = _randomisation(gear_set, elements, arguments.whole("draws", draws, 2), seed, name)
     remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
-    return Exported("mjcf", gear_set.name, files, {}, elements.losses(gear_set.gear), elements.left_out, remarks)
+    left_out = (*elements.left_out, *_left_out_of_motor(gear_set.motor))
+    return Exported("mjcf", gear_set.name, files, {}, elements.losses(gear_set.gear), left_out, remarks)
+
+
+def _left_out_of_motor(part: Any) -> Iterator[str]:
+    """Yield what of a motor has no element."""
+    if isinstance(part, motor.DC):
+        if part.brush_drop:
+            yield f"voltage of the brushes: {float(part.brush_drop):.3g} V"
+        if part.resistance_rise:
+            yield "rise of the resistance with temperature"
+    elif part is not None and not isinstance(part, motor.CurrentSource | motor.TorqueSource):
+        yield f"the motor {part.name}: the actuator is a torque at the input"
 
 
 def _inertia(gear_set: GearSet, given: float | None) -> float:
@@ -118,7 +132,7 @@ def _numbers(model: str) -> dict[str, float]:
             continue
         for key, value in each.attrib.items():
             words = value.split()
-            if key in RANDOMISED:
+            if key in RANDOMISED_ATTRIBUTES:
                 found |= {f"{each.attrib['name']}.{key}[{place}]": float(word) for place, word in enumerate(words)}
     return found
 
@@ -201,7 +215,7 @@ def add_gear(
     """
     option = root.find("option")
     timestep = DEFAULT_TIMESTEP if option is None else float(option.get("timestep", DEFAULT_TIMESTEP))
-    place = {key: value for key, value in link.attrib.items() if key in PLACE}
+    place = {key: value for key, value in link.attrib.items() if key in PLACING_ATTRIBUTES}
     rotor = ElementTree.SubElement(parent, "body", {"name": f"{name}_rotor", **place})
     inertia = " ".join([repr(ROTOR_INERTIA)] * 3)
     ElementTree.SubElement(rotor, "inertial", pos="0 0 0", mass=repr(ROTOR_MASS), diaginertia=inertia)

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from importlib import metadata
 from math import isfinite
 
-from strainwave.export.exported import Exported, Loss
+from strainwave.export.exported import Exported
 from strainwave.report import typeset
 from strainwave.report.rig_files import results_json
+from strainwave.tuning.loss import Loss
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
-NUMBERS = "export.json"
-MIN_SHARE = 1e-9  # a smaller loss is rounding
+NUMBERS_FILE = "export.json"
+MIN_STATED_SHARE = 1e-9  # a smaller loss is rounding
 
 
 def export_summary(found: Exported) -> str:
@@ -36,10 +37,12 @@ def loss_words(loss: Loss) -> str:
     >>> print(words.replace(NO_BREAK_SPACE, " "))
     loss per cycle: 1 % (1 mJ), over a torsion loop to 100 N.m
     """
-    if isfinite(loss.share) and loss.share < MIN_SHARE:
+    if isfinite(loss.rms_share) and loss.rms_share < MIN_STATED_SHARE:
         return f"{loss.quantity}: none, over {loss.over}"
     largest = "" if loss.largest <= loss.rms else f", at most {typeset.quantity(loss.largest, loss.unit)}"
-    return f"{loss.quantity}: {100.0 * loss.share:.2g} % ({typeset.quantity(loss.rms, loss.unit)}{largest}), over {loss.over}"
+    return (
+        f"{loss.quantity}: {100.0 * loss.rms_share:.2g} % ({typeset.quantity(loss.rms, loss.unit)}{largest}), over {loss.over}"
+    )
 
 
 def export_files(found: Exported) -> dict[str, str | bytes]:
@@ -49,8 +52,8 @@ def export_files(found: Exported) -> dict[str, str | bytes]:
         "kind": found.kind,
         "gear": found.gear,
         "numbers": {name: {"value": value, "unit": unit} for name, (value, unit) in found.numbers.items()},
-        "losses": [vars(loss) | {"share": loss.share} for loss in found.losses],
+        "losses": [vars(loss) | {"share": loss.rms_share} for loss in found.losses],
         "left_out": list(found.left_out),
         "remarks": list(found.remarks),
     }
-    return {**found.files, NUMBERS: results_json(content)}
+    return {**found.files, NUMBERS_FILE: results_json(content)}

@@ -27,6 +27,7 @@ from strainwave.tuning.candidates import USUAL_SPEED
 from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
 from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
+from strainwave.tuning.loss import Loss
 from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
@@ -45,34 +46,6 @@ MAX_SPEED = 1e6  # rad/s
 MAX_LOAD = 1e9  # N.m
 MIN_RATED_TORQUE = 1e-9  # N.m
 MAX_PERMILLE = 32767  # that a 16 bit number holds
-
-
-@dataclass(frozen=True)
-class Loss:
-    """Difference between what a slot applies and what the full model asks for.
-
-    Attributes:
-        rms, largest: the difference, in `unit`
-        unit: of both
-        friction: root mean square of the friction in the same unit, to compare with
-        over: the range of speeds, angles or motions over which they are taken
-    """
-
-    rms: float
-    largest: float
-    unit: str
-    friction: float
-    over: str
-
-    @property
-    def rms_share(self) -> float:
-        """Root mean square over that of the friction; not a number if there is none."""
-        return self.rms / self.friction if self.friction else np.nan
-
-    @property
-    def largest_share(self) -> float:
-        """Largest difference over the root mean square of the friction; not a number if there is none."""
-        return self.largest / self.friction if self.friction else np.nan
 
 
 @dataclass(frozen=True)
@@ -346,7 +319,9 @@ class FullFriction:
     def loss(self, applied: Array) -> Loss:
         """Return the loss of what a slot applies at the speeds; both senses weigh the same."""
         difference = self.torque - applied[:, np.newaxis]
-        return Loss(self._rms(difference), float(np.abs(difference).max()), self.unit, self._rms(self.torque), self.over)
+        return Loss(
+            "friction", self._rms(difference), float(np.abs(difference).max()), self.unit, self._rms(self.torque), self.over
+        )
 
     def _rms(self, values: Array) -> float:
         """Return the root mean square over the speeds, by trapezoids, and over the angles."""
@@ -472,7 +447,14 @@ def anticogging_map(request: Request) -> Slot:
     applied = np.interp(fine, fine[::FINER], values, period=2.0 * np.pi)[:, np.newaxis]
     over = f"{turns} turns of the input at {speed:.3g} rad/s under {request.load:g} N.m"
     loss, other = (
-        Loss(_rms(each.ripple - applied), float(np.abs(each.ripple - applied).max()), request.unit, _rms(each.friction), over)
+        Loss(
+            "ripple",
+            _rms(each.ripple - applied),
+            float(np.abs(each.ripple - applied).max()),
+            request.unit,
+            _rms(each.friction),
+            over,
+        )
         for each in (there, back)
     )
     column = "torque" if request.unit == "N.m" else "current"
@@ -534,6 +516,7 @@ def torque_offset(request: Request) -> Slot:
         )
     begin, end = sent[:-1] - wanted[:-1], sent[:-1] - wanted[1:]  # held while the torque moves in a line
     loss = Loss(
+        "torque",
         float(np.sqrt(np.mean((begin**2 + begin * end + end**2) / 3.0))),
         float(np.maximum(np.abs(begin), np.abs(end)).max()),
         "permille",

@@ -14,7 +14,7 @@ MOTOR = sw.motor.CurrentSource(torque_constant=0.08, inertia=5e-5)
 RATIO = 100.0
 
 
-def written(law, tmp_path=None) -> dict:
+def written(law) -> dict:
     gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=RATIO), friction_input=law, input_inertia=1e-5)
     gear_set = GearSet.of(sw.Drive(gear=gear, motor=MOTOR), name="test", source="test")
     return json.loads(bam(gear_set, max_torque=100.0).files["bam.json"])

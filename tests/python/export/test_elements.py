@@ -8,7 +8,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.export.elements import GearElements, Spring, friction_losses
-from strainwave.export.exported import Loss
+from strainwave.tuning.loss import Loss
 
 hysteresis, stiffness = sw.hysteresis, sw.stiffness
 MAX_TORQUE, MAX_SPEED = 40.0, 200.0
@@ -35,7 +35,7 @@ def torsion_losses(law) -> list[Loss]:
 
 def friction_share(gear: sw.Gear) -> float:
     (loss,) = friction_losses(gear, MAX_SPEED, elements(gear).friction)
-    return loss.share
+    return loss.rms_share
 
 
 @given(spring=springs, slip=slips, clearance=st.floats(0.0, 1e-4))
@@ -56,7 +56,7 @@ def test_springs_and_maxwell_elements_are_exact(spring, slip, clearance):
     ],
 )
 def test_other_hysteresis_keeps_width_and_loss_of_the_loop(law):
-    whole, half = np.split(np.array([loss.share for loss in torsion_losses(law)]), 2)
+    whole, half = np.split(np.array([loss.rms_share for loss in torsion_losses(law)]), 2)
     assert whole.max() < 0.01
     assert half.max() < 0.05
 
@@ -122,7 +122,7 @@ def test_a_run_of_a_gear_of_elements_alone_loses_nothing():
         damping=3.0,
         friction_input=sw.friction.Coulomb(coulomb=0.05, viscous=3e-4),
     )
-    shares = {loss.quantity: loss.share for loss in elements(gear).run_losses(gear)}
+    shares = {loss.quantity: loss.rms_share for loss in elements(gear).run_losses(gear)}
     assert len(shares) == 2
     assert max(shares.values()) < 1e-9
 

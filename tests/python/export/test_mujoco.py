@@ -137,3 +137,19 @@ def test_a_robot_that_cannot_have_the_gear_is_refused(model, joint, message):
 def test_a_gear_alone_needs_an_inertia():
     with pytest.raises(ValueError, match="load_inertia"):
         mjcf(GearSet.read("csg-20-100"))
+
+
+def test_the_cogging_of_a_motor_has_its_sign_and_order():
+    part = sw.motor.DC(resistance=0.5, torque_constant=0.1, back_emf=0.1, inertia=5e-5, cogging_torque=0.02, cogging_order=24.0)
+    gear_set = GearSet.of(sw.Drive(motor=part, load=sw.loads.Inertia(inertia=INERTIA)), name="test", source="test")
+    model = mujoco.MjModel.from_xml_string(mjcf(gear_set, max_torque=100.0).files["gear.xml"])
+    data = mujoco.MjData(model)
+    data.joint("gear_input").qpos[0] = 0.03
+    mujoco.mj_forward(model, data)
+    assert data.actuator_force[0] == pytest.approx(0.02 * np.sin(24.0 * 0.03))  # as added_to in motor/cogging.hpp
+
+
+def test_what_a_motor_has_no_element_for_is_named():
+    part = sw.motor.BrushlessDC(resistance=0.5, torque_constant=0.1, inertia=5e-5)
+    found = mjcf(GearSet.read("csg-20-100").with_parts(motor=part, source="test"), load_inertia=INERTIA)
+    assert "the motor brushless_dc: the actuator is a torque at the input" in found.left_out

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.export.exported import Loss
 from strainwave.export.fmu.variables import Variable, recorded
 from strainwave.simulation import scenario, signals
 from strainwave.simulation.run import Run, simulate
+from strainwave.tuning.loss import Loss
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

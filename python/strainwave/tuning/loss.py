@@ -1,0 +1,45 @@
+"""Loss of a form of a gear that another program takes: how far it is from the full model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Loss:
+    """Difference between the numbers that another program takes and the full model of the gear.
+
+    Attributes:
+        quantity: what differs
+        rms, largest: of the difference, in `unit`
+        unit: of both
+        size: of the quantity itself in the same unit, to compare with
+        over: the loop, the speeds or the motion over which they are taken
+    """
+
+    quantity: str
+    rms: float
+    largest: float
+    unit: str
+    size: float
+    over: str
+
+    @classmethod
+    def between(cls, quantity: str, difference: Array, unit: str, size: float, over: str) -> Loss:
+        """Return the loss with root mean square and largest size of differences."""
+        return cls(quantity, float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max()), unit, size, over)
+
+    @property
+    def rms_share(self) -> float:
+        """Root mean square over the size; not a number if that is zero."""
+        return self.rms / self.size if self.size else np.nan
+
+    @property
+    def largest_share(self) -> float:
+        """Largest difference over the size; not a number if that is zero."""
+        return self.largest / self.size if self.size else np.nan
