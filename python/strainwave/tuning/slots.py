@@ -447,8 +447,7 @@ def anticogging_map(request: Request) -> Slot:
     applied = np.interp(fine, fine[::FINER], values, period=2.0 * np.pi)[:, np.newaxis]
     over = f"{turns} turns of the input at {speed:.3g} rad/s under {request.load:g} N.m"
     loss, other = (
-        Loss.between("ripple", each.ripple - applied, request.unit, _rms(each.friction), over)
-        for each in (there, back)
+        Loss.between("ripple", each.ripple - applied, request.unit, _rms(each.friction), over) for each in (there, back)
     )
     column = "torque" if request.unit == "N.m" else "current"
     table = Recording({"input_angle": fine[::FINER], column: values}, {"input_angle": "rad", column: request.unit})
