@@ -60,7 +60,7 @@ def modelled(gear: sw.Gear, kinematics: Any) -> sw.Gear:
     """The gear of a model with these kinematics; without its error, whose slope may be too steep for them."""
     parts = {name: suited(getattr(gear, name), kinematics) for name in SUITED}
     if type(parts["stiffness"]) is sw.stiffness.MultiCompliance and abs(kinematics.ratio) < 1.0:
-        parts["stiffness"] = sw.stiffness.Linear()  # it takes no reduction below 1
+        parts["stiffness"] = made(sw.stiffness.Linear)  # that spring takes no reduction below 1
     return gear.replace(kinematics=kinematics, **(parts | {"kinematic_error": sw.kinematic_error.Fourier()}))
 
 
