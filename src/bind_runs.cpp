@@ -188,28 +188,25 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
     const Parts parts = parts_of(drive);
     check_numbers(parts, numbers);
     check_recorded(drive, recorded);
-    const kernel::Variation variation{numbers.data(), numbers.size(), values.data(), values.shape(1)};
-    const Start start = start_from(known, variation.members);
-    if (out.shape(0) != recorded.size() || out.shape(1) != variation.members || out.shape(2) != request.kept + 1)
+    const Start start = start_from(known, values.shape(1));
+    const Members members{drive,
+                          description_of<ParameterDrive>(),
+                          {numbers.data(), numbers.size(), values.data(), values.shape(1)},
+                          start,
+                          request.schedule.inputs,
+                          place_of_error(layout_of(drive, parts.laws))};
+    const std::size_t count = values.shape(1);
+    if (out.shape(0) != recorded.size() || out.shape(1) != count || out.shape(2) != request.kept + 1)
         throw nb::value_error("outputs of m members have shape (recorded, m, 1 + kept)");
-    const Ensemble ensemble{drive,
-                            description_of<ParameterDrive>(),
-                            variation,
-                            start,
-                            request.schedule,
-                            recorded,
-                            max_rate,
-                            out.data(),
-                            request.kept + 1,
-                            place_of_error(layout_of(drive, parts.laws))};
+    const Ensemble ensemble{members, request.schedule, recorded, max_rate, out.data(), request.kept + 1};
     const kernel::Table kernel = kernel_with(&kernel::Table::run_members, parts.laws);
     const Pausing pausing(progress);
     const std::vector<MemberResult> results = [&] {
         nb::gil_scoped_release free;
         return run_ensemble(kernel, ensemble, threads, std::cref(pausing));
     }();
-    auto sound = array<bool>({variation.members});
-    Values twists = array({variation.members}), rates = array({variation.members}), on_bristles = array({variation.members});
+    auto sound = array<bool>({count});
+    Values twists = array({count}), rates = array({count}), on_bristles = array({count});
     nb::dict refusals;
     for (std::size_t m = 0; m < results.size(); ++m) {
         const MemberResult& result = results[m];
@@ -222,6 +219,35 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
         if (!result.has_beginning) refusals[nb::int_(m)] = no_beginning(!start.quantities.empty());
     }
     return nb::make_tuple(sound, twists, rates, on_bristles, refusals);
+}
+
+nb::tuple starts_of_members(const ParameterDrive& drive, const std::vector<int>& numbers, const Numbers& values, const Known& known,
+                            const Numbers& inputs) {
+    if (values.ndim() != 2 || values.shape(0) != numbers.size())
+        throw nb::value_error("values of n numbers and m members have shape (n, m)");
+    if (inputs.size() < std::size_t(kernel::input_count)) throw nb::value_error("the first inputs are 6 numbers");
+    const Parts parts = parts_of(drive);
+    check_numbers(parts, numbers);
+    const std::size_t count = values.shape(1), size = general::rest(parts.set()).size();
+    const Start start = start_from(known, count);
+    const Members members{drive,
+                          description_of<ParameterDrive>(),
+                          {numbers.data(), numbers.size(), values.data(), count},
+                          start,
+                          inputs.data(),
+                          place_of_error(layout_of(drive, parts.laws))};
+    MemberStarts starts(members);
+    Values sets = array({count, parts.numbers.size()}), states = array({count, size});
+    std::fill_n(states.data(), count * size, std::numeric_limits<double>::quiet_NaN());
+    nb::dict refusals;
+    for (std::size_t m = 0; m < count; ++m) {
+        const MemberStart found = starts.of(m);
+        std::copy(found.numbers.begin(), found.numbers.end(), sets.data() + m * parts.numbers.size());
+        std::copy(found.state.begin(), found.state.end(), states.data() + m * size);
+        if (!found.problem.empty()) refusals[nb::int_(m)] = found.problem;
+        if (found.problem.empty() && found.state.empty()) refusals[nb::int_(m)] = no_beginning(!start.quantities.empty());
+    }
+    return nb::make_tuple(sets, states, refusals);
 }
 
 nb::tuple run_derivatives(const ParameterDrive& drive, const Known& known, const Numbers& instants, const Numbers& inputs,
@@ -336,6 +362,14 @@ void bind_runs(nb::module_& core) {
         "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `max_rate` at "
         "rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin "
         "at rest if there is none.");
+    core.def(
+        "member_starts", &starts_of_members, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("initial").none(),
+        nb::arg("inputs"),
+        nb::sig("def member_starts(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
+                ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, inputs: " SW_ARRAY ") -> tuple[" SW_ARRAY
+                ", " SW_ARRAY ", dict[int, str]]"),
+        "The parameters of each member and the numbers of the state in which it begins, not-a-number where it cannot, and why it "
+        "cannot; the arguments are those of `simulate_many`.");
     core.def("no_beginning", &no_beginning, nb::arg("known"),
              "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");

@@ -9,9 +9,24 @@
 #include <mutex>
 #include <thread>
 
-#include "general/verbs.hpp"
-
 namespace strainwave::host {
+
+MemberStart MemberStarts::of(std::size_t member) {
+    const kernel::Variation& variation = members.variation;
+    MemberStart found{parts.numbers};
+    for (std::size_t p = 0; p < variation.count; ++p)
+        found.numbers[std::size_t(variation.places[p])] = variation.values[p * variation.members + member];
+    set_numbers(members.description, &drive, found.numbers.data());
+    found.problem = problem_of(members.description, &drive);
+    if (!found.problem.empty()) return found;
+    const kernel::Set set{parts.laws.data(), parts.shape.data(), found.numbers.data(), int(found.numbers.size())};
+    Array<double, kernel::input_count> input;
+    std::copy_n(members.first_input, kernel::input_count, input.item);
+    found.state =
+        members.start.at_rest ? general::rest(set) : general::started(set, members.start.of(member), shaped<Input<double>>(input));
+    if (!std::isfinite(found.state[members.error_place])) found.state.clear();
+    return found;
+}
 
 namespace {
 
@@ -23,7 +38,7 @@ class EnsembleRun {
     const Ensemble& ensemble;
     const Parts parts;
     const kernel::Rows rows;
-    const std::size_t error_place, lanes, members;
+    const std::size_t lanes, members;
     std::vector<MemberResult> results;
     std::atomic<std::size_t> next{0}, done{0};
     std::atomic<bool> stopping{false};
@@ -32,11 +47,10 @@ public:
     EnsembleRun(const kernel::Table& kernel_, const Ensemble& ensemble_)
         : kernel(kernel_),
           ensemble(ensemble_),
-          parts(parts_of(ensemble.description, &ensemble.drive)),
+          parts(parts_of(ensemble.members.description, &ensemble.members.drive)),
           rows{ensemble.recorded.data(), ensemble.recorded.size(), ensemble.out, ensemble.samples},
-          error_place(ensemble.error_place),
           lanes(std::size_t(kernel.lanes)),
-          members(ensemble.variation.members),
+          members(ensemble.members.variation.members),
           results(members) {}
 
     std::size_t packs() const { return (members + lanes - 1) / lanes; }
@@ -46,54 +60,25 @@ public:
 
     /// Runs packs until none is left.
     void work() {
-        ParameterDrive drive = ensemble.drive;  // of this thread
+        MemberStarts starts(ensemble.members);
         for (std::size_t pack; !stopping && (pack = next++) < packs();) {
             const std::size_t first = pack * lanes, count = std::min(lanes, members - first);
-            if (count == 1 || !run_together(drive, first, count))
-                for (std::size_t member = first; member < first + count; ++member) run_alone(drive, member);
+            if (count == 1 || !run_together(starts, first, count))
+                for (std::size_t member = first; member < first + count; ++member) run_alone(starts, member);
             done += count * ensemble.schedule.steps;
         }
     }
 
 private:
-    /// The numbers of a member.
-    std::vector<double> numbers_of(std::size_t member) const {
-        std::vector<double> numbers = parts.numbers;
-        for (std::size_t p = 0; p < ensemble.variation.count; ++p)
-            numbers[std::size_t(ensemble.variation.places[p])] = ensemble.variation.values[p * members + member];
-        return numbers;
-    }
-    /// The contradiction between these numbers, which `drive` takes; empty if there is none.
-    std::string problem(ParameterDrive& drive, const std::vector<double>& numbers) const {
-        set_numbers(ensemble.description, &drive, numbers.data());
-        return problem_of(ensemble.description, &drive);
-    }
-    /// The initial state of a member; empty if there is none.
-    general::State beginning(const std::vector<double>& numbers, std::size_t member) const {
-        const kernel::Set set{parts.laws.data(), parts.shape.data(), numbers.data(), int(numbers.size())};
-        general::State state = ensemble.start.at_rest
-                                   ? general::rest(set)
-                                   : general::started(set, ensemble.start.of(member), shaped<Input<double>>(first_input()));
-        if (!std::isfinite(state[error_place])) state.clear();
-        return state;
-    }
-    Array<double, kernel::input_count> first_input() const {
-        Array<double, kernel::input_count> input;
-        std::copy_n(ensemble.schedule.inputs, kernel::input_count, input.item);
-        return input;
-    }
-
     /// Runs members as a pack; false where one of them cannot go all the way.
-    bool run_together(ParameterDrive& drive, std::size_t first, std::size_t count) {
-        std::vector<double> starts;
+    bool run_together(MemberStarts& starts, std::size_t first, std::size_t count) {
+        std::vector<double> states;
         for (std::size_t member = first; member < first + count; ++member) {
-            const std::vector<double> numbers = numbers_of(member);
-            if (!problem(drive, numbers).empty()) return false;
-            const general::State state = beginning(numbers, member);
-            if (state.empty()) return false;
-            starts.insert(starts.end(), state.begin(), state.end());
+            const MemberStart start = starts.of(member);
+            if (start.state.empty()) return false;
+            states.insert(states.end(), start.state.begin(), start.state.end());
         }
-        return run(first, count, starts).ending != Ending::out_of_bounds;
+        return run(first, count, states).ending != Ending::out_of_bounds;
     }
 
     kernel::Outcome run(std::size_t first, std::size_t count, const std::vector<double>& starts) {
@@ -101,7 +86,7 @@ private:
                                         this};
         std::vector<kernel::Tally> tallies(count);
         const kernel::Outcome outcome =
-            kernel.run_members(parts.set(), ensemble.variation, first, count, starts.data(), starts.size() / count,
+            kernel.run_members(parts.set(), ensemble.members.variation, first, count, starts.data(), starts.size() / count,
                                ensemble.schedule, ensemble.max_rate, rows, tallies.data(), progress);
         if (outcome.ending != Ending::done) return outcome;
         bool ran = false;
@@ -121,15 +106,13 @@ private:
         }
     }
 
-    void run_alone(ParameterDrive& drive, std::size_t member) {
+    void run_alone(MemberStarts& starts, std::size_t member) {
         clear(member, 1);
-        const std::vector<double> numbers = numbers_of(member);
-        results[member].problem = problem(drive, numbers);
-        if (!results[member].problem.empty()) return;
-        const general::State state = beginning(numbers, member);
-        results[member].has_beginning = !state.empty();
-        if (state.empty()) return;
-        const kernel::Outcome outcome = run(member, 1, state);
+        const MemberStart start = starts.of(member);
+        results[member].problem = start.problem;
+        results[member].has_beginning = !start.problem.empty() || !start.state.empty();
+        if (start.state.empty()) return;
+        const kernel::Outcome outcome = run(member, 1, start.state);
         if (outcome.ending == Ending::out_of_bounds) results[member].refusal = outcome;
     }
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "describe.hpp"
+#include "general/verbs.hpp"
 #include "kernel/table.hpp"
 #include "parameter_drive.hpp"
 
@@ -25,6 +26,13 @@ struct Start {
     }
 };
 
+/// Where a member begins.
+struct MemberStart {
+    std::vector<double> numbers{};  ///< its parameters
+    std::string problem{};          ///< what is wrong with them, if anything is
+    general::State state{};         ///< empty if it has none
+};
+
 /// Result of the run of a member.
 struct MemberResult {
     kernel::Tally tally{};
@@ -33,18 +41,37 @@ struct MemberResult {
     bool has_beginning = true;                 ///< whether there is a state that it can begin in
 };
 
-/// An ensemble to run: drives that differ in some numbers, and where their samples go.
-struct Ensemble {
+/// Drives that differ in some numbers, and the inputs where they begin.
+struct Members {
     const ParameterDrive& drive;
     const Description& description;
     kernel::Variation variation;
     const Start& start;
+    const double* first_input;  ///< what `Input` holds
+    std::size_t error_place;    ///< of the transmission error among the numbers of a state
+};
+
+/// The beginnings of members, one after the other.
+class MemberStarts {
+    const Members& members;
+    const Parts parts;
+    ParameterDrive drive;  // of whoever asks
+
+public:
+    explicit MemberStarts(const Members& members_)
+        : members(members_), parts(parts_of(members_.description, &members_.drive)), drive(members_.drive) {}
+
+    MemberStart of(std::size_t member);
+};
+
+/// An ensemble to run: drives that differ in some numbers, and where their samples go.
+struct Ensemble {
+    const Members& members;
     const kernel::Schedule& schedule;
     const std::vector<int>& recorded;
     double max_rate;
     double* out;  ///< output c of sample k of member m goes to out[(c * members + m) * samples + k]
     std::size_t samples;
-    std::size_t error_place;  ///< of the transmission error among the numbers of a state
 };
 
 /// Runs members side by side, as many to a pack as the kernel takes and packs on several threads. A member that ends early leaves

@@ -1,15 +1,16 @@
 #pragma once
 /// The one place that knows where a scalar's mathematics comes from. Physics calls these names unqualified; packs and
 /// dual numbers bring their own through argument-dependent lookup. No `if` on a scalar: `select` serves every lane.
-#if !defined(__CUDACC_RTC__)
 #include <strainwave/scalar/elementary.hpp>
-
+#if !defined(__CUDACC_RTC__)
 #include <cmath>
 #endif
 
 namespace strainwave {
 
+// NVRTC has the functions of the C library, and no namespace of its own for them.
 #if defined(__CUDACC_RTC__)
+namespace library {
 using ::atan;
 using ::cos;
 using ::exp;
@@ -18,31 +19,32 @@ using ::log;
 using ::rint;
 using ::sin;
 using ::sqrt;
-inline double abs(double x) { return fabs(x); }
-inline float abs(float x) { return fabs(x); }
+}  // namespace library
 #else
-using std::atan;
-using std::fabs;
-using std::log;
-using std::sqrt;
+namespace library = std;
+#endif
+using library::atan;
+using library::fabs;
+using library::log;
+using library::sqrt;
+constexpr double abs(double x) { return !__builtin_is_constant_evaluated() ? fabs(x) : x > 0.0 ? x : 0.0 - x; }
+constexpr float abs(float x) { return !__builtin_is_constant_evaluated() ? fabs(x) : x > 0.0f ? x : 0.0f - x; }
 // What a compiler works out beforehand, such as the numbers of firmware, is worked out by `elementary` in every scalar.
 constexpr double rint(double x) {
-    if (!__builtin_is_constant_evaluated()) return std::rint(x);
-    return __builtin_fabs(x) < 0x1p51 ? (x + elementary::rounder) - elementary::rounder : x;
+    if (!__builtin_is_constant_evaluated()) return library::rint(x);
+    return abs(x) < 0x1p51 ? (x + elementary::rounder) - elementary::rounder : x;
 }
-constexpr float rint(float x) { return __builtin_is_constant_evaluated() ? float(rint(double(x))) : std::rint(x); }
-constexpr float exp(float x) { return __builtin_is_constant_evaluated() ? float(elementary::exp(double(x))) : std::exp(x); }
-constexpr float sin(float x) { return __builtin_is_constant_evaluated() ? float(elementary::sincos(double(x)).sine) : std::sin(x); }
+constexpr float rint(float x) { return __builtin_is_constant_evaluated() ? float(rint(double(x))) : library::rint(x); }
+constexpr float exp(float x) { return __builtin_is_constant_evaluated() ? float(elementary::exp(double(x))) : library::exp(x); }
+constexpr float sin(float x) {
+    return __builtin_is_constant_evaluated() ? float(elementary::sincos(double(x)).sine) : library::sin(x);
+}
 constexpr float cos(float x) {
-    return __builtin_is_constant_evaluated() ? float(elementary::sincos(double(x)).cosine) : std::cos(x);
+    return __builtin_is_constant_evaluated() ? float(elementary::sincos(double(x)).cosine) : library::cos(x);
 }
 constexpr double exp(double x) { return elementary::exp(x); }
-constexpr double sin(double x) { return __builtin_fabs(x) < elementary::farthest ? elementary::sincos(x).sine : std::sin(x); }
-constexpr double cos(double x) { return __builtin_fabs(x) < elementary::farthest ? elementary::sincos(x).cosine : std::cos(x); }
-constexpr double abs(double x) { return __builtin_fabs(x); }
-constexpr float abs(float x) { return __builtin_fabsf(x); }
-#endif
-
+constexpr double sin(double x) { return abs(x) < elementary::farthest ? elementary::sincos(x).sine : library::sin(x); }
+constexpr double cos(double x) { return abs(x) < elementary::farthest ? elementary::sincos(x).cosine : library::cos(x); }
 inline constexpr double pi = 3.14159265358979323846;
 /// exp(-80) vanishes beside 1 in every scalar; further out exp only underflows, slowly.
 inline constexpr double beyond_digits = 80.0;
@@ -90,17 +92,12 @@ struct SinCos {
     S sin, cos;
 };
 
-#if defined(__CUDACC_RTC__)
-inline SinCos<double> sincos(double x) { return {sin(x), cos(x)}; }
-inline SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
-#else
 constexpr SinCos<double> sincos(double x) {
-    if (!(__builtin_fabs(x) < elementary::farthest)) return {std::sin(x), std::cos(x)};
+    if (!(abs(x) < elementary::farthest)) return {library::sin(x), library::cos(x)};
     const auto found = elementary::sincos(x);
     return {found.sine, found.cosine};
 }
 constexpr SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
-#endif
 
 /// Each of `n` angles within some turns of zero becomes its cosine.
 template <class S>

@@ -2,7 +2,7 @@
 #include <strainwave/compiled.hpp>
 #include <strainwave/field.hpp>
 
-#include <type_traits>
+#include "standard.hpp"
 
 /// A drive put together from its parameters.
 namespace strainwave::kernel {

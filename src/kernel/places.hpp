@@ -1,8 +1,6 @@
 #pragma once
 #include <strainwave/field.hpp>
 
-#include <type_traits>
-
 /// The numbers of a state, and of what a drive shows of itself, one after the other. A part that chooses its law at run time has
 /// room for any; its law uses some of that.
 namespace strainwave::kernel {
@@ -86,7 +84,7 @@ S* write(const Drive& drive, const typename Drive::State& state, S* numbers) {
 template <class Drive>
 Places outputs_of(const Drive& drive) {
     using Output = typename Drive::Output;
-    using S = std::remove_cvref_t<decltype(drive.gear.damping)>;
+    using S = decltype(drive.gear.damping);
     static_assert(size_of<S, Output> <= Places::capacity, "a drive shows more numbers than Places has room for");
     Places found;
     int place = 0;

@@ -2,32 +2,13 @@
 #include <strainwave/drive/own_motion.hpp>
 #include <strainwave/initial.hpp>
 #include <strainwave/integrate.hpp>
-#include <strainwave/scalar/dual.hpp>
-#include <strainwave/scalar/pack.hpp>
 
-#include <algorithm>
-#include <new>
-#include <utility>
-
+#include "lanes.hpp"
 #include "places.hpp"
 #include "table.hpp"
 
 /// A drive run through time, for any scalar: the loop that `simulate` and `fit` stand on.
 namespace strainwave::kernel {
-
-// Calls f with what each lane of some scalars holds.
-template <class F>
-void each_lane(double a, double b, double c, F&& f) {
-    f(a, b, c);
-}
-template <int n, class F>
-void each_lane(const Dual<n>& a, const Dual<n>& b, const Dual<n>& c, F&& f) {
-    f(a.value, b.value, c.value);
-}
-template <int n, class F>
-void each_lane(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c, F&& f) {
-    for (int i = 0; i < n; ++i) f(a[i], b[i], c[i]);
-}
 
 template <class S>
 Input<S> input_from(const double* u) {
@@ -98,7 +79,9 @@ template <class S, class Drive>
 #ifdef SW_INLINE_STEPS
 [[gnu::flatten]]
 #endif
+#if !defined(__CUDACC_RTC__)
 [[gnu::noinline]]
+#endif
 typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u,
                                        const S& dt, integrate::Steps<S, Drive>& steps) {
     return drive.evaluate(steps(drive, from, u, dt), u.end);

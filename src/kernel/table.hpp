@@ -4,9 +4,6 @@
 #include <strainwave/initial_quantities.hpp>
 #include <strainwave/integrate/tolerance.hpp>
 
-#include <cstddef>
-#include <cstdint>
-
 #include "assemble.hpp"
 
 /// Interface of a kernel: numbers in, numbers out, so that one built by any compiler serves. The general drive has the same table.

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from importlib import metadata
+from typing import Any
 
 import pytest
+import strainwave as sw
+from strainwave.native import device
 
-from tests.cplusplus import HEADERS, INCLUDE, drives
+from tests.cplusplus import HEADERS, drives
+from tests.strategies import made
 
 KERNEL = """
 extern "C" __global__ void run_{number}(const {drive}* drive, {drive}::State* state,
@@ -24,7 +28,7 @@ OPTIONS = (
     "--std=c++20",
     "--device-as-default-execution-space",
     "--gpu-architecture=compute_90",
-    f"--include-path={INCLUDE}",
+    f"--include-path={device.INCLUDE}",
 )
 # As much is checked as on the way to PTX, which takes a second a drive even if nothing is optimised, and minutes if all is.
 INTERMEDIATE = ("-dlto", "--relocatable-device-code=true")
@@ -71,6 +75,13 @@ def test_a_cuda_kernel_becomes_code_of_a_device(nvrtc: ctypes.CDLL, scalar: str)
     result, log, ptx = compilation(nvrtc, HEADERS + kernels(scalar)[0], *NOT_OPTIMISED)
     assert (result, log) == (0, "")
     assert ".entry run_0(" in ptx
+
+
+@pytest.mark.parametrize("scalar", ["double", "float"])
+def test_an_ensemble_runs_in_a_cuda_kernel(nvrtc: ctypes.CDLL, scalar: Any) -> None:
+    gear = sw.Gear(hysteresis=made(sw.hysteresis.MaxwellSlip), friction_input=made(sw.friction.LuGre))
+    source = device.source(sw.Drive(gear=gear, load=sw.loads.Inertia(inertia=0.01)), scalar)
+    assert compilation(nvrtc, source, *INTERMEDIATE)[:2] == (0, "")
 
 
 FORGETFUL = """

@@ -1,5 +1,7 @@
 #pragma once
 
+// Vectors are for packs, which NVRTC has no place for.
+#if !defined(__CUDACC_RTC__)
 namespace strainwave::detail {
 
 template <class T, int bytes>
@@ -17,6 +19,7 @@ inline constexpr int register_width = 2;
 #endif
 
 }  // namespace strainwave::detail
+#endif
 
 /// exp, sin and cos out of sums, products and a few bits: the same numbers in a double and in every lane of a pack, on every
 /// instruction set and with every library. Within 3 units in the last place.
@@ -176,6 +179,7 @@ constexpr SineCosine<L> sincos(const L& x) {
     return {lanes<L>(bits(blend<L>(odd, c, s)) ^ flip_sine), lanes<L>(bits(blend<L>(odd, s, c)) ^ flip_cosine)};
 }
 
+#if !defined(__CUDACC_RTC__)
 /// Each of `n` angles below `farthest` becomes its cosine, a register full at a time.
 inline void to_cosines(double* x, int n) {
     constexpr int width = detail::register_width;
@@ -189,5 +193,6 @@ inline void to_cosines(double* x, int n) {
     }
     for (; i < n; ++i) x[i] = sincos(x[i]).cosine;
 }
+#endif
 
 }  // namespace strainwave::elementary

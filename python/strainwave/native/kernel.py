@@ -37,11 +37,11 @@ class Kernel:
         Args:
             instruction_set: for which it is compiled; the one in use, if none is named
         """
-        return _digest(self.source, _headers(), *flags_for(instruction_set or _core.instruction_set()))
+        return _digest(self.source, headers_digest(), *flags_for(instruction_set or _core.instruction_set()))
 
 
 @cache
-def _headers() -> str:
+def headers_digest() -> str:
     """Return the digest of the names and contents of all headers."""
     paths = sorted(INCLUDE.rglob("*.hpp"))
     return _digest(*(f"{path.relative_to(INCLUDE).as_posix()}\n{path.read_text('utf-8')}" for path in paths))

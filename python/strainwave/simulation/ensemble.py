@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +19,7 @@ from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint
 from strainwave.files.recording import Recording
 from strainwave.files.writing import claiming, making
 from strainwave.messages import listed, one_line, quoted
-from strainwave.native import kernels
+from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
@@ -48,7 +50,16 @@ WHOLE = {
 }  # names of numbers that are counted
 MOST_THREADS = 2**31 - 1  # that the core can count
 SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
-PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
+# Bytes of output that a part of the files holds at most, where one pack does not need more; of a GPU, which takes many at once.
+PART, DEVICE_PART = 64 << 20, 1 << 30
+
+Backend = Literal["cpu", "gpu", "gpu-float"]
+BACKENDS: tuple[Backend, ...] = get_args(Backend)
+RUN_MEMBERS: Mapping[Backend, Callable[..., Any]] = {
+    "cpu": _core.simulate_many,
+    "gpu": partial(device.simulate_many, scalar="double"),
+    "gpu-float": partial(device.simulate_many, scalar="float"),
+}
 
 
 class EnsembleWarning(UserWarning):
@@ -154,6 +165,7 @@ class _Plan(ComparedByFields):
     inputs: Array
     recorded: Mapping[str, Output]
     threads: int
+    backend: Backend
 
     @classmethod
     def of(
@@ -166,8 +178,10 @@ class _Plan(ComparedByFields):
         sample: float | None,
         record: Sequence[str],
         threads: int | None,
+        backend: Backend,
     ) -> _Plan:
         arguments.drive(drive)
+        arguments.one_of("backend", backend, BACKENDS)
         numbers, values = _checked(drive, parameters)
         known = initial_of(drive, initial, len(next(iter(values.values()))))
         recorded = signals.chosen(drive, record)
@@ -181,8 +195,9 @@ class _Plan(ComparedByFields):
         excitation.check_laid_out(min(dt, sample))
         time_grid = excitation.time_grid(dt, sample, instants)
         return cls(
-            drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid), recorded, threads
-        )
+            drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid), recorded, threads,
+            backend,
+        )  # fmt: skip
 
     @property
     def members(self) -> int:
@@ -207,8 +222,9 @@ class _Plan(ComparedByFields):
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [each.channel for each in self.recorded.values()]
         outputs = np.empty((len(channels), last - first, len(self.time)))
-        kernels.prepare(self.drive, "simulate_many", self.members * self.steps)
-        sound, twists, fastest, on_bristles, refusals = _core.simulate_many(
+        if self.backend == "cpu":
+            kernels.prepare(self.drive, "simulate_many", self.members * self.steps)
+        sound, twists, fastest, on_bristles, refusals = RUN_MEMBERS[self.backend](
             self.drive,
             self.numbers,
             values,
@@ -220,7 +236,7 @@ class _Plan(ComparedByFields):
             COARSEST / self.time_grid.longest,
             self.threads,
             outputs,
-            shown,  # type: ignore[arg-type]
+            shown,
         )
         failures = self.failures(first, outputs, sound, twists, fastest, refusals)
         _tell_of_bristles(self.time_grid.longest, on_bristles)
@@ -268,6 +284,7 @@ def simulate_many(
     inputs: Mapping[str, Scenario | float] | None = None,
     initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
+    backend: Backend = "cpu",
     progress: bool = False,
 ) -> Ensemble:
     """Runs a drive many times through one command, each time with other numbers, on all cores.
@@ -287,6 +304,8 @@ def simulate_many(
         dt, sample, load_torque, temperature, inputs, progress: as for `simulate`
         initial: as for `simulate`; a quantity has one value, or one for each member
         threads: how many to run on; all that this process may use, if not given
+        backend: "cpu", or "gpu" for the first GPU that CUDA finds, which takes the extra cuda; "gpu-float" computes in single
+            precision there. On a GPU Ctrl-C acts between launches, each of as many members as its memory holds
 
     Returns:
         Ensemble, whose columns have shape (members, samples)
@@ -296,6 +315,7 @@ def simulate_many(
         ValueError: a parameter that the drive does not have, values out of its range or of unequal number, an output that is
             not known, `threads` below 1, and as `simulate`
         MemoryError: the outputs are too many; says how large they are
+        ImportError, OSError: the packages for a GPU are not installed, there is no GPU, or its driver reports an error
 
     Warns:
         EnsembleWarning: members without result; `failures` of the ensemble says why, and their outputs are not-a-number. Or
@@ -310,7 +330,7 @@ def simulate_many(
     (5, 501)
     """
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
-    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads)
+    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     try:
         with progressing(progress, plan.members * plan.steps) as shown:
             ensemble = plan.run(0, plan.members, shown)
@@ -335,6 +355,7 @@ def simulate_to(
     inputs: Mapping[str, Scenario | float] | None = None,
     initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
+    backend: Backend = "cpu",
     progress: bool = False,
 ) -> Path:
     """As `simulate_many`, but writes the members to files as they come: memory stays flat however many they are.
@@ -348,8 +369,8 @@ def simulate_to(
 
     Args:
         folder: where to write; must not exist, be empty, or hold the beginning of the same ensemble
-        drive, command, parameters, dt, record, sample, load_torque, temperature, inputs, initial,
-            threads, progress: as for `simulate_many`
+        drive, command, parameters, dt, record, sample, load_torque, temperature, inputs, initial, threads, backend,
+            progress: as for `simulate_many`
 
     Returns:
         the folder
@@ -372,7 +393,7 @@ def simulate_to(
     (2, 11)
     """
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
-    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads)
+    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     folder, failures = Path(folder), dict[int, str]()
     with making(folder), claiming(folder), progressing(progress, plan.members * plan.steps) as shown:
         files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
@@ -401,6 +422,7 @@ def _asked(plan: _Plan) -> dict[str, str]:
         "dt": plan.dt,
         "sample": plan.sample,
         "record": list(plan.recorded),
+        "backend": plan.backend,
         "version": version("strainwave"),
     }
     return {name: fingerprint(value) for name, value in asked.items()}
@@ -444,7 +466,7 @@ def _limits(low: float, high: float) -> str:
 
 def _part_size(plan: _Plan) -> int:
     """Members of a part, whose outputs fit into memory: whole packs for every thread."""
-    size = PART // (8 * len(plan.recorded) * len(plan.time))
+    size = (PART if plan.backend == "cpu" else DEVICE_PART) // (8 * len(plan.recorded) * len(plan.time))
     pack = _core.max_lanes * plan.threads
     return max(pack, size - size % pack)
 
