@@ -16,6 +16,7 @@ loop_fit     a torsion loop fitted, beside SciPy with finite differences; and th
 drive_fit    a whole drive fitted to a log, beside SciPy with finite differences around strainwave's simulation and solve_ivp
 mujoco_fit   a drive with two inertias fitted, beside MuJoCo's own identification
 marker_angle the angle of a target from pictures of its markers: error, bias, stated uncertainty, time of a picture
+gpu          ensembles on a GPU, beside all cores of the processor
 instructions a step of exported controllers on microcontrollers: instructions, code and stack
 peak         operations a second, beside the most that the processor does
 
@@ -34,6 +35,7 @@ import actuator
 import drive_fit
 import ensemble
 import files
+import gpu
 import instructions
 import loop_fit
 import marker_angle
@@ -54,6 +56,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "stick_slip": lambda console, peers, quick: stick_slip.run(console, quick),
     "scaling": lambda console, peers, quick: scaling.run(console),
     "files": lambda console, peers, quick: files.run(console),
+    "gpu": lambda console, peers, quick: gpu.run(console),
     "overhead": lambda console, peers, quick: overhead.run(console),
     "loop_fit": lambda console, peers, quick: loop_fit.run(console),
     "drive_fit": lambda console, peers, quick: drive_fit.run(console),

@@ -189,12 +189,8 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
     check_numbers(parts, numbers);
     check_recorded(drive, recorded);
     const Start start = start_from(known, values.shape(1));
-    const Members members{drive,
-                          description_of<ParameterDrive>(),
-                          {numbers.data(), numbers.size(), values.data(), values.shape(1)},
-                          start,
-                          request.schedule.inputs,
-                          place_of_error(layout_of(drive, parts.laws))};
+    const Members members{drive, description_of<ParameterDrive>(), {numbers.data(), numbers.size(), values.data(), values.shape(1)},
+                          start, request.schedule.inputs,          place_of_error(layout_of(drive, parts.laws))};
     const std::size_t count = values.shape(1);
     if (out.shape(0) != recorded.size() || out.shape(1) != count || out.shape(2) != request.kept + 1)
         throw nb::value_error("outputs of m members have shape (recorded, m, 1 + kept)");
@@ -222,7 +218,7 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
 }
 
 nb::tuple starts_of_members(const ParameterDrive& drive, const std::vector<int>& numbers, const Numbers& values, const Known& known,
-                            const Numbers& inputs) {
+                            const Numbers& inputs, int threads) {
     if (values.ndim() != 2 || values.shape(0) != numbers.size())
         throw nb::value_error("values of n numbers and m members have shape (n, m)");
     if (inputs.size() < std::size_t(kernel::input_count)) throw nb::value_error("the first inputs are 6 numbers");
@@ -236,12 +232,15 @@ nb::tuple starts_of_members(const ParameterDrive& drive, const std::vector<int>&
                           start,
                           inputs.data(),
                           place_of_error(layout_of(drive, parts.laws))};
-    MemberStarts starts(members);
+    const std::vector<MemberStart> starts = [&] {
+        nb::gil_scoped_release free;
+        return starts_of(members, threads);
+    }();
     Values sets = array({count, parts.numbers.size()}), states = array({count, size});
     std::fill_n(states.data(), count * size, std::numeric_limits<double>::quiet_NaN());
     nb::dict refusals;
     for (std::size_t m = 0; m < count; ++m) {
-        const MemberStart found = starts.of(m);
+        const MemberStart& found = starts[m];
         std::copy(found.numbers.begin(), found.numbers.end(), sets.data() + m * parts.numbers.size());
         std::copy(found.state.begin(), found.state.end(), states.data() + m * size);
         if (!found.problem.empty()) refusals[nb::int_(m)] = found.problem;
@@ -364,10 +363,10 @@ void bind_runs(nb::module_& core) {
         "at rest if there is none.");
     core.def(
         "member_starts", &starts_of_members, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("initial").none(),
-        nb::arg("inputs"),
+        nb::arg("inputs"), nb::arg("threads"),
         nb::sig("def member_starts(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
-                ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, inputs: " SW_ARRAY ") -> tuple[" SW_ARRAY
-                ", " SW_ARRAY ", dict[int, str]]"),
+                ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, inputs: " SW_ARRAY
+                ", threads: int) -> tuple[" SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
         "The parameters of each member and the numbers of the state in which it begins, not-a-number where it cannot, and why it "
         "cannot; the arguments are those of `simulate_many`.");
     core.def("no_beginning", &no_beginning, nb::arg("known"),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <exception>
+#include <future>
 #include <limits>
 #include <mutex>
 #include <thread>
@@ -25,6 +26,19 @@ MemberStart MemberStarts::of(std::size_t member) {
     found.state =
         members.start.at_rest ? general::rest(set) : general::started(set, members.start.of(member), shaped<Input<double>>(input));
     if (!std::isfinite(found.state[members.error_place])) found.state.clear();
+    return found;
+}
+
+std::vector<MemberStart> starts_of(const Members& members, int threads) {
+    std::vector<MemberStart> found(members.variation.members);
+    const std::size_t part = found.size() / std::size_t(std::max(threads, 1)) + 1;
+    std::vector<std::future<void>> team;
+    for (std::size_t first = 0; first < found.size(); first += part)
+        team.push_back(std::async(std::launch::async, [&members, &found, first, last = std::min(first + part, found.size())] {
+            MemberStarts starts(members);
+            for (std::size_t member = first; member < last; ++member) found[member] = starts.of(member);
+        }));
+    for (std::future<void>& each : team) each.get();
     return found;
 }
 

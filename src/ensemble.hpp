@@ -64,6 +64,9 @@ public:
     MemberStart of(std::size_t member);
 };
 
+/// The beginnings of all members, found on several threads.
+std::vector<MemberStart> starts_of(const Members& members, int threads);
+
 /// An ensemble to run: drives that differ in some numbers, and where their samples go.
 struct Ensemble {
     const Members& members;

@@ -1,7 +1,10 @@
 #pragma once
 
 /// Before what a step spends its time in: a kernel asks to inline every call on the way there, and that once, not for each stage.
-#ifdef SW_INLINE_RATES
+/// NVRTC inlines every call anyway, and compiles for minutes where it does that for each stage.
+#if defined(__CUDACC_RTC__)
+#define SW_RATES __noinline__
+#elif defined(SW_INLINE_RATES)
 #define SW_RATES [[gnu::flatten, gnu::noinline]]
 #else
 #define SW_RATES

@@ -641,6 +641,11 @@ def simulate_many(drive: Drive, numbers: Sequence[int], values: numpy.typing.NDA
     Runs members, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `max_rate` at rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin at rest if there is none.
     """
 
+def member_starts(drive: Drive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], initial: tuple[Sequence[int], numpy.typing.NDArray[numpy.float64]] | None, inputs: numpy.typing.NDArray[numpy.float64], threads: int) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
+    """
+    The parameters of each member and the numbers of the state in which it begins, not-a-number where it cannot, and why it cannot; the arguments are those of `simulate_many`.
+    """
+
 def no_beginning(known: bool) -> str:
     """
     Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.

@@ -29,13 +29,13 @@ void run_member(const DeviceEnsemble<S>& ensemble, int member) {
     const Places place = outputs_of(drive);
     S* sample = ensemble.out + member;
     const auto record = [&](const auto& outputs) {
-        for (int r = 0; r < ensemble.recorded_count; ++r, sample += ensemble.members) *sample = outputs[place.slot[ensemble.recorded[r]]];
+        for (int r = 0; r < ensemble.recorded_count; ++r, sample += ensemble.members)
+            *sample = outputs[place.slot[ensemble.recorded[r]]];
     };
     const Progress never_stops{[](void*, std::size_t) { return false; }, nullptr};
     Tally tally;
-    const Outcome outcome =
-        run_from<S>(drive, state_of(drive, ensemble.starts + std::size_t(member) * ensemble.start_count), ensemble.schedule,
-                    ensemble.max_rate, record, never_stops, &tally, 1);
+    const Outcome outcome = run_from<S>(drive, state_of(drive, ensemble.starts + std::size_t(member) * ensemble.start_count),
+                                        ensemble.schedule, ensemble.max_rate, record, never_stops, &tally, 1);
     const double found[]{tally.twist, tally.max_rate, tally.bristle_frequency, double(tally.sound), double(outcome.ending)};
     for (int i = 0; i < 5; ++i) ensemble.tally[std::size_t(i) * ensemble.members + member] = found[i];
 }

@@ -79,11 +79,13 @@ template <class S, class Drive>
 #ifdef SW_INLINE_STEPS
 [[gnu::flatten]]
 #endif
-#if !defined(__CUDACC_RTC__)
+#if defined(__CUDACC_RTC__)
+__noinline__
+#else
 [[gnu::noinline]]
 #endif
-typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u,
-                                       const S& dt, integrate::Steps<S, Drive>& steps) {
+    typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u,
+                                           const S& dt, integrate::Steps<S, Drive>& steps) {
     return drive.evaluate(steps(drive, from, u, dt), u.end);
 }
 

@@ -108,7 +108,7 @@ def simulate_many(
         OSError: no GPU is found, or its driver reports an error
         ValueError: not even one member fits into the memory of the device
     """
-    sets, states, refusals = _core.member_starts(drive, numbers, values, initial, inputs)
+    sets, states, refusals = _core.member_starts(drive, numbers, values, initial, inputs, threads)
     tally = np.zeros((TALLIES, len(sets)))
     out[:] = np.nan
     begin = np.array([member for member in range(len(sets)) if member not in refusals], np.intp)
