@@ -46,16 +46,12 @@ def mjcf(
     out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/mjcf"),
 ) -> None:
     """A model for MuJoCo without a plugin: twist with hysteresis, friction with a bristle, motor; alone or in a robot."""
-    from strainwave.export.mujoco import MAX_MODEL_BYTES
     from strainwave.export.mujoco import mjcf as exported
     from strainwave.files.gear_set import GearSet
 
-    if into is not None and into.stat().st_size > MAX_MODEL_BYTES:
-        raise ValueError(f"{into} is larger than {MAX_MODEL_BYTES >> 20} MiB; give the MJCF file without its meshes")
-    text = None if into is None else into.read_text("utf-8")
     found = exported(
-        GearSet.read(gear), max_torque=max_torque, load_inertia=load_inertia, into=text, joint=joint, draws=draws, seed=seed,
-        name=name,
+        GearSet.read(gear), max_torque=max_torque, load_inertia=load_inertia, into=_model_text(into), joint=joint, draws=draws,
+        seed=seed, name=name,
     )  # fmt: skip
     _write(found, out)
 
@@ -98,6 +94,29 @@ def fmu(
     _write(found, out)
 
 
+@export.command("mujoco-plugin")
+def mujoco_plugin(
+    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")],
+    into: Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the drive.")] = None,
+    joint: Annotated[str | None, typer.Option(help="With --into: name of the hinge behind the gear.")] = None,
+    load_inertia: Annotated[float | None, numeric("Inertia at the output in kg.m2; usually that of the load.")] = None,
+    max_torque: Torque = None,
+    command: Annotated[str, typer.Option(help="Within a timestep: held, or followed at the rate of the last one.")] = "held",
+    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    name: Annotated[str, typer.Option(help="Of the library, the plugin and the actuator.")] = "gear",
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/mujoco-plugin"),
+) -> None:
+    """The whole drive as an actuator plugin, compiled for the MuJoCo that is installed, with a model that has it."""
+    from strainwave.export.engine_plugin import mujoco_plugin as exported
+    from strainwave.files.gear_set import GearSet
+
+    found = exported(
+        GearSet.read(drive), into=_model_text(into), joint=joint, load_inertia=load_inertia, max_torque=max_torque,
+        command=command, step=step, name=name,  # type: ignore[arg-type] # checked there
+    )  # fmt: skip
+    _write(found, out)
+
+
 @export.command("firmware")
 def firmware(
     drive: Annotated[str, typer.Argument(help="A drive whose controller is sampled, as `strainwave compensate` writes it.")],
@@ -126,6 +145,15 @@ def from_bam(
     out.parent.mkdir(parents=True, exist_ok=True)
     found.save(out)
     print(f"{found.name}: {found.note}\nwrote {out}")
+
+
+def _model_text(file: Path | None) -> str | None:
+    """Return the text of the MJCF file of a robot; None if none is given."""
+    from strainwave.export.mujoco import MAX_MODEL_BYTES
+
+    if file is not None and file.stat().st_size > MAX_MODEL_BYTES:
+        raise ValueError(f"{file} is larger than {MAX_MODEL_BYTES >> 20} MiB; give the MJCF file without its meshes")
+    return None if file is None else file.read_text("utf-8")
 
 
 def _write(found: Exported, out: Path) -> None:

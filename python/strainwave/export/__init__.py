@@ -10,6 +10,7 @@
 """
 
 from strainwave.export.bam_parameters import bam, read_bam
+from strainwave.export.engine_plugin import mujoco_plugin
 from strainwave.export.exported import Exported
 from strainwave.export.firmware import Firmware, firmware
 from strainwave.export.fmu import fmu
@@ -17,4 +18,4 @@ from strainwave.export.joint_numbers import joint
 from strainwave.export.mujoco import mjcf
 from strainwave.tuning.loss import Loss
 
-__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "read_bam"]
+__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "mujoco_plugin", "read_bam"]

@@ -253,12 +253,16 @@ def twist_at_largest(elements: GearElements) -> float:
     return float(brentq(missing, 0.0, high))
 
 
+def rated_torque(gear_set: GearSet) -> float | None:
+    """Return the largest torque at the output among the ratings of a gear [N.m]; None if it has none."""
+    ratings = (gear_set.ratings.get(name) for name in MAX_TORQUES)
+    return next((convert(each.value, each.unit, "N.m") for each in ratings if each), None)
+
+
 def _max_torque(gear_set: GearSet, given: float | None) -> float:
-    if given is not None:
-        return given
-    for name in MAX_TORQUES:
-        if rating := gear_set.ratings.get(name):
-            return convert(rating.value, rating.unit, "N.m")
+    found = rated_torque(gear_set) if given is None else given
+    if found is not None:
+        return found
     raise ValueError(
         f"{gear_set.name} has no rating {MAX_TORQUES[0]}, so the range of its torsion is not known; give the largest torque at "
         "the output: --max-torque 100, in Python max_torque=100.0"

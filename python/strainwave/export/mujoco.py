@@ -138,17 +138,26 @@ def _numbers(model: str) -> dict[str, float]:
 
 
 def _alone(elements: GearElements, actuator: Any, load_inertia: float, name: str) -> str:
+    root, link, shaft = inertia_on_a_hinge(load_inertia, TIMESTEP_ALONE, name)
+    add_gear(root, child(root, "worldbody"), link, shaft, elements, actuator, name)
+    return written(root)
+
+
+def inertia_on_a_hinge(inertia: float, timestep: float, name: str) -> tuple[Element, Element, Element]:
+    """Return a model of one body that turns about an axis: its root, the body and its joint.
+
+    Args:
+        inertia: of the body [kg.m²]
+        timestep: of the model [s]
+        name: of the gear
+    """
     root = Element("mujoco", model=name)
     ElementTree.SubElement(root, "compiler", angle="radian")
-    ElementTree.SubElement(root, "option", timestep=repr(TIMESTEP_ALONE), integrator="implicitfast", gravity="0 0 0")
-    world = ElementTree.SubElement(root, "worldbody")
-    link = ElementTree.SubElement(world, "body", name=f"{name}_link")
-    spread = " ".join([repr(load_inertia)] * 3)
+    ElementTree.SubElement(root, "option", timestep=repr(timestep), integrator="implicitfast", gravity="0 0 0")
+    link = ElementTree.SubElement(ElementTree.SubElement(root, "worldbody"), "body", name=f"{name}_link")
+    spread = " ".join([repr(inertia)] * 3)
     ElementTree.SubElement(link, "inertial", pos="0 0 0", mass="1", diaginertia=spread)
-    shaft = ElementTree.SubElement(link, "joint", {"name": f"{name}_output", "type": "hinge", "axis": "0 0 1"})
-    add_gear(root, world, link, shaft, elements, actuator, name)
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode") + "\n"
+    return root, link, ElementTree.SubElement(link, "joint", {"name": f"{name}_output", "type": "hinge", "axis": "0 0 1"})
 
 
 def attached(
@@ -166,6 +175,32 @@ def attached(
     Raises:
         ValueError: the text is no MJCF, or the joint is not a hinge in it with a body of its own
     """
+    root, parents, shaft = hinge_of(model, joint)
+    link = parents[shaft]
+    add_gear(root, parents[link], link, shaft, elements, actuator, name)
+    return written(root), tuple(others_on(root, joint, name))
+
+
+def others_on(root: Element, joint: str, name: str) -> Iterator[str]:
+    """Yield a remark on each actuator of a robot that acts on a joint beside the motor of a gear."""
+    motor = f"{name}_motor"
+    for each in root.findall("actuator/*"):
+        if each.get("joint") == joint and (own := each.get("name")) != motor:
+            yield f"the actuator {own or each.tag} still acts on {joint}, behind the gear; let {motor} take its place"
+
+
+def written(root: Element) -> str:
+    """Return a model as text."""
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def hinge_of(model: str, joint: str) -> tuple[Element, dict[Element, Element], Element]:
+    """Return the root of a robot's model, the parent of each of its elements, and one of its hinges.
+
+    Raises:
+        ValueError: the text is no MJCF, or the joint is not a hinge in it with a body of its own
+    """
     root = _parsed(model)
     parents = {child: parent for parent in root.iter() for child in parent}
     hinges = [each for each in root.iter("joint") if each.get("name") == joint and parents[each].tag == "body"]
@@ -175,15 +210,7 @@ def attached(
     shaft = hinges[0]
     if shaft.get("type", "hinge") != "hinge":
         raise ValueError(f"joint = {quoted(joint)} is of type {shaft.get('type')}; a gear turns a hinge")
-    link = parents[shaft]
-    add_gear(root, parents[link], link, shaft, elements, actuator, name)
-    remarks = [
-        f"the actuator {each.get('name') or each.tag} still acts on {joint}, behind the gear; let {name}_motor take its place"
-        for each in root.findall("actuator/*")
-        if each.get("joint") == joint
-    ]
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode") + "\n", tuple(remarks)
+    return root, parents, shaft
 
 
 def _parsed(model: str) -> Element:
@@ -213,26 +240,32 @@ def add_gear(
         actuator: motor of the drive; None for a torque at the input
         name: of the gear
     """
-    option = root.find("option")
-    timestep = DEFAULT_TIMESTEP if option is None else float(option.get("timestep", DEFAULT_TIMESTEP))
+    timestep = timestep_of(root)
     place = {key: value for key, value in link.attrib.items() if key in PLACING_ATTRIBUTES}
     rotor = ElementTree.SubElement(parent, "body", {"name": f"{name}_rotor", **place})
     inertia = " ".join([repr(ROTOR_INERTIA)] * 3)
     ElementTree.SubElement(rotor, "inertial", pos="0 0 0", mass=repr(ROTOR_MASS), diaginertia=inertia)
     axis = {key: value for key, value in joint.attrib.items() if key in ("axis", "pos", "class")}
-    own = {"armature": repr(elements.input_inertia), **_friction(elements.at_input, timestep)}
+    own = {"armature": repr(elements.input_inertia), **friction_attributes(elements.at_input, timestep)}
     ElementTree.SubElement(rotor, "joint", {"name": f"{name}_input", "type": "hinge", **axis, **own})
-    joint.attrib.update(_friction(elements.at_output, timestep))
-    _add_twist(_child(root, "tendon"), elements, name, joint.attrib["name"])
-    _add_actuators(_child(root, "actuator"), actuator, elements.at_input, name)
+    joint.attrib.update(friction_attributes(elements.at_output, timestep))
+    _add_twist(child(root, "tendon"), elements, name, joint.attrib["name"])
+    _add_actuators(child(root, "actuator"), actuator, elements.at_input, name)
 
 
-def _child(root: Element, tag: str) -> Element:
+def timestep_of(root: Element) -> float:
+    """Return the timestep of a model [s]."""
+    option = root.find("option")
+    return DEFAULT_TIMESTEP if option is None else float(option.get("timestep", DEFAULT_TIMESTEP))
+
+
+def child(root: Element, tag: str) -> Element:
+    """Return the child of a root with this tag, which is added if there is none."""
     found = root.find(tag)
     return ElementTree.SubElement(root, tag) if found is None else found
 
 
-def _friction(shaft: Friction, timestep: float) -> dict[str, str]:
+def friction_attributes(shaft: Friction, timestep: float) -> dict[str, str]:
     """Return attributes of a joint for its dry and viscous friction."""
     dry = {"frictionloss": repr(shaft.dry), "solreffriction": f"{2.0 * timestep!r} 1", "solimpfriction": STIFF_FRICTION}
     return (dry if shaft.dry > 0.0 else {}) | ({"damping": repr(shaft.viscous)} if shaft.viscous > 0.0 else {})

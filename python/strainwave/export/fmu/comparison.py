@@ -36,7 +36,7 @@ def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable]
     """Return what an FMU loses against `sw.simulate` over a step of the command, in some of its outputs."""
     interval = max(1, math.ceil(MIN_DURATION / COMMUNICATION_STEPS / step)) * step
     duration = COMMUNICATION_STEPS * interval
-    size, run = _moving_run(drive, duration, step, interval)
+    size, run = moving_run(drive, duration, step, interval)
     names = {output.name: name for name, output in recorded(drive, found).items()}
     chosen = [name for name in COMPARED if name in names]
     with instance(content, found, version) as block:
@@ -54,7 +54,7 @@ def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable]
     return losses
 
 
-def _moving_run(drive: Drive, duration: float, step: float, interval: float) -> tuple[float, Run]:
+def moving_run(drive: Drive, duration: float, step: float, interval: float) -> tuple[float, Run]:
     """Return the size of a constant command at which a drive moves, and its run; the largest tried if it does not move."""
     size = COMMANDS.get(signals.command_unit(drive), OTHER_COMMAND)
     largest = MAX_COMMAND_FACTOR * size

@@ -264,6 +264,33 @@ public:
         const bool same = !was_changed && memcmp(before, content.numbers, sizeof before) == 0;
         if (!same && !content.numbers_changed) make();
     }
+
+    // States as numbers alone, for programs that store these: the drive is as it was made, and has taken steps.
+
+    static constexpr int number_count = strainwave::size_of<double, State>;
+    void write_numbers(double* to) const {
+        const auto scalars = strainwave::flattened<double>(content.here.state);
+        for (int i = 0; i < number_count; ++i) to[i] = scalars[i];
+    }
+    // Begins without currents in the motor, as a drive at rest does, rather than with those that the command asks for.
+    void drop_currents() {
+        State x = content.here.state;
+        x.continuous.motor = strainwave::initial_state(drive.motor);
+        content.here = drive.evaluate(x, content.acting);
+    }
+    // The drive with these numbers, under the inputs of now.
+    bool resume(double time, const double* from) {
+        if (content.numbers_changed && !make()) return false;
+        content.numbers_changed = false;
+        content.has_begun = true;
+        content.time = time;
+        content.acting = at(0.0);
+        const State shape = drive.initial_state();
+        auto scalars = strainwave::flattened<double>(shape);
+        for (int i = 0; i < number_count; ++i) scalars[i] = from[i];
+        content.here = drive.evaluate(strainwave::refilled(shape, scalars), content.acting);
+        return show("continues");
+    }
     bool fail(const char* format, ...) __attribute__((format(printf, 2, 3))) {
         va_list values;
         va_start(values, format);

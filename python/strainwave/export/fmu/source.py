@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial
 from hashlib import sha256
 from importlib import resources
@@ -29,10 +29,14 @@ def sources(drive: Drive, found: list[Variable], version: int) -> tuple[dict[str
     Raises:
         ImportError: the package fmpy, which contains the headers of FMI, is not installed
     """
-    own = resources.files("strainwave.export.fmu")
-    files = {name: own.joinpath(name).read_text("utf-8") for name in ("model.hpp", f"fmi{version}.cpp")}
-    files |= _fmi_headers(version)
-    files |= cplusplus.closure([*cplusplus.headers_of(drive), *RUN_HEADERS])
+    source = resources.files("strainwave.export.fmu").joinpath(f"fmi{version}.cpp").read_text("utf-8")
+    return drive_sources(drive, found, {f"fmi{version}.cpp": source, **_fmi_headers(version)})
+
+
+def drive_sources(drive: Drive, found: list[Variable], others: Mapping[str, str]) -> tuple[dict[str, str], str]:
+    """Return the sources that step a drive with the others that use them, by their names, and a token that depends on all."""
+    model = resources.files("strainwave.export.fmu").joinpath("model.hpp").read_text("utf-8")
+    files = {"model.hpp": model, **others, **cplusplus.closure([*cplusplus.headers_of(drive), *RUN_HEADERS])}
     header = partial(_drive_header, drive, found)
     digest = sha256("\0".join([*files.values(), header("")]).encode()).hexdigest()[:DIGEST_LENGTH]
     token = f"{{{digest}}}"

@@ -1,0 +1,5 @@
+"""Drives whose output shaft another program moves."""
+
+from strainwave.export.coupled.drive import CoupledDrive
+
+__all__ = ["CoupledDrive"]

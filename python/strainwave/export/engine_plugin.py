@@ -1,0 +1,295 @@
+"""A drive as an actuator plugin of MuJoCo, compiled for the version that is installed, with a model that has it.
+
+MuJoCo moves the body behind the gear. The plugin steps controller, motor and gear up to the output shaft along the motion of
+that body, and gives the torque.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib import resources
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Literal, get_args
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, arguments, loads
+from strainwave.export.coupled import CoupledDrive
+from strainwave.export.elements import Friction, rated_torque
+from strainwave.export.exported import Exported
+from strainwave.export.fmu.build import default_step
+from strainwave.export.fmu.comparison import moving_run
+from strainwave.export.fmu.variables import MIN_STEP
+from strainwave.export.mujoco import (
+    Element,
+    child,
+    friction_attributes,
+    hinge_of,
+    inertia_on_a_hinge,
+    others_on,
+    timestep_of,
+    written,
+)
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import drive_of
+from strainwave.messages import one_line, quoted
+from strainwave.native.compilers import FLAGS, Compiler, find_compiler
+from strainwave.simulation.signals import command_unit, load_input
+from strainwave.tuning.loss import Loss
+
+Array = NDArray[np.float64]
+Command = Literal["held", "followed"]
+COMMANDS: tuple[Command, ...] = get_args(Command)
+OLDEST_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
+DEFAULT_TIMESTEP = 5e-4  # s, of a model that has the gear and an inertia only
+STABLE_SHARE = 0.25  # of the longest stable timestep, that such a model has at most
+MAX_NAME_LENGTH = 40  # characters
+LIBRARIES = "-Wl,--as-needed", "-Wl,-z,defs", "-lm", "-ldl"
+SUFFIXES = {"linux": ".so", "darwin": ".dylib"}
+COMPARED_DURATION = 1.0  # s
+COMPARED_SAMPLES = 100
+REFERENCE_STEP_SHARE = 0.25  # of the internal step, of the simulation that it is compared with
+MAX_RUN_SECONDS = 300.0  # of the compared run in MuJoCo
+
+# Runs a model by itself: a plugin stays registered as long as the process lives.
+RUN = """
+import sys, mujoco, numpy
+library, model, command, timestep, every, samples, angle, out = sys.argv[1:]
+mujoco.mj_loadPluginLibrary(library)
+model = mujoco.MjModel.from_xml_path(model)
+model.opt.timestep = float(timestep)
+data = mujoco.MjData(model)
+data.qpos[0], data.ctrl[0], rows = float(angle), float(command), [float(angle)]
+for _ in range(int(samples)):
+    mujoco.mj_step(model, data, nstep=int(every))
+    rows.append(data.qpos[0])
+numpy.save(out, rows)
+"""
+
+
+def mujoco_plugin(
+    drive: Drive | GearSet,
+    *,
+    into: str | None = None,
+    joint: str | None = None,
+    load_inertia: float | None = None,
+    max_torque: float | None = None,
+    command: Command = "held",
+    step: float | None = None,
+    name: str = "gear",
+) -> Exported:
+    """Return a drive as a plugin of the MuJoCo that is installed, and a model with it: an inertia alone, or a robot.
+
+    The plugin is an actuator. Its control is the command of the drive. It contains controller, sensors, motor and gear, and
+    steps them by the code of `sw.simulate`; MuJoCo moves the load. Its state is in `mjData.plugin_state`.
+
+    Args:
+        drive: a drive, or a gear set with one. A body of MuJoCo takes the place of its load
+        into: text of the MJCF file of a robot; a model with an inertia alone if not given
+        joint: name of a hinge of the robot, which becomes the output
+        load_inertia: of the model with an inertia alone [kg.m²]; by default that of the load
+        max_torque: at the output [N.m], up to which the stiffness limits the timestep; by default the peak torque of the
+            ratings, or 0 without one
+        command: "held" within a timestep, as a staircase, or "followed": it goes on at the rate of the last timestep
+        step: largest internal step [s]; by default 0.2 ms, or shorter where the drive needs that
+        name: of the library, of the plugin after "strainwave.", and prefix of the actuator
+
+    Raises:
+        TypeError, ValueError: an argument is not of its kind, there is no inertia, or the robot has no such hinge
+        ImportError: MuJoCo is not installed, or older than 4.0
+        NoCompilerError: there is no compiler
+        CompileError: the compiler reports an error
+
+    >>> import strainwave as sw
+    >>> found = sw.export.mujoco_plugin(sw.GearSet.read("robot-joint"))  # doctest: +SKIP
+    >>> list(found.files)  # doctest: +SKIP
+    ['gear.so', 'gear.xml']
+    """
+    model, drive = drive, drive_of(drive)
+    if (into is None) != (joint is None):
+        raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
+    arguments.one_of("command", command, COMMANDS)
+    _check_name(arguments.text("name", name))
+    if max_torque is not None:
+        largest = arguments.number("max_torque", max_torque, "N.m", low=0.0)
+    else:
+        largest = (rated_torque(model) if isinstance(model, GearSet) else None) or 0.0
+    include, version = installed_mujoco()
+    step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
+    coupled = CoupledDrive.of(drive, largest)
+    inertia = _inertia(drive, load_inertia, into is None)
+    alone = _alone(coupled, inertia, command, name)
+    text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, command, name)
+    suffix = SUFFIXES[sys.platform]
+    library = compiled(coupled.sources(f"strainwave.{name}", step, "mujoco_plugin.cpp"), include)
+    numbers = {
+        "output_stiffness": (coupled.stiffness, "N.m/rad"),
+        "output_hold": (coupled.hold, "N.m"),
+        "longest_timestep": (coupled.max_timestep(inertia), "s"),
+        "inertia_there": (inertia, "kg.m2"),
+        "internal_step": (step, "s"),
+    }
+    losses = list(_losses(drive, inertia, library, alone, step))
+    return Exported(
+        "MuJoCo plugin",
+        model.name if isinstance(model, GearSet) else name,
+        {f"{name}{suffix}": library, "gear.xml": text},
+        numbers,
+        tuple(losses),
+        tuple(_left_out(drive)),
+        (*remarks, *_remarks(name + suffix, version, library)),
+    )
+
+
+def installed_mujoco() -> tuple[Path, str]:
+    """Return the folder of the headers of MuJoCo, and its version.
+
+    Raises:
+        ImportError: it is not installed, older than `OLDEST_VERSION`, or has no headers
+        ValueError: plugins are not compiled on this system
+    """
+    if sys.platform not in SUFFIXES:
+        raise ValueError("a plugin of MuJoCo is compiled on Linux and macOS; on other systems take strainwave export mjcf")
+    try:
+        import mujoco
+    except ImportError:
+        raise ImportError("a plugin needs MuJoCo 4.0 or later, which is not installed; `pip install mujoco`") from None
+    if mujoco.mj_version() < OLDEST_VERSION:
+        raise ImportError(
+            f"MuJoCo {mujoco.__version__} is installed, and a plugin needs 4.0 or later; `pip install --upgrade mujoco`, or "
+            "take strainwave export mjcf"
+        )
+    include = Path(str(resources.files("mujoco"))) / "include"
+    if not (include / "mujoco" / "mjplugin.h").is_file():
+        raise ImportError(f"MuJoCo {mujoco.__version__} is installed without its headers; install the wheel from the index")
+    return include, str(mujoco.__version__)
+
+
+def compiled(sources: dict[str, str], include: Path) -> bytes:
+    """Return the shared library of a plugin.
+
+    Args:
+        sources: texts by their names
+        include: folder of the headers of MuJoCo
+
+    Raises:
+        NoCompilerError: there is no compiler
+        CompileError: the compiler reports an error
+    """
+    compiler = find_compiler()
+    with TemporaryDirectory() as folder:
+        for path, text in sources.items():
+            target = Path(folder, path)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, "utf-8")
+        flags = (*FLAGS, f"-I{folder}", f"-isystem{include}")
+        return compiler.build(Path(folder, "mujoco_plugin.cpp"), flags, _libraries(compiler)).read_bytes()
+
+
+def _libraries(compiler: Compiler) -> tuple[str, ...]:
+    """Return the libraries to link; zig and macOS find the functions in what the process has loaded."""
+    if sys.platform == "darwin":
+        return ("-undefined", "dynamic_lookup")
+    return () if compiler.name == "zig c++" else LIBRARIES
+
+
+def _check_name(name: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name) or len(name) > MAX_NAME_LENGTH:
+        allowed = f"letters, digits, underscores and hyphens, {MAX_NAME_LENGTH} at most, the first a letter"
+        raise ValueError(f"name = {quoted(name)} must be a name of a plugin: {allowed}")
+
+
+def _inertia(drive: Drive, given: float | None, is_needed: bool) -> float:
+    """Return the inertia at the output of the model with an inertia alone [kg.m²]."""
+    if given is not None:
+        return arguments.number("load_inertia", given, "kg.m2", low=0.0)
+    inertia = float(getattr(drive.load, "inertia", 0.0))
+    if inertia <= 0.0 and is_needed:
+        raise ValueError(
+            "the load has no inertia; give --load-inertia, in Python load_inertia, in kg.m2, or a robot and its joint"
+        )
+    return inertia or float(loads.Inertia().inertia)
+
+
+def _alone(coupled: CoupledDrive, inertia: float, command: Command, name: str) -> Element:
+    timestep = min(DEFAULT_TIMESTEP, STABLE_SHARE * coupled.max_timestep(inertia))
+    root, _, shaft = inertia_on_a_hinge(inertia, timestep, name)
+    _add_plugin(root, shaft, coupled, command, name)
+    return root
+
+
+def _attached(model: str, joint: str, coupled: CoupledDrive, command: Command, name: str) -> tuple[str, tuple[str, ...]]:
+    """Return a robot's model with a drive at one of its joints, and remarks on what it changes."""
+    root, _, shaft = hinge_of(model, joint)
+    remarks = list(others_on(root, joint, name))
+    if armature := shaft.get("armature"):
+        remarks.append(
+            f"the armature {armature} of {joint} counts beside the rotor of the drive; remove it if it is that rotor"
+        )
+    _add_plugin(root, shaft, coupled, command, name)
+    return written(root), tuple(remarks)
+
+
+def _add_plugin(root: Element, shaft: Element, coupled: CoupledDrive, command: Command, name: str) -> None:
+    """Add a drive to a model, at a joint of it."""
+    plugin = f"strainwave.{name}"
+    ElementTree.SubElement(child(root, "extension"), "plugin", plugin=plugin)
+    motor = ElementTree.SubElement(
+        child(root, "actuator"), "plugin", {"name": f"{name}_motor", "joint": shaft.attrib["name"], "plugin": plugin}
+    )
+    ElementTree.SubElement(motor, "config", key="command", value=command)
+    if coupled.hold > 0.0:
+        dry = coupled.hold + float(shaft.get("frictionloss", 0.0))
+        shaft.attrib.update(friction_attributes(Friction(dry=dry, viscous=0.0), timestep_of(root)))
+
+
+def _losses(drive: Drive, inertia: float, library: bytes, alone: Element, step: float) -> Iterator[Loss]:
+    """Yield what the output angle differs by from the simulation over a step of the command, at two timesteps of MuJoCo."""
+    drive = drive.replace(load=loads.Inertia(inertia=inertia))
+    interval = max(1, round(COMPARED_DURATION / COMPARED_SAMPLES / step)) * step
+    duration = COMPARED_SAMPLES * interval
+    size, run = moving_run(drive, duration, REFERENCE_STEP_SHARE * step, interval)
+    angle = run["output_angle"]
+    for halvings in (0, 1):
+        wanted = timestep_of(alone) * 0.5**halvings
+        every = max(1, round(interval / wanted))
+        timestep = interval / every
+        found = _run_in_mujoco(library, written(alone), size, timestep, every, float(angle[0]))
+        over = f"a step of the command by {size:g} {command_unit(drive)}, {duration:.3g} s, timestep {1e3 * timestep:.3g} ms"
+        yield Loss.between("output_angle", found - angle, "rad", float(np.ptp(angle)), over)
+
+
+def _run_in_mujoco(library: bytes, model: str, command: float, timestep: float, every: int, angle: float) -> Array:
+    """Return the output angle under a constant command [rad], in a process of its own."""
+    with TemporaryDirectory() as folder:
+        paths = [Path(folder, each) for each in ("plugin.so", "model.xml", "rows.npy")]
+        paths[0].write_bytes(library)
+        paths[1].write_text(model, "utf-8")
+        words = (paths[0], paths[1], repr(command), repr(timestep), every, COMPARED_SAMPLES, repr(angle), paths[2])
+        done = subprocess.run(
+            [sys.executable, "-c", RUN, *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=MAX_RUN_SECONDS
+        )
+        if done.returncode != 0:
+            raise ValueError(f"MuJoCo did not run the plugin: {one_line(done.stderr.strip().rpartition(chr(10))[2])}")
+        found: Array = np.load(paths[2])
+        return found
+
+
+def _left_out(drive: Drive) -> Iterator[str]:
+    if load_input(drive) != "output_angle" and not isinstance(drive.load, loads.Inertia):
+        yield f"the torque of the load {drive.load.name}: a body of MuJoCo takes the place of the load"
+    yield "spin of the housing: the rotor counts its speed relative to the housing, as in joints with armature"
+    yield "parameters in MJCF: they are constants of the library; export it again for others"
+    yield "the temperature around the drive, which is constant"
+
+
+def _remarks(file: str, version: str, library: bytes) -> Iterator[str]:
+    yield "the error is of first order in the timestep: halve it and compare"
+    yield f'load it before the model: mujoco.mj_loadPluginLibrary("{file}")'
+    yield f"{file} is for MuJoCo {version} alone, {len(library) / 1e3:.0f} kB; export it again after an update of MuJoCo"
