@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -117,6 +118,22 @@ def mujoco_plugin(
     _write(found, out)
 
 
+@export.command("modelica")
+def modelica(
+    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")],
+    max_torque: Torque = None,
+    period: Annotated[float | None, numeric("Of the exchange in s; 0.5 ms, or shorter if the drive needs that.")] = None,
+    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    name: Annotated[str, typer.Option(help="Of the package and the library.")] = "StrainWaveDrive",
+    out: Annotated[Path, typer.Option(help="Folder for the package.")] = Path("out/modelica"),
+) -> None:
+    """The whole drive as a Modelica package: a component with a flange, and the library that it calls."""
+    from strainwave.export.modelica_package import modelica as exported
+    from strainwave.files.gear_set import GearSet
+
+    _write(exported(GearSet.read(drive), max_torque=max_torque, period=period, step=step, name=name), out)
+
+
 @export.command("firmware")
 def firmware(
     drive: Annotated[str, typer.Argument(help="A drive whose controller is sampled, as `strainwave compensate` writes it.")],
@@ -156,6 +173,13 @@ def _model_text(file: Path | None) -> str | None:
     return None if file is None else file.read_text("utf-8")
 
 
+def _listing(files: Collection[str]) -> str:
+    """Return names of files in one line; of those in a folder of sources their number."""
+    names = [each for each in files if "/Source/" not in each]
+    sources = len(files) - len(names)
+    return ", ".join(names) + (f" and {sources} sources" if sources else "")
+
+
 def _write(found: Exported, out: Path) -> None:
     """Write the files of an export, and print its summary."""
     from strainwave.files.writing import write_folder
@@ -164,4 +188,4 @@ def _write(found: Exported, out: Path) -> None:
     files = export_files(found)
     write_folder(out, files)
     print(export_summary(found))
-    print(f"\nwrote {', '.join(files)} to {out}")
+    print(f"\nwrote {_listing(files)} to {out}")

@@ -15,7 +15,8 @@ from strainwave.export.exported import Exported
 from strainwave.export.firmware import Firmware, firmware
 from strainwave.export.fmu import fmu
 from strainwave.export.joint_numbers import joint
+from strainwave.export.modelica_package import modelica
 from strainwave.export.mujoco import mjcf
 from strainwave.tuning.loss import Loss
 
-__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "mujoco_plugin", "read_bam"]
+__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "modelica", "mujoco_plugin", "read_bam"]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib import resources
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
-from strainwave.export.coupled import CoupledDrive
+from strainwave.export.coupled import SUFFIXES, CoupledDrive, shared_library
 from strainwave.export.elements import Friction, rated_torque
 from strainwave.export.exported import Exported
 from strainwave.export.fmu.build import default_step
@@ -39,7 +39,6 @@ from strainwave.export.mujoco import (
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import one_line, quoted
-from strainwave.native.compilers import FLAGS, Compiler, find_compiler
 from strainwave.simulation.signals import command_unit, load_input
 from strainwave.tuning.loss import Loss
 
@@ -50,8 +49,6 @@ OLDEST_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
 DEFAULT_TIMESTEP = 5e-4  # s, of a model that has the gear and an inertia only
 STABLE_SHARE = 0.25  # of the longest stable timestep, that such a model has at most
 MAX_NAME_LENGTH = 40  # characters
-LIBRARIES = "-Wl,--as-needed", "-Wl,-z,defs", "-lm", "-ldl"
-SUFFIXES = {"linux": ".so", "darwin": ".dylib"}
 COMPARED_DURATION = 1.0  # s
 COMPARED_SAMPLES = 100
 REFERENCE_STEP_SHARE = 0.25  # of the internal step, of the simulation that it is compared with
@@ -127,7 +124,7 @@ def mujoco_plugin(
     alone = _alone(coupled, inertia, command, name)
     text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, command, name)
     suffix = SUFFIXES[sys.platform]
-    library = compiled(coupled.sources(f"strainwave.{name}", step, "mujoco_plugin.cpp"), include)
+    content = compiled(coupled.sources(f"strainwave.{name}", step, "mujoco_plugin.cpp"), include)
     numbers = {
         "output_stiffness": (coupled.stiffness, "N.m/rad"),
         "output_hold": (coupled.hold, "N.m"),
@@ -135,15 +132,15 @@ def mujoco_plugin(
         "inertia_there": (inertia, "kg.m2"),
         "internal_step": (step, "s"),
     }
-    losses = list(_losses(drive, inertia, library, alone, step))
+    losses = list(_losses(drive, inertia, content, alone, step))
     return Exported(
         "MuJoCo plugin",
         model.name if isinstance(model, GearSet) else name,
-        {f"{name}{suffix}": library, "gear.xml": text},
+        {f"{name}{suffix}": content, "gear.xml": text},
         numbers,
         tuple(losses),
         tuple(_left_out(drive)),
-        (*remarks, *_remarks(name + suffix, version, library)),
+        (*remarks, *_remarks(name + suffix, version, content)),
     )
 
 
@@ -171,7 +168,7 @@ def installed_mujoco() -> tuple[Path, str]:
     return include, str(mujoco.__version__)
 
 
-def compiled(sources: dict[str, str], include: Path) -> bytes:
+def compiled(sources: Mapping[str, str], include: Path) -> bytes:
     """Return the shared library of a plugin.
 
     Args:
@@ -182,21 +179,7 @@ def compiled(sources: dict[str, str], include: Path) -> bytes:
         NoCompilerError: there is no compiler
         CompileError: the compiler reports an error
     """
-    compiler = find_compiler()
-    with TemporaryDirectory() as folder:
-        for path, text in sources.items():
-            target = Path(folder, path)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, "utf-8")
-        flags = (*FLAGS, f"-I{folder}", f"-isystem{include}")
-        return compiler.build(Path(folder, "mujoco_plugin.cpp"), flags, _libraries(compiler)).read_bytes()
-
-
-def _libraries(compiler: Compiler) -> tuple[str, ...]:
-    """Return the libraries to link; zig and macOS find the functions in what the process has loaded."""
-    if sys.platform == "darwin":
-        return ("-undefined", "dynamic_lookup")
-    return () if compiler.name == "zig c++" else LIBRARIES
+    return shared_library(sources, "mujoco_plugin.cpp", (f"-isystem{include}",))
 
 
 def _check_name(name: str) -> None:
@@ -249,7 +232,7 @@ def _add_plugin(root: Element, shaft: Element, coupled: CoupledDrive, command: C
         shaft.attrib.update(friction_attributes(Friction(dry=dry, viscous=0.0), timestep_of(root)))
 
 
-def _losses(drive: Drive, inertia: float, library: bytes, alone: Element, step: float) -> Iterator[Loss]:
+def _losses(drive: Drive, inertia: float, content: bytes, alone: Element, step: float) -> Iterator[Loss]:
     """Yield what the output angle differs by from the simulation over a step of the command, at two timesteps of MuJoCo."""
     drive = drive.replace(load=loads.Inertia(inertia=inertia))
     interval = max(1, round(COMPARED_DURATION / COMPARED_SAMPLES / step)) * step
@@ -260,16 +243,16 @@ def _losses(drive: Drive, inertia: float, library: bytes, alone: Element, step: 
         wanted = timestep_of(alone) * 0.5**halvings
         every = max(1, round(interval / wanted))
         timestep = interval / every
-        found = _run_in_mujoco(library, written(alone), size, timestep, every, float(angle[0]))
+        found = _run_in_mujoco(content, written(alone), size, timestep, every, float(angle[0]))
         over = f"a step of the command by {size:g} {command_unit(drive)}, {duration:.3g} s, timestep {1e3 * timestep:.3g} ms"
         yield Loss.between("output_angle", found - angle, "rad", float(np.ptp(angle)), over)
 
 
-def _run_in_mujoco(library: bytes, model: str, command: float, timestep: float, every: int, angle: float) -> Array:
+def _run_in_mujoco(content: bytes, model: str, command: float, timestep: float, every: int, angle: float) -> Array:
     """Return the output angle under a constant command [rad], in a process of its own."""
     with TemporaryDirectory() as folder:
         paths = [Path(folder, each) for each in ("plugin.so", "model.xml", "rows.npy")]
-        paths[0].write_bytes(library)
+        paths[0].write_bytes(content)
         paths[1].write_text(model, "utf-8")
         words = (paths[0], paths[1], repr(command), repr(timestep), every, COMPARED_SAMPLES, repr(angle), paths[2])
         done = subprocess.run(
@@ -289,7 +272,7 @@ def _left_out(drive: Drive) -> Iterator[str]:
     yield "the temperature around the drive, which is constant"
 
 
-def _remarks(file: str, version: str, library: bytes) -> Iterator[str]:
+def _remarks(file: str, version: str, content: bytes) -> Iterator[str]:
     yield "the error is of first order in the timestep: halve it and compare"
     yield f'load it before the model: mujoco.mj_loadPluginLibrary("{file}")'
-    yield f"{file} is for MuJoCo {version} alone, {len(library) / 1e3:.0f} kB; export it again after an update of MuJoCo"
+    yield f"{file} is for MuJoCo {version} alone, {len(content) / 1e3:.0f} kB; export it again after an update of MuJoCo"

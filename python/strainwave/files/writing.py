@@ -68,15 +68,18 @@ def write_folder(folder: Path, contents: Mapping[str, str | bytes]) -> None:
 
     Args:
         folder: made if it is not there
-        contents: by the name of the file
+        contents: by the path of the file in the folder
 
     Raises:
         OSError: folder or file cannot be written; says which, and why
     """
     heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        with making(folder):
-            write_all({folder / name: content for name, content in contents.items()})
+        paths = {folder / name: content for name, content in contents.items()}
+        with ExitStack() as stack:
+            for each in sorted({folder, *(path.parent for path in paths)}):
+                stack.enter_context(making(each))
+            write_all(paths)
         written.append(folder)
     finally:
         signal.signal(signal.SIGINT, heeded)

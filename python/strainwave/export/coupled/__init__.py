@@ -1,5 +1,6 @@
 """Drives whose output shaft another program moves."""
 
 from strainwave.export.coupled.drive import CoupledDrive
+from strainwave.export.coupled.library import SUFFIXES, shared_library
 
-__all__ = ["CoupledDrive"]
+__all__ = ["SUFFIXES", "CoupledDrive", "shared_library"]

@@ -59,17 +59,19 @@ class CoupledDrive:
         """Return the longest stable timestep [s] before an inertia [kg.m²], as the C++ function of this name."""
         return (sqrt(self.damping**2 + 4.0 * self.stiffness * inertia) - self.damping) / self.stiffness
 
-    def sources(self, name: str, step: float, source: str) -> dict[str, str]:
+    def sources(self, name: str, step: float, source: str, prefix: str = "drive") -> dict[str, str]:
         """Return C++ sources by their names.
 
         Args:
             name: of the drive in its program
             step: largest internal step [s]
             source: name of the file that makes the drive a part of that program, in the folder of this module
+            prefix: of functions in C
         """
         folder = resources.files("strainwave.export.coupled")
         others = {each: folder.joinpath(each).read_text("utf-8") for each in ("coupled.hpp", source)}
         others["coupling.hpp"] = f"""#pragma once
+#define SW_NAME(function) {prefix}_##function
 
 namespace coupled {{
 
@@ -96,7 +98,6 @@ def _slope(drive: Drive, torque: float, angle: float, speed: float) -> float:
     further = moved + np.array([0.0, 0.0, 0.0, speed, 0.0, 0.0])  # at a speed friction slips, at rest it may stick
     numbers = _core.started(drive, [TORQUE], np.array([torque]), still)
     channel = outputs(drive)["load_torque"].channel
-    first, second = (
-        _core.now(drive, numbers, each)[channel].item() for each in ((moved, further) if speed else (still, moved))
-    )
+    before, after = (moved, further) if speed else (still, moved)
+    first, second = (float(_core.now(drive, numbers, each)[channel, 0]) for each in (before, after))
     return (first - second) / (angle or speed)
