@@ -110,14 +110,14 @@ def modelica(
         model.name if isinstance(model, GearSet) else name,
         files,
         numbers,
-        tuple(_losses(drive, coupled.hold, content, prefix, inertia or EXAMPLE_INERTIA, period, step)),
+        tuple(_losses(drive, coupled, content, prefix, inertia or EXAMPLE_INERTIA, period, step)),
         tuple(_left_out()),
         tuple(_remarks(name, coupled, inertia)),
     )
 
 
 def _losses(
-    drive: Drive, hold: float, content: bytes, prefix: str, inertia: float, period: float, step: float
+    drive: Drive, coupled: CoupledDrive, content: bytes, prefix: str, inertia: float, period: float, step: float
 ) -> Iterator[Loss]:
     """Yield what the output angle differs by from the simulation over a step of the command, at two periods."""
     drive = drive.replace(load=loads.Inertia(inertia=inertia))
@@ -125,14 +125,21 @@ def _losses(
     size, run = moving_run(drive, COMPARED_SAMPLES * interval, REFERENCE_STEP_SHARE * min(step, period), interval)
     angle = run["output_angle"]
     for each in (period, 0.5 * period):
-        found = inertia_moved(content, prefix, inertia, hold, size, float(angle[0]), each, COMPARED_SAMPLES * interval)
+        found = inertia_moved(content, prefix, inertia, coupled, size, float(angle[0]), each, COMPARED_SAMPLES * interval)
         error = found[:: round(interval / each)] - angle
         over = f"a step of the command by {size:g} {command_unit(drive)}, {run['time'][-1]:.3g} s, period {1e3 * each:.3g} ms"
         yield Loss.between("output_angle", error, "rad", float(np.ptp(angle)), over)
 
 
 def inertia_moved(
-    content: bytes, prefix: str, inertia: float, hold: float, command: float, angle: float, period: float, duration: float
+    content: bytes,
+    prefix: str,
+    inertia: float,
+    coupled: CoupledDrive,
+    command: float,
+    angle: float,
+    period: float,
+    duration: float,
 ) -> Array:
     """Return the angles of an inertia that a drive moves, at all instants of its period [rad].
 
@@ -140,7 +147,7 @@ def inertia_moved(
         content: the library
         prefix: of its functions
         inertia: at the output [kg.m²]
-        hold: dry friction there [N.m]
+        coupled: stiffness and dry friction there
         command: constant
         angle: at the begin [rad]
         period: of the exchange [s]
@@ -154,12 +161,15 @@ def inertia_moved(
     begin.restype, step.restype, end.restype, end.argtypes = ctypes.c_void_p, None, None, (ctypes.c_void_p,)
     step.argtypes = ctypes.c_void_p, *[ctypes.c_double] * 6, *[ctypes.POINTER(ctypes.c_double)] * 2
     torque, rate, drive = ctypes.c_double(), ctypes.c_double(), begin()
-    speed, angles = 0.0, [angle]
+    speed, angles, stiffness = 0.0, [angle], coupled.stiffness
+    frequency = math.sqrt(stiffness / inertia)
+    sine, cosine = math.sin(frequency * period), math.cos(frequency * period)
     for i in range(round(duration / period)):
         step(drive, i * period, angle, speed, command, 0.0, period, torque, rate)
-        free = speed + period * (torque.value + 0.5 * period * rate.value) / inertia
-        after = max(abs(free) - period * hold / inertia, 0.0) * math.copysign(1.0, free)
-        angle += 0.5 * period * (speed + after) - period**3 * rate.value / 12.0 / inertia
+        pushed, rising = torque.value / stiffness, rate.value / stiffness
+        free = speed + pushed * frequency * sine + rising * (1.0 - cosine)
+        after = max(abs(free) - period * coupled.hold / inertia, 0.0) * math.copysign(1.0, free)
+        angle += speed * period + pushed * (1.0 - cosine) + rising * (period - sine / frequency) + 0.5 * period * (after - free)
         speed = after
         angles.append(angle)
     end(drive)
@@ -175,8 +185,9 @@ def _left_out() -> Iterator[str]:
 def _remarks(name: str, coupled: CoupledDrive, inertia: float) -> Iterator[str]:
     yield "not run in a Modelica tool; the functions in C were compared, and rumoca flattens the package"
     if inertia:
-        yield f"before an inertia of {inertia:.4g} kg.m2 periods up to {coupled.max_timestep(inertia):.2g} s are stable"
-    yield f"Resources/Source compiles for other systems: c++ -std=c++20 -O2 -shared -fPIC -I. functions.cpp -o lib{name.lower()}.so"
+        yield f"before an inertia of {inertia:.4g} kg.m2 set periods of {0.5 * coupled.max_timestep(inertia):.2g} s or less"
+    command = f"c++ -std=c++20 -O2 -shared -fPIC -I. functions.cpp -o lib{name.lower()}.so"
+    yield f"Resources/Source compiles for other systems: {command}"
 
 
 def _header(drive: Drive, hold: float, prefix: str) -> str:
@@ -246,6 +257,7 @@ package {name} "A drive with strain wave gear, by strainwave: {in_words(drive)}"
     Modelica.Blocks.Interfaces.RealInput command(unit="{unit}") "Command of the controller, or of the motor in open loop";
     parameter Real period(unit="s") = {period!r} "Of the exchange with the drive";
     parameter Real hold(unit="N.m") = {coupled.hold!r} "Dry friction at which the output breaks away";
+    parameter Real stiffness(unit="N.m/rad") = {coupled.stiffness!r} "Against what the output moves otherwise than expected";
     Modelica.Mechanics.Rotational.Components.BearingFriction friction(tau_pos=[0, hold]) if hold > 0;
     Real speed(unit="rad/s") "Of the output";
   protected
@@ -253,11 +265,16 @@ package {name} "A drive with strain wave gear, by strainwave: {in_words(drive)}"
     discrete Real driving(unit="N.m", start=0, fixed=true);
     discrete Real driving_rate(unit="N.m/s", start=0, fixed=true);
     discrete Real instant(unit="s", start=0, fixed=true);
-    Modelica.Mechanics.Rotational.Sources.Torque source(tau=driving + driving_rate * (time - instant));
+    discrete Real angle(unit="rad", start=0, fixed=true);
+    discrete Real turning(unit="rad/s", start=0, fixed=true);
+    Modelica.Mechanics.Rotational.Sources.Torque source(
+      tau=driving + driving_rate * (time - instant) - stiffness * (flange.phi - angle - turning * (time - instant)));
   equation
     speed = der(flange.phi);
     when sample(0, period) then
       instant = time;
+      angle = flange.phi;
+      turning = speed;
       (driving, driving_rate) = step(instance, time, flange.phi, speed, command, 0.0, period);
     end when;
     connect(source.flange, flange);

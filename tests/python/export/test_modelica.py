@@ -52,7 +52,7 @@ def test_error_falls_with_the_period():
     coarse, fine = exported().losses
     assert coarse.size > 0.05
     assert coarse.rms_share < 2e-4
-    assert fine.largest < 0.5 * coarse.largest
+    assert fine.largest < 0.6 * coarse.largest  # of first order
 
 
 def test_header_is_c_and_sources_compile_by_the_command_of_the_remark(tmp_path):
