@@ -57,6 +57,20 @@ def mjcf(
     _write(found, out)
 
 
+@export.command("ros2")
+def ros2(
+    gear: Gear,
+    max_torque: Torque = None,
+    name: Annotated[str, typer.Option(help="Of the joint.")] = "joint",
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/ros2"),
+) -> None:
+    """Limits, feed-forward and transmission of a joint for ros2_control, and a node that simulates its drive."""
+    from strainwave.export.ros2 import ros2 as exported
+    from strainwave.files.gear_set import GearSet
+
+    _write(exported(GearSet.read(gear), max_torque=max_torque, name=name), out)
+
+
 @export.command("bam")
 def bam(
     gear: Gear,

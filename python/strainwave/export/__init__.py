@@ -1,4 +1,4 @@
-"""Export a gear or a drive to other programs: MuJoCo, URDF, BAM, FMU, and controllers as firmware.
+"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, and controllers as firmware.
 
 >>> from pathlib import Path
 >>> from tempfile import TemporaryDirectory
@@ -17,6 +17,20 @@ from strainwave.export.fmu import fmu
 from strainwave.export.joint_numbers import joint
 from strainwave.export.modelica_package import modelica
 from strainwave.export.mujoco import mjcf
+from strainwave.export.ros2 import ros2
 from strainwave.tuning.loss import Loss
 
-__all__ = ["Exported", "Firmware", "Loss", "bam", "firmware", "fmu", "joint", "mjcf", "modelica", "mujoco_plugin", "read_bam"]
+__all__ = [
+    "Exported",
+    "Firmware",
+    "Loss",
+    "bam",
+    "firmware",
+    "fmu",
+    "joint",
+    "mjcf",
+    "modelica",
+    "mujoco_plugin",
+    "read_bam",
+    "ros2",
+]
