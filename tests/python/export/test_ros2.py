@@ -1,7 +1,7 @@
 """Parameters of ros2_control, and the node, which runs here without ROS."""
 
 import sys
-from types import ModuleType, SimpleNamespace
+from types import MappingProxyType, ModuleType, SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -29,7 +29,7 @@ def test_parameters_have_the_numbers_of_the_joint():
 class FakeNode:
     """What the node uses of rclpy's, with the messages that it published."""
 
-    settings = {"drive": "robot-joint", "joint": "elbow", "rate": 100.0}
+    settings = MappingProxyType({"drive": "robot-joint", "joint": "elbow", "rate": 100.0})
 
     def __init__(self, name):
         self.messages = []
