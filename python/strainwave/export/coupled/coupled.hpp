@@ -29,9 +29,7 @@ static_assert(same(fmu::names[2], "output_angle") && output("load_torque") >= 0)
 
 // Longest stable timestep [s] of a program that moves an inertia [kg.m2] by the torque at the begin of the step, and its angle by
 // the speed at the end.
-inline double max_timestep(double inertia) {
-    return (sqrt(damping * damping + 4.0 * stiffness * inertia) - damping) / stiffness;
-}
+inline double max_timestep(double inertia) { return (sqrt(damping * damping + 4.0 * stiffness * inertia) - damping) / stiffness; }
 
 // Steps of a drive from numbers to numbers. It keeps nothing of one call for the next. False with a message if one fails.
 class Stepper {

@@ -39,8 +39,7 @@ SW_EXPORT void SW_NAME(torque)(void* drive, double time, double angle, double sp
     of.command_rate = command_rate;
     double ahead[coupled::state_size], next = NAN;
     works = works && of.stepper.torque(of.state, now, *torque) &&
-            of.stepper.advance(of.state, then.angle, command, command_rate, period, ahead) &&
-            of.stepper.torque(ahead, then, next);
+            of.stepper.advance(of.state, then.angle, command, command_rate, period, ahead) && of.stepper.torque(ahead, then, next);
     *torque_rate = (next - *torque) / period;
     if (!works) fprintf(stderr, "%s: %s\n", coupled::plugin_name, of.stepper.message());
 }

@@ -18,8 +18,8 @@ void (*warn)(const char*, ...);
 const char* (*config)(const mjModel*, int, const char*);
 const char* const attributes[] = {"command"};
 
-// Functions of the MuJoCo that loads this library, whatever its version: with a library of one version as a dependency, the linker of
-// the system would refuse others in its own words.
+// Functions of the MuJoCo that loads this library, whatever its version. With a library of one version as a dependency, the linker
+// of the system would refuse others in its own words.
 void* mujoco_library() {
     const char* name = nullptr;
 #ifdef __APPLE__
@@ -65,7 +65,8 @@ int init(const mjModel* m, mjData*, int instance) {
     }
     const char* name = actuator_name(m, actuator);
     const int joint = joint_of(m, actuator);
-    if (m->actuator_trntype[actuator] != mjTRN_JOINT || m->jnt_type[joint] != mjJNT_HINGE || m->actuator_gear[6 * actuator] != 1.0) {
+    if (m->actuator_trntype[actuator] != mjTRN_JOINT || m->jnt_type[joint] != mjJNT_HINGE ||
+        m->actuator_gear[6 * actuator] != 1.0) {
         warn("actuator %s: a gear turns a hinge, with gear=\"1\"", name);
         return -1;
     }
