@@ -1,44 +1,98 @@
-"""Exported controllers as other programs meet them: compiled, loaded, and called from Python."""
+"""Parts of a drive as other programs meet them: written as firmware, compiled, loaded, and called from Python."""
 
 from __future__ import annotations
 
 import ctypes
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import strainwave as sw
-from strainwave.export.firmware import FLAGS, INPUTS, Scalar
+from numpy.typing import NDArray
+from strainwave.export.firmware import FLAGS, Firmware, Scalar
 from strainwave.simulation.controller import Seen
 
 from tests.cplusplus import compiler
 
+Array = NDArray[np.float64]
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
+NO_LIBRARY = ("-nostdinc++",)  # nor its headers
+# A loop in C over many steps.
+LOOP = """#include "{name}.h"
+void {name}_run(const {name}_inputs* in, {name}_outputs* out, {name}_state* state, long count);
+void {name}_run(const {name}_inputs* in, {name}_outputs* out, {name}_state* state, long count) {{
+    long k;
+    for (k = 0; k < count; ++k) out[k] = {name}_step(state, &in[k]);
+}}
+"""
+
+
+def written(drive: Any, folder: Path, scalar: Scalar, name: str = "controller", **options: Any) -> Firmware:
+    """Write a part of a drive as firmware, with a loop over its steps in C."""
+    firmware = sw.export.firmware(drive, folder, name=name, scalar=scalar, **options)
+    (folder / f"{name}_run.c").write_text(LOOP.format(name=name))
+    return firmware
+
+
+def library(folder: Path, firmware: Sequence[Firmware], *options: str) -> ctypes.CDLL:
+    """Compile firmware with its loops to a shared library, and load it: as C++20 without its standard library, and as C99."""
+    (folder / "all.cpp").write_text("".join(f'#include "{each.source.name}"\n' for each in firmware))
+    (folder / "loops.c").write_text("".join(f'#include "{each.source.stem}_run.c"\n' for each in firmware))
+    cplusplus = [*compiler("g++"), *FLAGS.split(), *STRICT, *NO_LIBRARY, *options, "-fPIC", "-c", "all.cpp"]
+    c = [*compiler("gcc"), "-std=c99", "-pedantic", *STRICT, "-fPIC", "-c", "loops.c"]
+    for command in (cplusplus, c, [*compiler("gcc"), "-shared", "-o", "all.so", "all.o", "loops.o", "-lm"]):
+        subprocess.run(command, cwd=folder, check=True)
+    return ctypes.CDLL(str(folder / "all.so"))
 
 
 class Loaded:
-    """A controller that was written as firmware, compiled and loaded; called with what a controller sees, as firmware is."""
+    """Firmware in a library: called step by step with what a controller sees, or over all inputs of a run."""
 
-    def __init__(self, drive: sw.Drive, folder: Path, scalar: Scalar) -> None:
-        written = sw.export.firmware(drive, folder, scalar=scalar)
-        options = [*FLAGS.split(), *STRICT, "-fPIC", "-shared", "-o", "controller.so", "controller.cpp", "-lm"]
-        subprocess.run([*compiler("g++"), *options], cwd=folder, check=True)
-        self.number: Any = ctypes.c_double if scalar == "double" else ctypes.c_float
-        self.library = ctypes.CDLL(str(folder / "controller.so"))
-        self.library.controller_step.restype = self.number
-        self.memory = (self.number * len(written.state))()
-        self.names = written.state
+    def __init__(self, firmware: Firmware, loaded: ctypes.CDLL) -> None:
+        name = firmware.header.stem
+        self.firmware = firmware
+        self.number: Any = ctypes.c_double if firmware.scalar == "double" else ctypes.c_float
+        outputs = type("Outputs", (ctypes.Structure,), {"_fields_": [(each, self.number) for each in firmware.outputs]})
+        self._start, self._step, self._run = (getattr(loaded, f"{name}_{verb}") for verb in ("start", "step", "run"))
+        self._step.restype = outputs
+        self.memory = (self.number * len(firmware.state))()
         self.start()
 
     def start(self) -> None:
-        self.library.controller_start(self.memory)
+        self._start(self.memory)
 
     def __call__(self, seen: Seen) -> float:
-        return float(self.library.controller_step(self.memory, (self.number * len(INPUTS))(*seen[1:])))
+        """Return the output of a controller."""
+        out = self._step(self.memory, (self.number * len(self.firmware.inputs))(*seen[1:]))
+        return float(getattr(out, self.firmware.outputs[0]))
+
+    def run(self, **inputs: Any) -> dict[str, Array]:
+        """Return the outputs of steps from the start; inputs that are left out are 0."""
+        self.start()
+        return self.go_on(**inputs)
+
+    def go_on(self, **inputs: Any) -> dict[str, Array]:
+        """Return the outputs of steps from the state of now."""
+        count = max(np.size(each) for each in inputs.values())
+        rows = np.zeros((count, len(self.firmware.inputs)), dtype := np.dtype(self.number))
+        for name, values in inputs.items():
+            rows[:, self.firmware.inputs.index(name)] = values
+        out = np.empty((count, len(self.firmware.outputs)), dtype)
+        places = (each.ctypes.data_as(ctypes.c_void_p) for each in (rows, out))
+        self._run(*places, self.memory, ctypes.c_long(count))
+        return {name: column.astype(float) for name, column in zip(self.firmware.outputs, out.T, strict=True)}
 
     @property
     def state(self) -> dict[str, float]:
-        return dict(zip(self.names, self.memory, strict=True))
+        return dict(zip(self.firmware.state, self.memory, strict=True))
+
+
+def loaded(drive: Any, folder: Path, scalar: Scalar, **options: Any) -> Loaded:
+    """Write, compile and load one part of a drive."""
+    firmware = written(drive, folder, scalar, **options)
+    return Loaded(firmware, library(folder, [firmware]))
 
 
 def run_with(controller: Any, drive: sw.Drive, command: Any) -> sw.Run:

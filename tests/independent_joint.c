@@ -30,5 +30,5 @@ static double controlled(double ref, double rate, double th, double q, double cu
         .high = 48,
     };
     before = motor;
-    return controller_step(&state, &in);
+    return controller_step(&state, &in).voltage;
 }

@@ -150,17 +150,30 @@ def modelica(
 
 @export.command("firmware")
 def firmware(
-    drive: Annotated[str, typer.Argument(help="A drive whose controller is sampled, as `strainwave compensate` writes it.")],
+    drive: Annotated[str, typer.Argument(help="A drive, by name or as a file; for a law of the gear, a gear alone will do.")],
+    part: Annotated[
+        str,
+        typer.Option(help="control, drive, or a law of the gear, as gear.friction_input."),
+    ] = "control",
     scalar: Annotated[str, typer.Option(help="Type of all numbers: float or double.")] = "float",
-    name: Annotated[str, typer.Option(help="Of the files, and prefix of all names in C.")] = "controller",
+    period: Annotated[float | None, numeric("Time between steps of a drive or a friction in s; 0.2 ms or shorter.")] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Of the files, and prefix of all names in C; else the end of the part.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/firmware"),
 ) -> None:
-    """The sampled controller of a drive as C++ source for a microcontroller, with a header in C."""
+    """A part of a drive for a microcontroller: a header of C++20 without includes, with an interface in C."""
     from strainwave.export.firmware import firmware as exported
     from strainwave.files.gear_set import GearSet
 
-    written = exported(GearSet.read(drive).drive, out, name=name, scalar=scalar)  # type: ignore[arg-type] # checked there
-    print(f"state: {', '.join(written.state)}\nwrote {written.header.name}, {written.source.name} and include to {out}")
+    found = GearSet.read(drive)
+    written = exported(found, out, part=part, name=name, scalar=scalar, period=period)  # type: ignore[arg-type] # checked there
+    for kind in ("inputs", "outputs"):
+        print(f"{kind}: {', '.join(getattr(written, kind))}")
+    print(f"state: {len(written.state)} numbers")
+    every = f", to be called every {written.period:g} s" if written.period else ""
+    files = (written.header, written.declarations, written.source)
+    print(f"wrote {', '.join(each.name for each in files)} to {out}{every}")
 
 
 @export.command("from-bam")

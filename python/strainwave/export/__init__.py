@@ -1,4 +1,4 @@
-"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, and controllers as firmware.
+"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, and firmware.
 
 >>> from pathlib import Path
 >>> from tempfile import TemporaryDirectory
@@ -6,7 +6,7 @@
 >>> with TemporaryDirectory() as folder:
 ...     written = sw.export.firmware(sw.Drive(control=sw.control.Sampled(law=sw.control.PID())), folder)
 ...     sorted(path.name for path in Path(folder).iterdir())
-['controller.cpp', 'controller.h', 'include']
+['controller.cpp', 'controller.h', 'controller.hpp']
 """
 
 from strainwave.export.bam_parameters import bam, read_bam

@@ -100,3 +100,32 @@ def closure(names: Iterable[str]) -> dict[str, str]:
             texts[name] = (INCLUDE / name).read_text("utf-8")
             waiting += headers(texts[name]) + _headers_beside(name, texts[name])
     return texts
+
+
+def amalgamated(names: Iterable[str]) -> str:
+    """Return the texts of headers as one, with those that they include, each once and in the order of inclusion.
+
+    Headers of the C++ standard library are left out: whoever includes the text gives what it uses of them.
+    """
+    done: set[str] = set()
+    return "".join(_inlined(name, done) for name in names)
+
+
+def _inlined(name: str, done: set[str]) -> str:
+    """Return the text of a header with those that it includes and that are not done yet in the places of their includes."""
+    if name in done:
+        return ""
+    done.add(name)
+    text = (INCLUDE / name).read_text("utf-8").replace("#pragma once\n", "", 1)
+    folder = name.rpartition("/")[0]
+
+    def included(match: re.Match[str]) -> str:
+        own = f"{folder}/{match['beside']}" if match["beside"] else match["found"]
+        return _inlined(own, done) if own.startswith("strainwave/") else ""
+
+    return re.sub(r'^#include (?:<(?P<found>[^>]+)>|"(?P<beside>[^"]+)")\n', included, text, flags=re.MULTILINE)
+
+
+def macros(source: str) -> list[str]:
+    """Return the names of the macros that a source defines."""
+    return sorted(set(re.findall(r"^#define (\w+)", source, re.MULTILINE)))

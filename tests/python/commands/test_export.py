@@ -25,8 +25,13 @@ def test_each_kind_writes_its_files_and_numbers(tmp_path: Path) -> None:
 
 def test_a_controller_becomes_firmware(tmp_path: Path) -> None:
     done = strainwave("export", "firmware", "robot-joint", "--name", "joint", "--out", "firmware", folder=tmp_path)
-    assert "wrote joint.h, joint.cpp and include to firmware" in done.stdout
+    assert "wrote joint.hpp, joint.h, joint.cpp to firmware, to be called every 0.00025 s" in done.stdout
     assert (tmp_path / "firmware" / "joint.cpp").exists()
+
+
+def test_a_law_of_a_gear_becomes_firmware(tmp_path: Path) -> None:
+    done = strainwave("export", "firmware", "csg-20-100", "--part", "gear.stiffness", "--out", "firmware", folder=tmp_path)
+    assert "wrote stiffness.hpp, stiffness.h, stiffness.cpp to firmware\n" in done.stdout
 
 
 def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
@@ -44,6 +49,7 @@ def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
         (("bam", "csg-20-100"), "add a [motor] to the file"),
         (("firmware", "csg-20-100"), "has no [motor] and no [load]"),
         (("firmware", "tilt-actuator"), "must be sampled"),
+        (("firmware", "tilt-actuator", "--part", "motor"), "must be one of control, drive, gear.friction_input"),
         (("from-bam", "nothing.json", "--ratio", "100"), "nothing.json"),
     ],
 )

@@ -16,7 +16,7 @@ from strainwave.native.static_type import parameters
 from strainwave.simulation.controller import Seen
 
 from tests.cplusplus import compiler, zig
-from tests.firmware import STRICT, Loaded, run_with
+from tests.firmware import STRICT, loaded, run_with
 from tests.realtime.test_firmware import CORTEX, LIBM, printed, undefined
 from tests.strategies import made, suited
 
@@ -73,7 +73,7 @@ DRIVES = {
 
 @pytest.mark.parametrize("name", DRIVES)
 def test_a_run_with_the_firmware_has_the_bits_of_the_simulation(name: str, tmp_path: Path) -> None:
-    firmware, simulated = Loaded(DRIVES[name], tmp_path, "double"), sw.simulate(DRIVES[name], COMMAND, sample=PERIOD)
+    firmware, simulated = loaded(DRIVES[name], tmp_path, "double"), sw.simulate(DRIVES[name], COMMAND, sample=PERIOD)
     run = run_with(firmware, DRIVES[name], COMMAND)
     assert [column for column in simulated.names if not np.array_equal(run[column], simulated[column])] == []
 
@@ -94,7 +94,7 @@ CLOSED_LOOP_ERROR = 1e-7  # rad of the output, between the runs under both
 @pytest.mark.parametrize("name", FLOAT_SHARES)
 def test_single_precision_is_as_accurate_as_stated(name: str, tmp_path: Path) -> None:
     chosen = DRIVES[name]
-    doubled, single = Loaded(chosen, tmp_path / "double", "double"), Loaded(chosen, tmp_path / "float", "float")
+    doubled, single = loaded(chosen, tmp_path / "double", "double"), loaded(chosen, tmp_path / "float", "float")
     errors = list[float]()
 
     def both(seen: Seen) -> float:
@@ -180,17 +180,18 @@ def test_the_header_is_in_c(tmp_path: Path) -> None:
     sw.export.firmware(DRIVES["model"], tmp_path, name="joint")
     (tmp_path / "main.c").write_text(
         '#include "joint.h"\n'
-        "int main(void) { joint_state x; joint_inputs in = {0}; joint_start(&x); return joint_step(&x, &in) > 1; }\n"
+        "int main(void) { joint_state x; joint_inputs in = {0}; joint_start(&x); "
+        "return joint_step(&x, &in).motor_torque > 1; }\n"
     )
     compile_strictly(compiler("gcc"), tmp_path, "main.c", "-std=c99")
     header = (tmp_path / "joint.h").read_text()
     assert "    float compensation_feedforward_gear_hysteresis_torque[16];  /* N.m */\n" in header
-    assert "Return the motor_torque of the motor [N.m]" in header
+    assert "    float motor_torque;  /* N.m; for the motor, within [low, high] */\n" in header
 
 
 def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(tmp_path: Path) -> None:
     chosen = DRIVES["model"]
-    firmware, simulated = Loaded(chosen, tmp_path, "double"), sw.simulate(chosen, COMMAND, sample=PERIOD)
+    firmware, simulated = loaded(chosen, tmp_path, "double"), sw.simulate(chosen, COMMAND, sample=PERIOD)
     run_with(firmware, chosen, COMMAND)
     numbers = dict(zip((name for name, *_ in _core.state(chosen)[0]), simulated.end.numbers, strict=True))
     of_control = [value for name, value in numbers.items() if name.startswith("control.")]

@@ -1,0 +1,148 @@
+"""Firmware of a part of a drive: a controller, a law of the gear, or the whole drive."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from strainwave import Drive, Gear, arguments
+from strainwave.export import cplusplus
+from strainwave.export.firmware import source
+from strainwave.export.firmware.step import Member, step
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import drive_of
+from strainwave.files.writing import making, write_all
+from strainwave.messages import quoted
+
+Scalar = Literal["float", "double"]
+SCALARS: tuple[Scalar, ...] = get_args(Scalar)
+FLAGS = source.FLAGS
+MAX_NAME = 40  # letters
+MAX_FLOAT = float(np.finfo(np.float32).max)
+KEYWORDS = """
+    S alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl concept const
+    const_cast consteval constexpr constinit continue decltype default delete do double dynamic_cast else enum
+    explicit export extern false float for friend goto if inline int long main mutable namespace new noexcept not
+    not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires restrict return
+    short signed sizeof static static_assert static_cast std strainwave struct switch template this throw true try
+    typedef typeid typename union unsigned using virtual void volatile while xor xor_eq
+"""  # of C and C++, and names that the files use
+RESERVED = frozenset(KEYWORDS.split())
+
+
+@dataclass(frozen=True)
+class Firmware:
+    """A part of a drive that was written as firmware.
+
+    Attributes:
+        header: file with the step in C++ and all that it needs
+        declarations: file with the declarations in C
+        source: file with the C++ source of what the declarations declare
+        inputs, state, outputs: names of the numbers of the structs in C, in their order
+        scalar: type of all numbers
+        period: time from one step to the next [s]; 0 if the time does not matter
+    """
+
+    header: Path
+    declarations: Path
+    source: Path
+    inputs: tuple[str, ...]
+    state: tuple[str, ...]
+    outputs: tuple[str, ...]
+    scalar: Scalar
+    period: float
+
+
+def firmware(
+    drive: Drive | GearSet | Gear,
+    folder: str | Path,
+    *,
+    part: str = "control",
+    name: str | None = None,
+    scalar: Scalar = "float",
+    period: float | None = None,
+) -> Firmware:
+    """Write a part of a drive as C++ for firmware: one header without includes, and two small files that give it to C.
+
+    A step of the firmware returns the outputs at its instant, and moves the state on to the next. The code is that of the
+    simulation, in double precision with the same numbers. A `delay` of a sampled controller models the time that its step takes
+    on the microcontroller, so the firmware of the controller does not contain it.
+
+    Args:
+        drive: the drive, a set with one, or for a law of the gear the gear alone
+        folder: where `<name>.hpp`, `<name>.h` and `<name>.cpp` are written; made if it does not exist
+        part: "control", the sampled controller with its compensation; "drive", motor, gear, load and controller by the steps of
+            `sw.simulate`; or a law of the gear: "gear.friction_input", "gear.friction_mesh", "gear.friction_output",
+            "gear.stiffness", "gear.hysteresis", "gear.kinematic_error" or "gear.kinematic_noise"
+        name: of the files, and prefix of all names in C; by default "controller", or the last word of the part
+        scalar: "float" or "double"
+        period: time between steps of the drive or of a friction [s]; by default that of a simulation, 0.2 ms or shorter. It must
+            divide period and delay of a sampled controller in the drive. A controller as part has its own
+
+    Raises:
+        TypeError, ValueError: an argument is not of its kind, or a number of the part is too large for a float
+        OSError: a file cannot be written
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> law = sw.control.PositionSpeed(position_gain=30.0, speed_proportional=0.1, speed_integral=2.0)
+    >>> drive = sw.Drive(control=sw.control.Sampled(law=law))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     firmware(drive, folder).state, firmware(drive, folder, part="gear.stiffness").outputs
+    (('law_speed_integral', 'actuation', 'pending', 'until_sample'), ('torque', 'tangent'))
+    """
+    found = step(_drive_with(drive, part), part, period)
+    name = {"control": "controller"}.get(part, part.rpartition(".")[2]) if name is None else arguments.text("name", name)
+    _check_name(name)
+    arguments.one_of("scalar", scalar, SCALARS)
+    if scalar == "float":
+        _check_range(found.model)
+    folder = Path(folder)
+    texts: dict[Path, str | bytes] = {folder / file: text for file, text in source.texts(found, name, scalar).items()}
+    with ExitStack() as stack:
+        stack.enter_context(making(folder))
+        write_all(texts)
+    header, declarations, own_source = texts
+    return Firmware(
+        header,
+        declarations,
+        own_source,
+        tuple(_elements(found.inputs)),
+        tuple(_elements(source.state_of(found))),
+        tuple(_elements(found.outputs)),
+        scalar,
+        found.period,
+    )
+
+
+def _drive_with(model: Drive | GearSet | Gear, part: str) -> Drive:
+    """Return the drive that a part is of; of a gear alone, a drive that has it."""
+    if isinstance(part, str) and part.startswith("gear."):
+        gear = model.gear if isinstance(model, GearSet) else model
+        if isinstance(gear, Gear):
+            return Drive(gear=gear)
+    return drive_of(model)
+
+
+def _check_name(name: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or len(name) > MAX_NAME or name in RESERVED:
+        allowed = f"letters, digits and underscores, {MAX_NAME} at most, the first a letter, and no word of the language"
+        raise ValueError(f"name = {quoted(name)} must be a name in C: {allowed}")
+
+
+def _check_range(model: Any) -> None:
+    for path, value in cplusplus.numbers(model):
+        if abs(value) > MAX_FLOAT:
+            raise ValueError(f'{path} = {value:g} is too large for a float; give scalar="double", or a smaller number')
+
+
+def _elements(members: Iterable[Member]) -> Iterable[str]:
+    """Yield the names of the numbers of some members."""
+    for each in members:
+        yield from (f"{each.name}[{i}]" for i in range(len(each.start))) if each.is_array else [each.name]

@@ -1,0 +1,158 @@
+"""Texts of firmware: the C++ header with all that a step needs, the header in C, and the source that joins both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from importlib import metadata, resources
+
+from strainwave.export import cplusplus
+from strainwave.export.firmware.step import Member, Step
+from strainwave.native.static_type import short_name, static_type
+
+FLAGS = "-std=c++20 -O2 -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti"
+OWN_HEADERS = ("strainwave/compiled.hpp", "strainwave/field.hpp")
+NO_STATE = (Member("unused", "", "this part has no memory"),)  # C has no empty struct
+
+
+def texts(step: Step, name: str, scalar: str) -> dict[str, str]:
+    """Return the three files of a step by name."""
+    return {f"{name}.hpp": _cplusplus(step, name, scalar), f"{name}.h": _c(step, name, scalar), f"{name}.cpp": _joint(name)}
+
+
+def state_of(step: Step) -> tuple[Member, ...]:
+    """Return the members of the state in C, of which there is at least one."""
+    return step.state or NO_STATE
+
+
+def _about(step: Step) -> str:
+    model = f"{step.words}: {short_name(step.model)}" if step.words.startswith("a law") else step.words
+    return f"{model}{_every(step)}.\n   Written by strainwave {metadata.version('strainwave')} (Apache-2.0)"
+
+
+def _every(step: Step) -> str:
+    return f" every {step.period!r} s" if step.period else ""
+
+
+def _members(members: Iterable[Member], scalar: str, comment: str) -> str:
+    return "".join(
+        f"    {scalar} {each.name}{f'[{len(each.start)}]' if each.is_array else ''};  "
+        + comment.format("; ".join(filter(None, (each.unit, each.doc))) or "-")
+        + "\n"
+        for each in members
+    )
+
+
+def _c(step: Step, name: str, scalar: str) -> str:
+    """Return the declarations in C."""
+    members = {"inputs": step.inputs, "state": state_of(step), "outputs": step.outputs}
+    structs = "\n".join(
+        f"typedef struct {{\n{_members(each, scalar, '/* {} */')}}} {name}_{kind};\n" for kind, each in members.items()
+    )
+    return f"""/* {name}: {_about(step)}. Compile {name}.cpp by GCC 12, Clang 14 or later:
+
+       c++ {FLAGS} -c {name}.cpp
+
+   Call {name}_start once, then {name}_step{_every(step)}. Several of them: a state for each. */
+#ifndef {name.upper()}_H
+#define {name.upper()}_H
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+{structs}
+void {name}_start({name}_state* state);
+
+/* Return the outputs at this instant, and move the state on to the next. */
+{name}_outputs {name}_step({name}_state* state, const {name}_inputs* in);
+
+#ifdef __cplusplus
+}}
+#endif
+#endif
+"""
+
+
+def _joint(name: str) -> str:
+    """Return the source that gives the functions of C++ to C."""
+    return f"""// The functions of {name}.h.
+#include "{name}.h"
+
+#include "{name}.hpp"
+
+extern "C" void {name}_start({name}_state* state) {{ *state = __builtin_bit_cast({name}_state, {name}::start()); }}
+
+extern "C" {name}_outputs {name}_step({name}_state* state, const {name}_inputs* in) {{
+    {name}::State moved = __builtin_bit_cast({name}::State, *state);
+    const {name}::Outputs out = {name}::step(moved, __builtin_bit_cast({name}::Inputs, *in));
+    *state = __builtin_bit_cast({name}_state, moved);
+    return __builtin_bit_cast({name}_outputs, out);
+}}
+"""
+
+
+def _cplusplus(step: Step, name: str, scalar: str) -> str:
+    """Return the header in C++ that contains all that it needs."""
+    mathematics = resources.files("strainwave.export.firmware").joinpath("mathematics.hpp").read_text("utf-8")
+    package = cplusplus.amalgamated([*cplusplus.headers_of(step.model), *step.headers, *OWN_HEADERS])
+    macros = "".join(f"#undef {each}\n" for each in cplusplus.macros(package))
+    members = {"Inputs": step.inputs, "State": state_of(step), "Outputs": step.outputs}
+    structs = "\n".join(f"struct {kind} {{\n{_members(each, 'S', '// {}')}}};\n" for kind, each in members.items())
+    numbers = "".join(f"    {line}\n" for line in cplusplus.assignments(step.model, "model"))
+    start = "".join(f"    state.{line};\n" for each in step.state for line in _starts(each))
+    return f"""/* {name}: {_about(step)}.
+   A header of C++20 without includes: {name}::start and {name}::step. */
+#ifndef {name.upper()}_HPP
+#define {name.upper()}_HPP
+
+#define strainwave {name}_strainwave  // so that a program may contain several such headers
+
+{mathematics}{package}
+namespace {name} {{
+
+using S = {scalar};
+
+{structs}
+namespace constants {{
+
+constexpr S period{{S({step.period!r})}};  // s
+constexpr auto made = [] {{
+    {static_type(step.model, "S")} model{{}};
+{numbers}    return model;
+}};
+using Model = decltype(strainwave::compiled(made()));
+constexpr Model model = strainwave::compiled(made());
+
+}}  // namespace constants
+
+/// Return the state before the first step.
+constexpr State start() {{
+    State state{{}};
+{start}    return state;
+}}
+
+/// Return the outputs at this instant, and move the state on to the next.
+static inline Outputs step(State& state, const Inputs& in) {{
+    using namespace constants;
+    using Memory = decltype({step.memory});
+    strainwave::Flat<S, Memory> numbers;  // with which the state begins
+    static_assert(sizeof numbers <= sizeof state);
+    __builtin_memcpy(&numbers, &state, sizeof numbers);
+    auto x = strainwave::refilled({step.memory}, numbers);
+    Outputs out;
+{step.body.removeprefix(chr(10))}
+    numbers = strainwave::flattened<S>(x);
+    if constexpr (strainwave::size_of<S, Memory> > 0) __builtin_memcpy(&state, &numbers, sizeof numbers);
+    return out;
+}}
+
+}}  // namespace {name}
+
+{macros}#undef strainwave
+#endif
+"""
+
+
+def _starts(member: Member) -> Sequence[str]:
+    if not member.is_array:
+        return [f"{member.name} = S({member.start[0]!r})"] if member.start[0] else []
+    return [f"{member.name}[{i}] = S({value!r})" for i, value in enumerate(member.start) if value]
