@@ -1,15 +1,34 @@
-/* Calls a controller with the inputs of inputs.h, one after the other, and prints how deep its stack went [B]. The simulator
-   counts what lies between the calls. Without an operating system: a table of vectors, and output by semihosting. */
-#include "controller.h"
+/* Calls a step of firmware with all rows of the file "inputs", and writes the file "counts": how long each call took in ticks of
+   the system timer, and what Counts holds. QEMU lets 1 ns pass with each instruction, so that a tick of 40 ns is 40 instructions.
+   Without an operating system: a table of vectors, and files by semihosting. */
+#include <string.h>
 
-#define DEPTH 8192
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define INPUTS JOIN(NAME, _inputs)
+#define STATE JOIN(NAME, _state)
+#define OUTPUTS JOIN(NAME, _outputs)
+
+#define DEPTH 16384 /* bytes of stack that are looked at */
 #define PAINT 0xA5
+#define REPEATS 1000
+#define KINDS 3 /* of a step: a shaft sticks; no shaft sticks; a shaft stops or breaks away */
+#define TIMER ((volatile unsigned*)0xE000E010)
+#define TICKS 0xFFFFFFu
 
-static const controller_inputs inputs[] = {
-#include "inputs.h"
+struct Counts {
+    unsigned steps, depth; /* bytes of stack */
+    unsigned empty;        /* ticks of `REPEATS` calls of a function of one instruction, each measured by itself */
+    unsigned found[KINDS], repeated[KINDS], idle[KINDS]; /* steps, ticks of repeats of the longest, and of the loop alone */
 };
-static controller_state state;
-volatile float last;
+typedef OUTPUTS (*Step)(STATE*, const INPUTS*);
+
+static struct Counts counts;
+static INPUTS* const inputs = (INPUTS*)0x21000000; /* the large memory of the machine */
+static unsigned* const ticks = (unsigned*)0x21800000;
+static STATE state, before, longest[KINDS];
+static INPUTS input[KINDS];
+static volatile OUTPUTS last;
 
 static int ask(int operation, const void* argument) {
     register int r0 __asm__("r0") = operation;
@@ -17,20 +36,69 @@ static int ask(int operation, const void* argument) {
     __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
     return r0;
 }
+static int opened(const char* name, int mode) {
+    const int request[] = {(int)name, mode, (int)strlen(name)};
+    return ask(1, request);
+}
+
+__attribute__((naked)) static OUTPUTS nothing(STATE* at, const INPUTS* in) { __asm__("bx lr"); }
+static unsigned now(void) { return TIMER[2]; }
+
+__attribute__((noinline)) static unsigned repeats(Step volatile function, int kind) {
+    const unsigned begin = now();
+    for (int i = 0; i < REPEATS; ++i) {
+        state = longest[kind];
+        last = function(&state, &input[kind]);
+    }
+    return (begin - now()) & TICKS;
+}
+__attribute__((noinline)) static unsigned timed(Step volatile function, const INPUTS* in) {
+    const unsigned begin = now();
+    last = function(&state, in);
+    return (begin - now()) & TICKS;
+}
+
+static void run(void) {
+    unsigned most[KINDS] = {0};
+    JOIN(NAME, _start)(&state);
+    for (unsigned k = 0; k < counts.steps; ++k) {
+        before = state;
+        const int stuck = STICKS;
+        ticks[k] = timed(JOIN(NAME, _step), &inputs[k]);
+        const int kind = stuck != STICKS ? 2 : !stuck;
+        ++counts.found[kind];
+        if (ticks[k] <= most[kind]) continue;
+        most[kind] = ticks[k];
+        longest[kind] = before;
+        input[kind] = inputs[k];
+    }
+}
 
 void steps(void) {
     volatile unsigned char mark, *const deepest = &mark - DEPTH;
-    char text[] = "      \n";
     *(volatile unsigned*)0xE000ED88 |= 0xFu << 20; /* the floating-point unit is off after a reset */
     __asm__ volatile("dsb\n\tisb");
-    controller_start(&state);
-    for (unsigned k = 0; k < DEPTH - 256; ++k) deepest[k] = PAINT; /* the frame of this function is shorter than the rest */
-    for (unsigned k = 0; k < sizeof inputs / sizeof *inputs; ++k) last = controller_step(&state, &inputs[k]);
-    unsigned depth = DEPTH;
-    for (const volatile unsigned char* at = deepest; *at == PAINT; ++at) --depth;
-    for (char* digit = text + 5; depth > 0; depth /= 10) *digit-- = (char)('0' + depth % 10);
-    ask(4, text);                                 /* SYS_WRITE0 */
-    ask(0x18, (const void*)0x20026);              /* SYS_EXIT */
+    TIMER[1] = TICKS;
+    TIMER[0] = 5; /* on, by the clock of the processor */
+    const int from = opened("inputs", 1), size = ask(0xC, &from);
+    const int reading[] = {from, (int)inputs, size};
+    ask(6, reading);
+    counts.steps = (unsigned)size / sizeof *inputs;
+    for (unsigned k = 0; k < DEPTH - 512; ++k) deepest[k] = PAINT; /* the frame of this function is shorter than the rest */
+    run();
+    counts.depth = DEPTH;
+    for (const volatile unsigned char* at = deepest; *at == PAINT; ++at) --counts.depth;
+    for (int i = 0; i < REPEATS; ++i) counts.empty += timed(nothing, inputs);
+    for (int kind = 0; kind < KINDS; ++kind) {
+        if (counts.found[kind] == 0) continue;
+        counts.repeated[kind] = repeats(JOIN(NAME, _step), kind);
+        counts.idle[kind] = repeats(nothing, kind);
+    }
+    const int to = opened("counts", 5);
+    const int head[] = {to, (int)&counts, sizeof counts}, rest[] = {to, (int)ticks, (int)(counts.steps * sizeof *ticks)};
+    ask(5, head);
+    ask(5, rest);
+    ask(0x18, (const void*)0x20026); /* SYS_EXIT */
 }
 
-__attribute__((section(".vectors"), used)) static const void* const vectors[] = {(void*)0x20010000, (void*)steps};
+__attribute__((section(".vectors"), used)) static const void* const vectors[] = {(void*)0x20100000, (void*)steps};

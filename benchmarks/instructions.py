@@ -1,12 +1,14 @@
-"""Instructions, code and stack of one step of exported controllers on microcontrollers.
+"""Instructions, code and stack of one step of firmware on microcontrollers: whole drives, laws of gears, controllers.
 
-Controllers with each compensator, and with each law of control that contains a gear, are exported as firmware, compiled for
-Cortex-M4F and Cortex-M7 by GCC with newlib, and run in a machine that QEMU emulates, which prints each instruction that it
-executes. These are instructions, not cycles: a quotient or a root takes 14 cycles on a Cortex-M4F, most others one. The inputs
-are those of a simulated motion with many reversals, then random ones, far outside of it. The largest number of a step is over
-all of them, with sinf, cosf and expf.
+Each is exported as firmware in single precision, compiled for Cortex-M4F and Cortex-M7 by GCC with newlib, and run in a machine
+that QEMU emulates, whose clock goes on by 1 ns with each instruction. These are instructions, not cycles: a quotient or a root
+takes 14 cycles on a Cortex-M4F, most others one. They are counted with sinf, cosf, expf and memcpy. The mean is over all steps,
+and exact; the largest is that of the longest step, which is repeated until its count is exact.
 
-Needs the packages qemu-system-arm, gcc-arm-none-eabi, libnewlib-arm-none-eabi and libstdc++-arm-none-eabi-newlib of Debian.
+Drives follow a command that reverses five times in 10 s, and a load that grows. Controllers follow a simulated motion with many
+reversals, then random inputs, far outside of it; laws follow random inputs.
+
+Needs the packages qemu-system-arm, gcc-arm-none-eabi and libnewlib-arm-none-eabi of Debian.
 """
 
 from __future__ import annotations
@@ -14,30 +16,45 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
+import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import strainwave as sw
+from numpy.typing import NDArray
+from peers import strainwave_drive
 from report import Column, print_table, save
 from rich.console import Console
-from strainwave.export.firmware import FLAGS, INPUTS
+from strainwave.export.firmware import FLAGS
 
+Array = NDArray[np.float64]
 QEMU, GCC = "qemu-system-arm", "arm-none-eabi-"
 PROGRAMS = (QEMU, *(GCC + name for name in ("gcc", "g++", "size")))
-TRACE = ("-singlestep", "-d", "exec,nochain")  # one line for each instruction, with the function that it is of
+CLOCK = ("-icount", "shift=0")  # 1 ns with each instruction
+TICK = 40  # ns, of the system timer of both machines
 DRIVER = Path(__file__).with_suffix(".c")
 MEMORY = ("--section-start=.vectors=0", "-Ttext=0x400", "-Tdata=0x20000000", "-Tbss=0x20001000", "-e", "steps")
+REPEATS = 1000  # of the longest step, as in the driver
+SLIP = "(state.input_slip_direction == 0.0f) + 2 * (state.output_slip_direction == 0.0f)"
 SAMPLE_PERIOD = 1e-3  # s, of the controllers
 MOTION_STEPS = 400  # sampling instants of the simulated motion
 RANDOM_STEPS = 100
-RANGES = {"input_angle": 1e3, "command": 1e1, "low": 0.0, "high": 0.0}  # of random inputs; of others 1e2
+RANGES = {"input_angle": 1e3, "command": 1e1, "low": 0.0, "high": 0.0}  # of random inputs of controllers; of others 1e2
+LAW_STEPS = 2000
+LAW_RANGES = {"twist": 2e-3, "speed": 20.0, "load": 5.0, "temperature": 0.0}  # of inputs of laws; of others 1e2
+ROOM = 293.15  # K
+COMMAND = ((0.0, 1.0, 3.0, 5.0, 7.0, 9.0, 10.0), (0.0, 0.25, -0.25, 0.25, -0.25, 0.25, 0.0))  # s and rad, of drives
+LOAD = ((0.0, 5.5, 6.5, 10.0), (0.0, 0.0, 1.0, 1.0))  # s and N.m
 
 COLUMNS = (
-    Column("controller", words=True),
+    Column("firmware", words=True),
     *(Column(heading) for heading in ("state [B]", "code, M4F [B]", "stack [B]", "M4F, mean", "M4F, largest", "M7, largest")),
 )
+STATES = "slips", "sticks", "stops or breaks away"
+STATE_COLUMNS = (Column("drive", words=True), *(Column(f"M4F, {state}") for state in STATES))
 
 
 @dataclass(frozen=True)
@@ -53,16 +70,118 @@ M7 = Processor(("-mcpu=cortex-m7", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv5-d1
 
 
 @dataclass(frozen=True)
-class Step:
-    """A step of a controller: bytes of its state, code and stack on the Cortex-M4F, instructions on both processors."""
+class Counts:
+    """Instructions of steps, and bytes of stack below that of their caller.
 
-    controller: str
+    Attributes:
+        largest: of steps in which a shaft sticks, no shaft sticks, a shaft stops or breaks away; 0 without such steps
+    """
+
+    mean: float
+    largest: tuple[int, int, int]
+    stack: int
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of firmware: bytes of its state, code and stack on the Cortex-M4F, instructions on both processors."""
+
+    part: str
     state: int
     code: int
     stack: int
     mean: float
     largest: int
     largest_m7: int
+    by_state: tuple[int, int, int]  # as in `Counts`, on the Cortex-M4F
+
+
+@dataclass(frozen=True)
+class Case:
+    """A part to export, and the inputs of its steps, one row each."""
+
+    name: str
+    model: Any
+    part: str
+    period: float | None = None
+
+    def inputs(self, firmware: sw.export.Firmware) -> Array:
+        match self.part:
+            case "control":
+                return controller_inputs(firmware)
+            case "drive":
+                return drive_inputs(firmware)
+        return law_inputs(firmware)
+
+
+def cases() -> Iterator[Case]:
+    """Yield all that is measured: drives, laws, then controllers."""
+    for name, drive in drives().items():
+        yield Case(name, drive, "drive")
+    for name, (part, law) in laws().items():
+        gear = sw.load("csg-20-100").replace(**{part: law})
+        yield Case(name, gear, f"gear.{part}", SAMPLE_PERIOD if part.startswith("friction") else None)
+    for name, control in controllers().items():
+        yield Case(name, joint(control), "control")
+
+
+def drives() -> dict[str, sw.Drive]:
+    """Return the drives whose runs the tests compare with their firmware, without noise, thermal model and energy meter."""
+    soft_law = sw.control.PositionSpeed(
+        position_gain=40.0, speed_proportional=0.05, speed_integral=1.0, limit=5.0, feedback="output"
+    )
+    soft = sw.Drive(
+        gear=sw.rig.printed_gear(0).replace(damping=20.0),
+        motor=sw.motor.TorqueSource(inertia=1e-4),
+        control=soft_law,
+        load=sw.loads.Inertia(inertia=5.0),
+    )
+    sets = {name: sw.GearSet.read(name).drive for name in ("robot-joint", "tilt-actuator-lumped", "tilt-actuator")}
+    found = {"reference drive": strainwave_drive.drive(), **sets, "soft gear of document T": soft}
+    return {name: quiet(drive) for name, drive in found.items()}
+
+
+def quiet(noisy: sw.Drive) -> sw.Drive:
+    """Return a drive without noise of its sensors, at one temperature, with no energy measured."""
+    plain, sensors = sw.Drive(), noisy.sensors
+    found = {field["name"]: getattr(sensors, field["name"]) for field in type(sensors).fields}
+    found = {name: sensor.law if isinstance(sensor, sw.sensor.Noisy) else sensor for name, sensor in found.items()}
+    return noisy.replace(sensors=sensors.replace(**found), thermal=plain.thermal, meter=plain.meter)
+
+
+def laws() -> dict[str, tuple[str, Any]]:
+    """Return laws of a gear, each with its place."""
+    orders = list(range(1, 11))
+    return {
+        "friction: Stribeck": ("friction_input", sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0)),
+        "friction: LuGre": ("friction_input", strainwave_drive.friction()),
+        "friction: Maxwell slip, 4 elements": (
+            "friction_input",
+            sw.friction.MaxwellSlipFriction(
+                stiffness=[20.0, 40.0, 80.0, 160.0],
+                share=[0.25] * 4,
+                coulomb=0.03,
+                breakaway=0.045,
+                stribeck_speed=2.0,
+                attraction=0.3,
+            ),
+        ),
+        "stiffness: three segments": ("stiffness", sw.load("csg-20-100").stiffness),
+        "stiffness: cubic": ("stiffness", sw.stiffness.Cubic(a1=1.2e4, a3=1e9)),
+        "hysteresis: Maxwell slip, 8 elements": ("hysteresis", strainwave_drive.gear().hysteresis),
+        "hysteresis: Bouc and Wen": ("hysteresis", sw.hysteresis.BoucWen(stiffness=1e3, saturation=5.0)),
+        "hysteresis: Preisach": (
+            "hysteresis",
+            sw.hysteresis.Preisach(density=sw.hysteresis.PowerDensity(limit=2e-3, saturation=5.0)),
+        ),
+        "hysteresis: regimes": ("hysteresis", sw.rig.printed_gear(0).hysteresis),
+        "kinematic error: 10 orders": (
+            "kinematic_error",
+            sw.kinematic_error.Fourier(order=orders, amplitude=[1e-5] * 10, phase=[0.1] * 10),
+        ),
+        "kinematic error: misalignment": ("kinematic_error", sw.load("tilt-actuator").gear.kinematic_error),
+        "random kinematic error": ("kinematic_noise", sw.kinematic_error.Stochastic(amplitude=2e-5)),
+    }
 
 
 def controllers() -> dict[str, sw.control.Sampled]:
@@ -105,7 +224,7 @@ def controllers() -> dict[str, sw.control.Sampled]:
     }
     with_gear = {"gear": gear, "load": load, "motor_inertia": 2e-5, "reference_time": 2e-3, "limit": 2.0}
     laws: dict[str, Any] = {
-        "Kalman regulator, state space": sw.regulator(drive(), period=SAMPLE_PERIOD, error=1e-3, encoder="input"),
+        "Kalman regulator, state space": sw.regulator(joint(), period=SAMPLE_PERIOD, error=1e-3, encoder="input"),
         "feedback linearisation": sw.control.FeedbackLinearisation(bandwidth=60.0, **with_gear),
         "kinematic-error tracking": sw.control.KinematicErrorTracking(bandwidth=30.0, speed_gain=0.03, **with_gear),
     }
@@ -116,7 +235,7 @@ def controllers() -> dict[str, sw.control.Sampled]:
     }
 
 
-def drive(control: Any = None) -> sw.Drive:
+def joint(control: Any = None) -> sw.Drive:
     """Return a joint under a controller."""
     return sw.Drive(
         gear=sw.load("csg-20-100"),
@@ -126,14 +245,34 @@ def drive(control: Any = None) -> sw.Drive:
     )
 
 
-def inputs() -> np.ndarray[Any, Any]:
-    """Return the inputs of a controller, one row per step: a motion that reverses every 25 ms, then random inputs."""
+def drive_inputs(firmware: sw.export.Firmware) -> Array:
+    """Return the inputs of a drive over 10 s."""
+    time = firmware.period * np.arange(round(COMMAND[0][-1] / firmware.period))
+    columns = {"temperature": np.full(len(time), ROOM)}
+    for name, (knots, values) in {"command": COMMAND, "load_torque": LOAD}.items():
+        rates = np.diff(values) / np.diff(knots)
+        columns[name] = np.interp(time, knots, values)
+        columns[f"{name}_rate"] = rates[np.searchsorted(knots, time, side="right") - 1]
+    return np.column_stack([columns.get(name, np.zeros(len(time))) for name in firmware.inputs])
+
+
+def law_inputs(firmware: sw.export.Firmware) -> Array:
+    """Return random inputs of a law."""
+    random = np.random.default_rng(1)
+    columns = [LAW_RANGES.get(name, 1e2) * random.uniform(-1.0, 1.0, LAW_STEPS) for name in firmware.inputs]
+    return np.column_stack(
+        [ROOM + each if name == "temperature" else each for name, each in zip(firmware.inputs, columns, strict=True)]
+    )
+
+
+def controller_inputs(firmware: sw.export.Firmware) -> Array:
+    """Return inputs of a controller: a motion that reverses every 25 ms, then random inputs."""
     duration = SAMPLE_PERIOD * MOTION_STEPS
     motion = sw.scenario.sine(0.02, 20.0, duration) + sw.scenario.sine(0.5, 3.0, duration)
-    run = sw.simulate(drive(controllers()["cascade alone"]), motion, sample=SAMPLE_PERIOD)
-    rows = np.zeros((MOTION_STEPS + RANDOM_STEPS, len(INPUTS)))
+    run = sw.simulate(joint(controllers()["cascade alone"]), motion, sample=SAMPLE_PERIOD)
+    rows = np.zeros((MOTION_STEPS + RANDOM_STEPS, len(firmware.inputs)))
     random = np.random.default_rng(1)
-    for column, (name, *_) in enumerate(INPUTS):
+    for column, name in enumerate(firmware.inputs):
         if name in run.names:
             rows[:MOTION_STEPS, column] = run[name][:MOTION_STEPS]
         rows[MOTION_STEPS:, column] = RANGES.get(name, 1e2) * random.uniform(-1.0, 1.0, RANDOM_STEPS)
@@ -142,79 +281,75 @@ def inputs() -> np.ndarray[Any, Any]:
     return rows
 
 
-def measured(name: str, control: sw.control.Sampled, rows: np.ndarray[Any, Any]) -> Step:
-    """Return the step of one controller."""
+def measured(case: Case) -> Step:
+    """Return the step of one part."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        written = sw.export.firmware(drive(control), folder)
-        lines = (
-            "{" + ",".join(f"{value!r}f" for value in row) + "},\n" for row in rows.astype(np.float32).astype(float).tolist()
+        firmware = sw.export.firmware(case.model, folder, part=case.part, name="part", period=case.period)
+        case.inputs(firmware).astype("<f4").tofile(folder / "inputs")
+        sticks = SLIP if "input_slip_direction" in firmware.state else "0"
+        on_m7 = counted(M7, folder, sticks)
+        on_m4f = counted(M4F, folder, sticks)
+        state = 4 * len(firmware.state)
+        return Step(
+            case.name,
+            state,
+            code_size(folder),
+            on_m4f.stack,
+            on_m4f.mean,
+            max(on_m4f.largest),
+            max(on_m7.largest),
+            on_m4f.largest,
         )
-        (folder / "inputs.h").write_text("".join(lines))
-        compile_for(M7, folder)
-        on_m7, _ = steps(M7, folder, len(rows))
-        compile_for(M4F, folder)
-        on_m4f, stack = steps(M4F, folder, len(rows))
-        state, code, mean = 4 * len(written.state), code_size(folder), float(np.mean(on_m4f[:MOTION_STEPS]))
-        return Step(name, state, code, stack, mean, max(on_m4f), max(on_m7))
 
 
-def compile_for(processor: Processor, folder: Path) -> None:
-    """Compile controller and driver to the program `steps` for a processor."""
+def counted(processor: Processor, folder: Path, sticks: str) -> Counts:
+    """Compile firmware and driver for a processor, run them, and return what they counted."""
     linking = ["-nostartfiles", *(f"-Wl,{option}" for option in MEMORY)]
+    naming = ["-DNAME=part", f"-DSTICKS=({sticks})", "-include", "part.h"]
+    files = ("-semihosting-config", "enable=on,target=native")
     for command in (
-        [f"{GCC}g++", *processor.options, *FLAGS.split(), "-c", "controller.cpp"],
-        [f"{GCC}gcc", *processor.options, "-O1", *linking, "-I.", str(DRIVER), "controller.o", "-lm", "-o", "steps"],
+        [f"{GCC}g++", *processor.options, *FLAGS.split(), "-nostdinc++", "-c", "part.cpp"],
+        [f"{GCC}gcc", *processor.options, "-O1", *linking, "-I.", *naming, str(DRIVER), "part.o", "-lm", "-o", "steps"],
+        [QEMU, "-M", processor.machine, "-kernel", "steps", "-display", "none", *CLOCK, *files],
     ):
         subprocess.run(command, cwd=folder, check=True)
-
-
-def steps(processor: Processor, folder: Path, number: int) -> tuple[list[int], int]:
-    """Return the instructions of each step that the program runs, and the bytes of stack below that of its loop."""
-    output = ("-chardev", "file,id=out,path=depth", "-semihosting-config", "enable=on,target=native,chardev=out")
-    command = [QEMU, "-M", processor.machine, "-kernel", "steps", "-display", "none", *output, *TRACE]
-    process = subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE)
-    assert process.stderr is not None
-    calls, in_loop = list[int](), None
-    for line in process.stderr:
-        if line.endswith(b" steps\n"):
-            in_loop = True
-        elif in_loop is not None:
-            if in_loop:
-                calls.append(0)
-            calls[-1] += 1
-            in_loop = False
-    if process.wait() != 0 or len(calls) <= number:
-        raise RuntimeError(f"{QEMU} ended with status {process.returncode} after {len(calls)} calls")
-    return calls[1 : number + 1], int((folder / "depth").read_text())  # the first is controller_start
+    numbers = np.fromfile(folder / "counts", "<u4").astype(int)
+    steps, depth, empty = numbers[:3]
+    found, repeated, idle = numbers[3:12].reshape(3, 3)
+    exact = np.where(found > 0, np.rint((repeated - idle) * TICK / REPEATS).astype(int) + 1, 0)  # 1: the function that is idle
+    mean = TICK * (float(np.mean(numbers[12 : 12 + steps])) - empty / REPEATS) + 1.0
+    return Counts(mean, tuple(exact.tolist()), int(depth))
 
 
 def code_size(folder: Path) -> int:
-    """Return the bytes of code and constants of the controller."""
-    printed = subprocess.run([f"{GCC}size", "controller.o"], cwd=folder, check=True, capture_output=True, text=True).stdout
+    """Return the bytes of code and constants of the firmware."""
+    printed = subprocess.run([f"{GCC}size", "part.o"], cwd=folder, check=True, capture_output=True, text=True).stdout
     return int(printed.splitlines()[1].split()[0])
 
 
 def run(console: Console) -> None:
-    """Count the steps of all controllers."""
+    """Count the steps of all parts."""
     if missing := [program for program in PROGRAMS if shutil.which(program) is None]:
         console.print(f"instructions: left out, as {', '.join(missing)} is not installed")
         return
-    rows = inputs()
-    found = [measured(name, control, rows) for name, control in controllers().items()]
+    found = list[Step]()
+    with warnings.catch_warnings(action="ignore"), console.status("instructions"):
+        found += [measured(case) for case in cases()]
     cells = [
         [
-            each.controller,
+            each.part,
             *(str(number) for number in (each.state, each.code, each.stack, round(each.mean), each.largest, each.largest_m7)),
         ]
         for each in found
     ]
+    print_table(console, "Instructions of a step", COLUMNS, cells, "drives over 10 s, laws and controllers over random inputs")
+    whole = [each for each in found if sum(count > 0 for count in each.by_state) > 1]
     print_table(
         console,
-        "Instructions of a step",
-        COLUMNS,
-        cells,
-        f"over {MOTION_STEPS} steps of a motion and {RANDOM_STEPS} of random inputs",
+        "Largest step by what the shafts do",
+        STATE_COLUMNS,
+        [[each.part, *(str(each.by_state[place]) for place in (1, 0, 2))] for each in whole],
     )
     save("instructions", found)
 

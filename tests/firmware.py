@@ -36,13 +36,19 @@ def written(drive: Any, folder: Path, scalar: Scalar, name: str = "controller", 
     return firmware
 
 
-def library(folder: Path, firmware: Sequence[Firmware], *options: str) -> ctypes.CDLL:
-    """Compile firmware with its loops to a shared library, and load it: as C++20 without its standard library, and as C99."""
+def compiled(folder: Path, firmware: Sequence[Firmware], *options: str) -> None:
+    """Compile firmware to all.o, as C++20 without its standard library."""
     (folder / "all.cpp").write_text("".join(f'#include "{each.source.name}"\n' for each in firmware))
+    command = [*compiler("g++"), *FLAGS.split(), *STRICT, *NO_LIBRARY, *options, "-c", "all.cpp"]
+    subprocess.run(command, cwd=folder, check=True)
+
+
+def library(folder: Path, firmware: Sequence[Firmware], *options: str) -> ctypes.CDLL:
+    """Compile firmware with its loops, which are in C99, to a shared library, and load it."""
+    compiled(folder, firmware, *options, "-fPIC")
     (folder / "loops.c").write_text("".join(f'#include "{each.source.stem}_run.c"\n' for each in firmware))
-    cplusplus = [*compiler("g++"), *FLAGS.split(), *STRICT, *NO_LIBRARY, *options, "-fPIC", "-c", "all.cpp"]
     c = [*compiler("gcc"), "-std=c99", "-pedantic", *STRICT, "-fPIC", "-c", "loops.c"]
-    for command in (cplusplus, c, [*compiler("gcc"), "-shared", "-o", "all.so", "all.o", "loops.o", "-lm"]):
+    for command in (c, [*compiler("gcc"), "-shared", "-o", "all.so", "all.o", "loops.o", "-lm"]):
         subprocess.run(command, cwd=folder, check=True)
     return ctypes.CDLL(str(folder / "all.so"))
 
@@ -87,12 +93,6 @@ class Loaded:
     @property
     def state(self) -> dict[str, float]:
         return dict(zip(self.firmware.state, self.memory, strict=True))
-
-
-def loaded(drive: Any, folder: Path, scalar: Scalar, **options: Any) -> Loaded:
-    """Write, compile and load one part of a drive."""
-    firmware = written(drive, folder, scalar, **options)
-    return Loaded(firmware, library(folder, [firmware]))
 
 
 def run_with(controller: Any, drive: sw.Drive, command: Any) -> sw.Run:

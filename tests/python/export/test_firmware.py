@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
-from strainwave.export.firmware import FLAGS
+from strainwave.export.firmware import FLAGS, Scalar
 from strainwave.native.static_type import parameters
 from strainwave.simulation.controller import Seen
 
 from tests.cplusplus import compiler, zig
-from tests.firmware import STRICT, loaded, run_with
+from tests.firmware import STRICT, Loaded, compiled, library, run_with, written
 from tests.realtime.test_firmware import CORTEX, LIBM, printed, undefined
 from tests.strategies import made, suited
 
@@ -48,7 +48,9 @@ DRIVES = {
     "delay": drive(delay=3e-4, feedforward=FEEDFORWARD),
     "whole_period": drive(delay=PERIOD, observer=OBSERVER),
     "fourier": drive(learning=sw.compensation.AdaptiveFourier(order=[1, 2.5], max_frequency=300.0)),
-    "table": drive(learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)),
+    "table": drive(
+        feedforward=FEEDFORWARD, learning=sw.compensation.Repetitive(), observer=made(sw.compensation.FrictionScale)
+    ),
     "map": drive(feedforward=sw.compensation.LostMotionMap(angle=[0.0, 0.1], forward=[1e-4, 2e-4], backward=[-1e-4, 0.0])),
     "bristles": drive(
         feedforward=FEEDFORWARD,
@@ -71,11 +73,48 @@ DRIVES = {
 }
 
 
+PLACES = ("feedforward", "learning", "observer", "dither")
+
+
+def programs(folder: Path, scalar: Scalar, names: Iterable[str]) -> dict[str, Loaded]:
+    """Return firmware of some drives, in one program."""
+    firmware = {name: written(DRIVES[name], folder, scalar, name=f"own_{name}") for name in names}
+    shared = library(folder, list(firmware.values()), "-O1", *(["-Wdouble-promotion"] if scalar == "float" else []))
+    return {name: Loaded(each, shared) for name, each in firmware.items()}
+
+
+@pytest.fixture(scope="module")
+def doubled(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Loaded]:
+    return programs(tmp_path_factory.mktemp("double"), "double", DRIVES)
+
+
+@pytest.fixture(scope="module")
+def single(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Loaded]:
+    return programs(tmp_path_factory.mktemp("float"), "float", FLOAT_SHARES)
+
+
 @pytest.mark.parametrize("name", DRIVES)
-def test_a_run_with_the_firmware_has_the_bits_of_the_simulation(name: str, tmp_path: Path) -> None:
-    firmware, simulated = loaded(DRIVES[name], tmp_path, "double"), sw.simulate(DRIVES[name], COMMAND, sample=PERIOD)
+def test_a_run_with_the_firmware_has_the_bits_of_the_simulation(name: str, doubled: dict[str, Loaded]) -> None:
+    firmware, simulated = doubled[name], sw.simulate(DRIVES[name], COMMAND, sample=PERIOD)
+    firmware.start()
     run = run_with(firmware, DRIVES[name], COMMAND)
     assert [column for column in simulated.names if not np.array_equal(run[column], simulated[column])] == []
+
+
+@pytest.mark.parametrize(("place", "model"), [(place, name) for place in PLACES for name in _core.families[place]])
+def test_every_compensator_is_among_these_drives(place: str, model: str) -> None:
+    """Each takes part: without it the run is another one."""
+    kind, (absent, *_) = _core.families[place][model], _core.families[place].values()
+    with_it = [each for each in DRIVES.values() if type(getattr(each.control.compensation, place)) is kind]  # type: ignore[union-attr]
+    assert with_it
+    if kind is not absent:
+        runs = [sw.simulate(each, COMMAND, sample=PERIOD) for each in (with_it[0], without(with_it[0], place, absent()))]
+        assert not np.array_equal(runs[0]["output_angle"], runs[1]["output_angle"])
+
+
+def without(chosen: sw.Drive, place: str, absent: Any) -> sw.Drive:
+    control: Any = chosen.control
+    return chosen.replace(control=control.replace(compensation=control.compensation.replace(**{place: absent})))
 
 
 # Error of single precision over the largest actuation, as the page on firmware states it.
@@ -92,21 +131,22 @@ CLOSED_LOOP_ERROR = 1e-7  # rad of the output, between the runs under both
 
 
 @pytest.mark.parametrize("name", FLOAT_SHARES)
-def test_single_precision_is_as_accurate_as_stated(name: str, tmp_path: Path) -> None:
-    chosen = DRIVES[name]
-    doubled, single = loaded(chosen, tmp_path / "double", "double"), loaded(chosen, tmp_path / "float", "float")
+def test_single_precision_is_as_accurate_as_stated(name: str, doubled: dict[str, Loaded], single: dict[str, Loaded]) -> None:
+    chosen, exact, rounded = DRIVES[name], doubled[name], single[name]
+    exact.start()
+    rounded.start()
     errors = list[float]()
 
     def both(seen: Seen) -> float:
-        given = doubled(seen)
-        errors.append(abs(given - single(seen)))
+        given = exact(seen)
+        errors.append(abs(given - rounded(seen)))
         return given
 
     by_double = run_with(both, chosen, COMMAND)
     assert max(errors) < FLOAT_SHARES[name] * chosen.control.law.limit  # type: ignore[union-attr]
     if chosen.control.law == LAW:  # type: ignore[union-attr]
-        single.start()
-        by_single = run_with(single, chosen, COMMAND)
+        rounded.start()
+        by_single = run_with(rounded, chosen, COMMAND)
         assert np.max(np.abs(by_single["output_angle"] - by_double["output_angle"])) < CLOSED_LOOP_ERROR
 
 
@@ -162,9 +202,8 @@ def compile_strictly(command: Sequence[str], folder: Path, source: str, *options
 
 def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: Path) -> None:
     """No heap, no exception, no initialisation; all numbers are constants, and no variable outlives a step."""
-    for number, each in enumerate(every_controller()):
-        sw.export.firmware(each, tmp_path, name=f"c{number}")
-        compile_strictly(compiler("g++"), tmp_path, f"c{number}.cpp", *FLAGS.split(), "-Wdouble-promotion")
+    firmware = [written(each, tmp_path, "float", name=f"c{number}") for number, each in enumerate(every_controller())]
+    compiled(tmp_path, firmware, "-O1", "-Wdouble-promotion")
     assert undefined(tmp_path) <= LIBM
     assert not [line for line in printed("nm", *tmp_path.glob("*.o")) if line.split()[-2:-1] in (["b"], ["B"], ["d"], ["D"])]
 
@@ -189,9 +228,10 @@ def test_the_header_is_in_c(tmp_path: Path) -> None:
     assert "    float motor_torque;  /* N.m; for the motor, within [low, high] */\n" in header
 
 
-def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(tmp_path: Path) -> None:
+def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(doubled: dict[str, Loaded]) -> None:
     chosen = DRIVES["model"]
-    firmware, simulated = loaded(chosen, tmp_path, "double"), sw.simulate(chosen, COMMAND, sample=PERIOD)
+    firmware, simulated = doubled["model"], sw.simulate(chosen, COMMAND, sample=PERIOD)
+    firmware.start()
     run_with(firmware, chosen, COMMAND)
     numbers = dict(zip((name for name, *_ in _core.state(chosen)[0]), simulated.end.numbers, strict=True))
     of_control = [value for name, value in numbers.items() if name.startswith("control.")]
