@@ -8,7 +8,9 @@ namespace strainwave::integrate {
 /// nothing tells which side's it is.
 template <class S, class Margin>
 constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
-    const S within(1e-12);  // less than a state so close by differs from its rounding
+    // Less than a state so close by differs from its rounding, and some units in the last place of the moment: a float resolves no
+    // less, and all 80 rounds would be taken.
+    const S within(sizeof(Real<S>) < sizeof(double) ? 0x1p-21 : 1e-12);
     const auto crosses = at_end < S(0.0);
     S a = from, b{1.0}, fa = detached(max(at_start, S(0.0))), fb = detached(at_end), last{0.0};
     for (int i = 0; i < 80; ++i) {

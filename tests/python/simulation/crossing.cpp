@@ -30,7 +30,8 @@ Pack<lanes> side_by_side(const Pack<lanes>& moments) {
     return found;
 }
 
-/// Prints of each margin where it is found to cross zero, alone, and how often it was looked at; and where as a lane among others.
+/// Prints of each margin where it is found to cross zero, alone, and how often it was looked at; where as a lane among
+/// others; and both in single precision.
 int main() {
     const auto together = integrate::crossing<Pack<lanes>>(side_by_side, Pack<lanes>(0.0), side_by_side(0.0), side_by_side(1.0));
     for (int lane = 0; lane < count; ++lane) {
@@ -41,7 +42,13 @@ int main() {
             return margin(moment);
         };
         const double alone = integrate::crossing<double>(counted, 0.0, margin(0.0), margin(1.0));
-        std::printf("%s %.17g %d %.17g\n", name, alone, looks, together[lane]);
+        int single_looks = 0;
+        const auto counted_single = [&](const float& moment) {
+            ++single_looks;
+            return float(margin(double(moment)));
+        };
+        const float single = integrate::crossing<float>(counted_single, 0.0f, float(margin(0.0)), float(margin(1.0)));
+        std::printf("%s %.17g %d %.17g %.9g %d\n", name, alone, looks, together[lane], double(single), single_looks);
     }
-    std::printf("nowhere 1 0 %.17g\n", together[count]);
+    std::printf("nowhere 1 0 %.17g 1 0\n", together[count]);
 }
