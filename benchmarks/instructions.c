@@ -9,15 +9,15 @@
 #define STATE JOIN(NAME, _state)
 #define OUTPUTS JOIN(NAME, _outputs)
 
-#define DEPTH 16384 /* bytes of stack that are looked at */
+#define DEPTH 65536 /* bytes of stack that are looked at */
 #define PAINT 0xA5
 #define REPEATS 1000
-#define KINDS 3 /* of a step: a shaft sticks; no shaft sticks; a shaft stops or breaks away */
+#define KINDS 3 /* of a step: a shaft sticks; both slip; a shaft stops, breaks away or turns round */
 #define TIMER ((volatile unsigned*)0xE000E010)
 #define TICKS 0xFFFFFFu
 
 struct Counts {
-    unsigned steps, depth; /* bytes of stack */
+    unsigned steps, depth; /* bytes of stack, in the longest steps */
     unsigned empty;        /* ticks of `REPEATS` calls of a function of one instruction, each measured by itself */
     unsigned found[KINDS], repeated[KINDS], idle[KINDS]; /* steps, ticks of repeats of the longest, and of the loop alone */
 };
@@ -52,20 +52,23 @@ __attribute__((noinline)) static unsigned repeats(Step volatile function, int ki
     }
     return (begin - now()) & TICKS;
 }
-__attribute__((noinline)) static unsigned timed(Step volatile function, const INPUTS* in) {
+/* The random delay puts the call anywhere within a tick, so that the mean is exact. */
+__attribute__((noinline)) static unsigned timed(Step volatile function, const INPUTS* in, unsigned k) {
+    for (unsigned i = (k * 2654435761u >> 20) % 40 + 1; i > 0; --i) __asm__ volatile("nop");
     const unsigned begin = now();
     last = function(&state, in);
     return (begin - now()) & TICKS;
 }
 
-static void run(void) {
+__attribute__((noinline)) static void run(void) { /* inlined, it would use the floating-point unit before that is on */
     unsigned most[KINDS] = {0};
     JOIN(NAME, _start)(&state);
     for (unsigned k = 0; k < counts.steps; ++k) {
         before = state;
-        const int stuck = STICKS;
-        ticks[k] = timed(JOIN(NAME, _step), &inputs[k]);
-        const int kind = stuck != STICKS ? 2 : !stuck;
+        const float first = INPUT_DIRECTION, second = OUTPUT_DIRECTION;
+        ticks[k] = timed(JOIN(NAME, _step), &inputs[k], k);
+        const int turns = first != INPUT_DIRECTION || second != OUTPUT_DIRECTION;
+        const int kind = turns ? 2 : first != 0.0f && second != 0.0f;
         ++counts.found[kind];
         if (ticks[k] <= most[kind]) continue;
         most[kind] = ticks[k];
@@ -74,8 +77,19 @@ static void run(void) {
     }
 }
 
-void steps(void) {
+__attribute__((noinline)) static void paint(void) {
     volatile unsigned char mark, *const deepest = &mark - DEPTH;
+    for (unsigned k = 0; k < DEPTH - 32; ++k) deepest[k] = PAINT;
+}
+/* Bytes of stack that were touched since it was painted. */
+__attribute__((noinline)) static unsigned painted_over(void) {
+    volatile unsigned char mark, *const deepest = &mark - DEPTH;
+    unsigned depth = DEPTH;
+    for (const volatile unsigned char* at = deepest; *at == PAINT; ++at) --depth;
+    return depth;
+}
+
+void steps(void) {
     *(volatile unsigned*)0xE000ED88 |= 0xFu << 20; /* the floating-point unit is off after a reset */
     __asm__ volatile("dsb\n\tisb");
     TIMER[1] = TICKS;
@@ -84,16 +98,20 @@ void steps(void) {
     const int reading[] = {from, (int)inputs, size};
     ask(6, reading);
     counts.steps = (unsigned)size / sizeof *inputs;
-    for (unsigned k = 0; k < DEPTH - 512; ++k) deepest[k] = PAINT; /* the frame of this function is shorter than the rest */
     run();
-    counts.depth = DEPTH;
-    for (const volatile unsigned char* at = deepest; *at == PAINT; ++at) --counts.depth;
-    for (int i = 0; i < REPEATS; ++i) counts.empty += timed(nothing, inputs);
+    paint();
+    for (unsigned i = 0; i < REPEATS; ++i) counts.empty += timed(nothing, inputs, i);
+    counts.depth = 0u - painted_over();
+    paint();
     for (int kind = 0; kind < KINDS; ++kind) {
         if (counts.found[kind] == 0) continue;
         counts.repeated[kind] = repeats(JOIN(NAME, _step), kind);
-        counts.idle[kind] = repeats(nothing, kind);
+        state = longest[kind];
+        timed(JOIN(NAME, _step), &input[kind], 0);
     }
+    counts.depth += painted_over();
+    for (int kind = 0; kind < KINDS; ++kind)
+        if (counts.found[kind] > 0) counts.idle[kind] = repeats(nothing, kind);
     const int to = opened("counts", 5);
     const int head[] = {to, (int)&counts, sizeof counts}, rest[] = {to, (int)ticks, (int)(counts.steps * sizeof *ticks)};
     ask(5, head);

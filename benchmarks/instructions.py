@@ -17,7 +17,7 @@ import shutil
 import subprocess
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,6 @@ TICK = 40  # ns, of the system timer of both machines
 DRIVER = Path(__file__).with_suffix(".c")
 MEMORY = ("--section-start=.vectors=0", "-Ttext=0x400", "-Tdata=0x20000000", "-Tbss=0x20001000", "-e", "steps")
 REPEATS = 1000  # of the longest step, as in the driver
-SLIP = "(state.input_slip_direction == 0.0f) + 2 * (state.output_slip_direction == 0.0f)"
 SAMPLE_PERIOD = 1e-3  # s, of the controllers
 MOTION_STEPS = 400  # sampling instants of the simulated motion
 RANDOM_STEPS = 100
@@ -53,7 +52,7 @@ COLUMNS = (
     Column("firmware", words=True),
     *(Column(heading) for heading in ("state [B]", "code, M4F [B]", "stack [B]", "M4F, mean", "M4F, largest", "M7, largest")),
 )
-STATES = "slips", "sticks", "stops or breaks away"
+STATES = "both shafts slip", "one sticks", "one stops, breaks away or turns round"
 STATE_COLUMNS = (Column("drive", words=True), *(Column(f"M4F, {state}") for state in STATES))
 
 
@@ -74,7 +73,7 @@ class Counts:
     """Instructions of steps, and bytes of stack below that of their caller.
 
     Attributes:
-        largest: of steps in which a shaft sticks, no shaft sticks, a shaft stops or breaks away; 0 without such steps
+        largest: of steps in which a shaft sticks, both slip, one stops, breaks away or turns round; 0 without such steps
     """
 
     mean: float
@@ -287,9 +286,12 @@ def measured(case: Case) -> Step:
         folder = Path(place)
         firmware = sw.export.firmware(case.model, folder, part=case.part, name="part", period=case.period)
         case.inputs(firmware).astype("<f4").tofile(folder / "inputs")
-        sticks = SLIP if "input_slip_direction" in firmware.state else "0"
-        on_m7 = counted(M7, folder, sticks)
-        on_m4f = counted(M4F, folder, sticks)
+        sides = {side: f"{side}_slip_direction" for side in ("input", "output")}
+        naming = [
+            f"-D{side.upper()}_DIRECTION={f'state.{name}' if name in firmware.state else '1'}" for side, name in sides.items()
+        ]
+        on_m7 = counted(M7, folder, naming)
+        on_m4f = counted(M4F, folder, naming)
         state = 4 * len(firmware.state)
         return Step(
             case.name,
@@ -303,14 +305,28 @@ def measured(case: Case) -> Step:
         )
 
 
-def counted(processor: Processor, folder: Path, sticks: str) -> Counts:
+def counted(processor: Processor, folder: Path, naming: Sequence[str]) -> Counts:
     """Compile firmware and driver for a processor, run them, and return what they counted."""
     linking = ["-nostartfiles", *(f"-Wl,{option}" for option in MEMORY)]
-    naming = ["-DNAME=part", f"-DSTICKS=({sticks})", "-include", "part.h"]
     files = ("-semihosting-config", "enable=on,target=native")
     for command in (
         [f"{GCC}g++", *processor.options, *FLAGS.split(), "-nostdinc++", "-c", "part.cpp"],
-        [f"{GCC}gcc", *processor.options, "-O1", *linking, "-I.", *naming, str(DRIVER), "part.o", "-lm", "-o", "steps"],
+        [
+            f"{GCC}gcc",
+            *processor.options,
+            "-O1",
+            *linking,
+            "-I.",
+            "-DNAME=part",
+            *naming,
+            "-include",
+            "part.h",
+            str(DRIVER),
+            "part.o",
+            "-lm",
+            "-o",
+            "steps",
+        ],
         [QEMU, "-M", processor.machine, "-kernel", "steps", "-display", "none", *CLOCK, *files],
     ):
         subprocess.run(command, cwd=folder, check=True)
