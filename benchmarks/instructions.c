@@ -52,7 +52,7 @@ __attribute__((noinline)) static unsigned repeats(Step volatile function, int ki
     }
     return (begin - now()) & TICKS;
 }
-/* The random delay puts the call anywhere within a tick, so that the mean is exact. */
+/* The random delay puts the call anywhere within a tick, so that rounding to ticks averages out. */
 __attribute__((noinline)) static unsigned timed(Step volatile function, const INPUTS* in, unsigned k) {
     for (unsigned i = (k * 2654435761u >> 20) % 40 + 1; i > 0; --i) __asm__ volatile("nop");
     const unsigned begin = now();

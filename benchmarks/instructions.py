@@ -3,7 +3,7 @@
 Each is exported as firmware in single precision, compiled for Cortex-M4F and Cortex-M7 by GCC with newlib, and run in a machine
 that QEMU emulates, whose clock goes on by 1 ns with each instruction. These are instructions, not cycles: a quotient or a root
 takes 14 cycles on a Cortex-M4F, most others one. They are counted with sinf, cosf, expf and memcpy. The mean is over all steps,
-and exact; the largest is that of the longest step, which is repeated until its count is exact.
+within a few instructions; the largest is that of the longest step, which is repeated until its count is exact.
 
 Drives follow a command that reverses five times in 10 s, and a load that grows. Controllers follow a simulated motion with many
 reversals, then random inputs, far outside of it; laws follow random inputs.
@@ -136,7 +136,7 @@ def drives() -> dict[str, sw.Drive]:
         load=sw.loads.Inertia(inertia=5.0),
     )
     sets = {name: sw.GearSet.read(name).drive for name in ("robot-joint", "tilt-actuator-lumped", "tilt-actuator")}
-    found = {"reference drive": strainwave_drive.drive(), **sets, "soft gear of document T": soft}
+    found = {"reference drive": strainwave_drive.drive(), **sets, "soft gear of example 14": soft}
     return {name: quiet(drive) for name, drive in found.items()}
 
 

@@ -170,7 +170,7 @@ def firmware(
     written = exported(found, out, part=part, name=name, scalar=scalar, period=period)  # type: ignore[arg-type] # checked there
     for kind in ("inputs", "outputs"):
         print(f"{kind}: {', '.join(getattr(written, kind))}")
-    print(f"state: {len(written.state)} numbers")
+    print(f"size of the state: {len(written.state)}")
     every = f", to be called every {written.period:g} s" if written.period else ""
     files = (written.header, written.declarations, written.source)
     print(f"wrote {', '.join(each.name for each in files)} to {out}{every}")

@@ -82,8 +82,8 @@ def firmware(
             "gear.stiffness", "gear.hysteresis", "gear.kinematic_error" or "gear.kinematic_noise"
         name: of the files, and prefix of all names in C; by default "controller", or the last word of the part
         scalar: "float" or "double"
-        period: time between steps of the drive or of a friction [s]; by default that of a simulation, 0.2 ms or shorter. It must
-            divide period and delay of a sampled controller in the drive. A controller as part has its own
+        period: time between steps of the drive or of a friction [s]; by default that of a simulation, 0.2 ms or shorter. It
+            must divide period and delay of a sampled controller in the drive. A controller as part has its own
 
     Raises:
         TypeError, ValueError: an argument is not of its kind, or a number of the part is too large for a float
