@@ -79,7 +79,7 @@ PLACES = ("feedforward", "learning", "observer", "dither")
 def programs(folder: Path, scalar: Scalar, names: Iterable[str]) -> dict[str, Loaded]:
     """Return firmware of some drives, in one program."""
     firmware = {name: written(DRIVES[name], folder, scalar, name=f"own_{name}") for name in names}
-    shared = library(folder, list(firmware.values()), "-O1", *(["-Wdouble-promotion"] if scalar == "float" else []))
+    shared = library(folder, list(firmware.values()), "-O0", *(["-Wdouble-promotion"] if scalar == "float" else []))
     return {name: Loaded(each, shared) for name, each in firmware.items()}
 
 
@@ -203,7 +203,7 @@ def compile_strictly(command: Sequence[str], folder: Path, source: str, *options
 def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: Path) -> None:
     """No heap, no exception, no initialisation; all numbers are constants, and no variable outlives a step."""
     firmware = [written(each, tmp_path, "float", name=f"c{number}") for number, each in enumerate(every_controller())]
-    compiled(tmp_path, firmware, "-O1", "-Wdouble-promotion")
+    compiled(tmp_path, firmware, "-O0", "-Wdouble-promotion")
     assert undefined(tmp_path) <= LIBM
     assert not [line for line in printed("nm", *tmp_path.glob("*.o")) if line.split()[-2:-1] in (["b"], ["B"], ["d"], ["D"])]
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.export.firmware import Scalar
+from strainwave.export.firmware import FLAGS, Scalar
 
 from tests.cplusplus import checker
 from tests.firmware import NO_LIBRARY, Array, Loaded, library, written
@@ -107,7 +107,7 @@ def test_firmware_moves_as_simulation(name: str, programs: dict[str, Loaded]) ->
 
 def test_headers_of_drives_compile_in_clang(programs: dict[str, Loaded]) -> None:
     folder = next(iter(programs.values())).firmware.header.parent
-    subprocess.run([*checker("clang++"), "-ffreestanding", *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)
+    subprocess.run([*checker("clang++"), *FLAGS.split(), *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)
 
 
 def test_a_state_goes_on_where_a_copy_was_made(programs: dict[str, Loaded]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
+from strainwave.export.firmware import FLAGS
 
 from tests.cplusplus import checker
 from tests.firmware import NO_LIBRARY, Loaded, library, written
@@ -116,7 +117,7 @@ def test_firmware_of_a_law_has_its_bits(family: str, name: str, programs: dict[s
 
 def test_headers_of_laws_stand_side_by_side_in_clang(programs: dict[str, Loaded]) -> None:
     folder = next(iter(programs.values())).firmware.header.parent
-    subprocess.run([*checker("clang++"), "-ffreestanding", *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)
+    subprocess.run([*checker("clang++"), *FLAGS.split(), *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)
 
 
 def test_a_law_without_time_takes_no_period(tmp_path: Path) -> None:
