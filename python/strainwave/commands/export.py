@@ -148,6 +148,35 @@ def modelica(
     _write(exported(GearSet.read(drive), max_torque=max_torque, period=period, step=step, name=name), out)
 
 
+@export.command("newton")
+def newton(
+    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor, by name or as a file.")],
+    scalar: Annotated[
+        str, typer.Option(help="Type of all numbers: double, or float for GPUs that are slow with doubles.")
+    ] = "double",
+    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    draws: Annotated[int, typer.Option(help="Number of drawn gears, for domain randomisation.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
+    gpu: Annotated[bool, typer.Option(help="Code for GPUs, if the package nvidia-cuda-nvrtc is installed.")] = True,
+    compare: Annotated[bool, typer.Option(help="Compare with the simulation, if Newton is installed.")] = True,
+    out: Annotated[Path, typer.Option(help="Folder for the files; it is a Python package.")] = Path("out/strainwave_drive"),
+) -> None:
+    """The drive as an actuator of Newton, for thousands of joints in one launch, on the CPU and on GPUs."""
+    from strainwave.export.newton import newton as exported
+    from strainwave.files.gear_set import GearSet
+
+    found = exported(
+        GearSet.read(drive),
+        scalar=scalar,  # type: ignore[arg-type] # checked there
+        step=step,
+        draws=draws,
+        seed=seed,
+        gpu=gpu,
+        compare=compare,
+    )
+    _write(found, out)
+
+
 @export.command("firmware")
 def firmware(
     drive: Annotated[str, typer.Argument(help="A drive, by name or as a file; for a law of the gear, a gear alone will do.")],

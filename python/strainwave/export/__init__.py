@@ -1,4 +1,4 @@
-"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, and firmware.
+"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, Newton, and firmware.
 
 >>> from pathlib import Path
 >>> from tempfile import TemporaryDirectory
@@ -17,6 +17,7 @@ from strainwave.export.fmu import fmu
 from strainwave.export.joint_numbers import joint
 from strainwave.export.modelica_package import modelica
 from strainwave.export.mujoco import mjcf
+from strainwave.export.newton import newton
 from strainwave.export.ros2 import ros2
 from strainwave.tuning.loss import Loss
 
@@ -31,6 +32,7 @@ __all__ = [
     "mjcf",
     "modelica",
     "mujoco_plugin",
+    "newton",
     "read_bam",
     "ros2",
 ]

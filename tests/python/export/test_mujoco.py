@@ -28,6 +28,7 @@ def quasi_static_torque(text: str, twist: np.ndarray, ratio: float) -> np.ndarra
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     model.dof_armature[:] = 1e12
+    mujoco.mj_setConst(model, data)  # MuJoCo takes the inertia of such simple bodies from here
     at_input, at_output = model.joint("gear_input"), model.joint("gear_output")
     torque = []
     for angle in twist * ratio:

@@ -1,0 +1,193 @@
+// A drive behind a joint of Newton: its numbers, its state, and its steps. The joint prescribes the motion of the output shaft.
+#pragma once
+#include <strainwave/integrate.hpp>
+#include <strainwave/kernel/assemble.hpp>
+
+#include "drive.hpp"  // S, Drive, laws, shape, parameter_count, output_count, command_is; written for each drive
+
+namespace actuator {
+
+using Compiled = decltype(Drive<S>{}.compile());
+using Evaluation = Compiled::Evaluation;
+using State = Compiled::State;
+using Input = strainwave::Input<S>;
+using Interval = strainwave::Interval<Input>;
+using Steps = strainwave::integrate::Steps<S, Compiled>;
+
+inline constexpr double same_length = sizeof(S) == sizeof(float) ? 1e-4 : 1e-9;  // relative: closer instants are the same
+inline constexpr int settling_rounds = 8;  // the kinematic error depends on the angle that it changes
+
+// What a joint does and is asked to do at an instant.
+struct Instant {
+    S position, speed, command, command_rate;
+};
+// A gear between two calls: whether it has begun, the last instant, the numbers of its state.
+inline constexpr int first_state = 5, memory_count = first_state + strainwave::size_of<S, State>;
+
+// A gear with its numbers, made once.
+struct Prepared {
+    Compiled drive;
+    S temperature;  // K
+};
+static_assert(alignof(Prepared) <= 8 && __is_trivially_copyable(Prepared));
+inline constexpr int prepared_words = (sizeof(Prepared) + 7) / 8;  // of 8 bytes
+
+// Whether some numbers of a model contradict each other.
+struct Contradictions {
+    bool any = false;
+
+    template <class T>
+    constexpr void of(const T& part) {
+        if constexpr (requires { part.problem(); }) {
+            if constexpr (requires { part.problem().text; })
+                any = any || part.problem().text;
+            else
+                any = any || part.problem();
+        }
+        if constexpr (strainwave::Described<T>) T::fields(part, *this);
+    }
+    template <class T>
+    constexpr void operator()(const T& member, const strainwave::Field&) {
+        if constexpr (strainwave::Described<T>) of(member);
+    }
+};
+
+// Write the size of a gear, in words of 8 bytes.
+inline void measure(int* words) { words[0] = prepared_words; }
+
+// Make gear `i` of its numbers, a row of `numbers`; the last is the temperature. `problems[i]` is 1 if they contradict each other.
+inline void prepare(int i, const S* numbers, double* prepared, int* problems) {
+    strainwave::kernel::Reader<S> from{laws, shape, numbers + i * (parameter_count + 1)};
+    const auto model = strainwave::kernel::assembled<Drive<S>>(from);
+    Contradictions found;
+    found.of(model);
+    problems[i] = found.any;
+    *reinterpret_cast<Prepared*>(prepared + i * prepared_words) = {model.compile(), *from.numbers};
+}
+
+// The motion of a joint from one instant to the next: Hermite's cubic. The command of the first goes on at its rate.
+class Motion {
+    Instant from;
+    S temperature, span, begin, bend, turn;
+
+public:
+    constexpr Motion(const Instant& from_, const Instant& to, const S& dt, const S& temperature_)
+        : from(from_), temperature(temperature_), span(dt), begin(dt * from_.speed), bend{}, turn{} {
+        const S moved = to.position - from.position, end = dt * to.speed;
+        bend = S(3.0) * moved - S(2.0) * begin - end;
+        turn = begin + end - S(2.0) * moved;
+    }
+    constexpr Input at(const S& time) const {
+        const S x = time / span;
+        return {from.command + from.command_rate * time,
+                from.command_rate,
+                from.position + x * (begin + x * (bend + x * turn)),
+                (begin + x * (S(2.0) * bend + S(3.0) * x * turn)) / span,
+                temperature,
+                S(0.0)};
+    }
+};
+
+// The drive untwisted, at the angle and the speed of its joint.
+constexpr State at_joint(const Compiled& drive, const Input& u) {
+    State x = drive.rest();
+    const S ratio = drive.gear.kinematics.ratio();
+    for (int i = 0; i < settling_rounds; ++i) {
+        const S angle = ratio * (u.load + x.continuous.transmission_error);
+        x.turns = strainwave::rint(angle / S(2.0 * strainwave::pi));
+        x.continuous.input_angle = angle - x.turns * S(2.0 * strainwave::pi);
+        drive.settle_gear(x, drive.geometry(x, x.continuous), S(0.0), S(0.0), u.temperature);
+    }
+    x.continuous.input_speed = ratio * u.load_rate;
+    x.continuous.output_speed = u.load_rate;
+    x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, u, S(0.0)));
+    return drive.consistent(x);
+}
+
+// The time to the next instant at which a sampled controller acts; `most` [s] if there is none before.
+constexpr S next_instant(const Compiled& drive, const State& x, const S& most, const S& tolerance) {
+    const auto schedule = drive.schedule(x);
+    if (!(schedule.period > S(0.0))) return most;
+    const S first = schedule.first, given = first + schedule.delay;
+    const S instants[] = {given - schedule.period, first, given, first + schedule.period};
+    S next = most;
+    for (const S& each : instants)
+        if (each > tolerance && each < next) next = each;
+    return next;
+}
+
+// A step without events, once in the code however often it is called.
+__attribute__((noinline)) inline Evaluation smooth_step(const Compiled& drive, const Evaluation& from, const Interval& u,
+                                                        const S& dt, Steps& steps) {
+    return drive.evaluate(steps(drive, from, u, dt), u.end);
+}
+
+// The drive at the end of a motion of `dt` [s], by steps of at most `max_step` [s], which end where a controller samples.
+inline Evaluation moved(const Compiled& drive, const State& x, const Motion& motion, const S& dt, const S& max_step) {
+    Evaluation here = drive.evaluate(x, motion.at(S(0.0)));
+    Steps steps;
+    const auto smooth = [&steps](const Compiled& system, const Evaluation& from, const Interval& u, const S& h) {
+        return smooth_step(system, from, u, h, steps);
+    };
+    const S tolerance = S(same_length) * max_step;
+    int count = 1;
+    while (S(count) * max_step * S(1.0 + same_length) < dt) ++count;
+    const S most = dt / S(count);
+    for (int i = 0; i < count; ++i)
+        for (S done{0.0};;) {
+            const S left = most - done, next = next_instant(drive, here.state, left, tolerance);
+            const bool is_last = next >= left - tolerance;
+            const S stretch = is_last ? left : next, time = S(i) * most + done;
+            const Interval u{motion.at(time), motion.at(time + S(0.5) * stretch), motion.at(time + stretch)};
+            here = strainwave::system::up_to_date(drive, here, u.start, S(0.5) * stretch);
+            steps.begin(stretch);
+            here = strainwave::step(drive, here, u, stretch, smooth);
+            if (is_last) break;
+            done = done + next;
+        }
+    return here;
+}
+
+// Take gear `i` of `count` to the present instant of its joint, `dt` [s] after the last. A number of one gear lies next to that
+// of the next gear. `places` are those of position, speed, target position and target speed; `feedforward` may be null.
+inline void advance(int i, int count, const double* prepared, int prepared_count, const S* before, S* after, const float* position,
+                    const float* speed, const float* target_position, const float* target_speed, const float* feedforward,
+                    const unsigned* position_place, const unsigned* speed_place, const unsigned* target_position_place,
+                    const unsigned* target_speed_place, double dt, double max_step, float* torque, float* outputs) {
+    const int number = prepared_count > 1 ? i : 0;
+    const auto& gear = *reinterpret_cast<const Prepared*>(prepared + number * prepared_words);
+    const unsigned driven = target_speed_place[i];
+    Instant now{S(position[position_place[i]]), S(speed[speed_place[i]]), S(0.0), S(0.0)};
+    if constexpr (command_is == CommandIs::position) {
+        now.command = S(target_position[target_position_place[i]]);
+        now.command_rate = S(target_speed[driven]);
+    } else if constexpr (command_is == CommandIs::speed) {
+        now.command = S(target_speed[driven]);
+    } else if (feedforward) {
+        now.command = S(feedforward[driven]);
+    }
+    const Input u{now.command, now.command_rate, now.position, now.speed, gear.temperature, S(0.0)};
+    const bool has_begun = before[i] != S(0.0);
+    Evaluation here{};
+    if (has_begun) {
+        strainwave::Flat<S, State> numbers{};
+        for (int k = 0; k < memory_count - first_state; ++k) numbers[k] = before[(first_state + k) * count + i];
+        const Instant last{before[count + i], before[2 * count + i], before[3 * count + i], before[4 * count + i]};
+        const State x = strainwave::refilled(gear.drive.initial_state(), numbers);
+        here = moved(gear.drive, x, Motion(last, now, S(dt), gear.temperature), S(dt), S(max_step));
+        here = gear.drive.evaluate(here.state, u);
+    } else {
+        here = gear.drive.evaluate(at_joint(gear.drive, u), u);
+    }
+    const S kept[first_state] = {S(1.0), now.position, now.speed, now.command, now.command_rate};
+    for (int k = 0; k < first_state; ++k) after[k * count + i] = kept[k];
+    const auto numbers = strainwave::flattened<S>(here.state);
+    for (int k = 0; k < memory_count - first_state; ++k) after[(first_state + k) * count + i] = numbers[k];
+    const auto shown = gear.drive.output(here, u);
+    const auto all = strainwave::flattened<S>(shown);
+    static_assert(strainwave::size_of<S, decltype(shown)> == output_count);
+    for (int k = 0; k < output_count; ++k) outputs[k * count + i] = float(all[k]);
+    torque[i] = float(shown.load_torque);
+}
+
+}  // namespace actuator
