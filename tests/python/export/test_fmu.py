@@ -1,9 +1,10 @@
 """FMUs of drives, run by FMPy, against the simulation of the drives."""
 
+import ctypes
 import re
 import subprocess
 import zipfile
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import cache
 from importlib import resources
@@ -114,11 +115,69 @@ def test_fmpy_runs_it_by_default_settings(tmp_path):
     assert result["output_angle"][-1] == pytest.approx(run["output_angle"][-1], rel=1e-12)
 
 
+@cache
+def exchanged(version):
+    """The content of an FMU for model exchange."""
+    found = sw.export.fmu(sw.GearSet.read(DRIVES[version]), version=version, model_exchange=True, name="block")
+    return found.files["block.fmu"]
+
+
+@contextmanager
+def solved(version, folder):
+    """An instance for model exchange after its initialisation, and the description of its FMU."""
+    fmpy.extract(BytesIO(exchanged(version)), unzipdir=folder)
+    about = fmpy.read_model_description(str(folder / "modelDescription.xml"))
+    model = {2: fmi2.FMU2Model, 3: fmi3.FMU3Model}[version](
+        guid=about.guid, unzipDirectory=str(folder), modelIdentifier=about.modelExchange.modelIdentifier, instanceName="block"
+    )
+    model.instantiate()
+    if version == 2:
+        model.setupExperiment(startTime=0.0)
+    model.enterInitializationMode()
+    model.exitInitializationMode()
+    model.enterContinuousTimeMode()
+    yield model, about
+    model.terminate()
+    model.freeInstance()
+
+
+@pytest.mark.parametrize("version", DRIVES)
+def test_directional_derivatives_are_those_of_differences(version, tmp_path):
+    """At a state in motion, by states and inputs together, in random directions."""
+    with solved(version, tmp_path) as (model, about):
+        derivatives = [each.variable for each in about.derivatives]
+        states = [each.derivative for each in derivatives]
+        inputs = [each for each in about.modelVariables if each.causality == "input"]
+        knowns = [each.valueReference for each in (*states, *inputs)]
+        unknowns = [each.valueReference for each in (*derivatives, *(each.variable for each in about.outputs))]
+        read = model.getReal if version == 2 else model.getFloat64
+        write = model.setReal if version == 2 else model.setFloat64
+        nominal = np.array([float(each.nominal or 1.0) for each in states])
+        random = np.random.default_rng(0)
+        begin = np.concatenate(
+            [0.3 * nominal * random.standard_normal(len(states)), read([each.valueReference for each in inputs])]
+        )
+
+        def values(at):
+            numbers = (ctypes.c_double * len(states))(*at[: len(states)])
+            model.setContinuousStates(numbers, len(states))
+            write([each.valueReference for each in inputs], list(at[len(states) :]))
+            return np.array(read(unknowns))
+
+        for _ in range(5):
+            direction = np.concatenate([nominal * random.standard_normal(len(states)), random.standard_normal(len(inputs))])
+            values(begin)
+            found = np.array(model.getDirectionalDerivative(unknowns, knowns, list(direction)))
+            step = 1e-6
+            expected = (values(begin + step * direction) - values(begin - step * direction)) / (2.0 * step)
+            assert np.abs(found - expected).max() <= 1e-6 * np.abs(expected).max()
+            assert found == pytest.approx(expected, rel=1e-4, abs=1e-8 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("version", DRIVES)
 def test_solver_of_a_tool_comes_closer_with_its_tolerance(version, tmp_path):
     drive, path = drive_of(version), tmp_path / "block.fmu"
-    exchanged = sw.export.fmu(sw.GearSet.read(DRIVES[version]), version=version, model_exchange=True, name="block")
-    path.write_bytes(exchanged.files["block.fmu"])
+    path.write_bytes(exchanged(version))
     assert validation.validate_fmu(str(path)) == []
     run = sw.simulate_adaptively(drive, sw.scenario.constant(0.1, 0.2), 1e-9, sample=1e-3)
     settings = {
@@ -205,17 +264,30 @@ def test_instances_leave_no_memory_behind(tmp_path):
 
 
 @pytest.mark.parametrize("version", DRIVES)
-def test_description_is_valid(version, tmp_path):
+@pytest.mark.parametrize("content", [content_of, exchanged], ids=["co-simulation", "model exchange"])
+def test_description_is_valid(content, version, tmp_path):
     path = tmp_path / "block.fmu"
-    path.write_bytes(content_of(version))
+    path.write_bytes(content(version))
     assert validation.validate_fmu(str(path)) == []
     schemas = resources.files("fmpy") / "schema" / f"fmi{version}"
     files = {"modelDescription.xml": f"fmi{version}ModelDescription.xsd"}
     if version == 3:
         files["sources/buildDescription.xml"] = "fmi3BuildDescription.xsd"
+        files["terminalsAndIcons/terminalsAndIcons.xml"] = "fmi3TerminalsAndIcons.xsd"
     with zipfile.ZipFile(path) as archive:
         for name, schema in files.items():
             etree.XMLSchema(etree.parse(str(schemas / schema))).assertValid(etree.fromstring(archive.read(name)))
+        about = etree.fromstring(archive.read("modelDescription.xml"))
+    ability = "providesDirectionalDerivative" + "s" * (version == 3)
+    assert [each.get(ability) for each in about.iter("ModelExchange")] == ["true"] * (content is exchanged)
+
+
+def test_terminals_name_variables_of_the_description():
+    found = zipfile.ZipFile(BytesIO(content_of(3)))
+    root = etree.fromstring(found.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    members = [each.get("variableName") for each in root.iter("TerminalMemberVariable")]
+    known = {each.name for each in fmpy.read_model_description(BytesIO(content_of(3))).modelVariables}
+    assert {"input_angle", "output_angle", "load_torque", "current"} <= set(members) <= known
 
 
 @pytest.mark.parametrize("version", DRIVES)

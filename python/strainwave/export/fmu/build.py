@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 from strainwave import Drive, _core, arguments
 from strainwave.export.exported import Exported
 from strainwave.export.fmu.comparison import difference_to_simulation
-from strainwave.export.fmu.description import Description, build_description, model_description
+from strainwave.export.fmu.description import Description, build_description, model_description, terminals
 from strainwave.export.fmu.source import sources
 from strainwave.export.fmu.variables import MIN_STEP, Variable, has_events, state_variables, variables
 from strainwave.files.gear_set import GearSet
@@ -109,7 +109,7 @@ def fmu(
     found, states = variables(drive, step), state_variables(drive) if model_exchange else []
     if model_exchange and load_input(drive) == "output_angle":
         raise ValueError("model exchange needs an output shaft that torques move; the load of this drive prescribes its motion")
-    files, token = sources(drive, found, version)
+    files, token = sources(drive, found, version, model_exchange)
     identifier = re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII)
     about = Description(name, identifier, token, in_words(drive), step, found, states, model_exchange and has_events(drive))
     binaries, seconds = {}, {}
@@ -127,7 +127,7 @@ def fmu(
         {f"{name}.fmu": content},
         {"internal_step": (step, "s")},
         tuple(losses),
-        tuple(_left_out(drive)),
+        tuple(_left_out(drive, model_exchange)),
         tuple(_remarks(about, binaries, seconds, len(content))),
     )
 
@@ -177,8 +177,9 @@ def _file_name(name: str | None, model: Drive | GearSet) -> str:
     return found
 
 
-def _left_out(drive: Drive) -> Iterable[str]:
-    yield "directional derivatives"
+def _left_out(drive: Drive, model_exchange: bool) -> Iterable[str]:
+    if not model_exchange:
+        yield "directional derivatives, which model exchange has"
     if _core.parts(drive)[1]:
         yield "counts and options of the models: they are constants of the FMU, as the models themselves are"
 
@@ -240,6 +241,8 @@ def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
 def _archive(about: Description, files: dict[str, str], binaries: dict[str, bytes], version: int) -> bytes:
     """Return the bytes of the FMU, a zip archive."""
     contents: dict[str, str | bytes] = {"modelDescription.xml": model_description(about, version)}
+    if version == 3:
+        contents["terminalsAndIcons/terminalsAndIcons.xml"] = terminals(about)
     contents["documentation/index.html"] = _documentation(about)
     contents |= {f"sources/{path}": text for path, text in sorted(files.items())}
     contents["sources/buildDescription.xml"] = build_description(about, version)

@@ -78,6 +78,30 @@ def model_description(about: Description, version: int) -> bytes:
     return _xml(root)
 
 
+# Terminals of FMI 3.0: which variables belong to which connection. All are signals: a load torque acts against the motion,
+# while the torque of a flange flows in.
+TERMINALS = {
+    "input_shaft": ("input_angle", "input_speed"),
+    "output_shaft": ("output_angle", "output_speed", "load_torque", "brake_torque"),
+    "electrical": ("voltage", "current"),
+}
+
+
+def terminals(about: Description) -> bytes:
+    """Return the file terminalsAndIcons.xml of an FMU for version 3 of FMI."""
+    root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    listed = ElementTree.SubElement(root, "Terminals")
+    known = {each.name for each in about.variables}
+    for name, members in TERMINALS.items():
+        if present := [each for each in members if each in known]:
+            terminal = ElementTree.SubElement(listed, "Terminal", name=name, matchingRule="none")
+            for each in present:
+                ElementTree.SubElement(
+                    terminal, "TerminalMemberVariable", variableName=each, memberName=each, variableKind="signal"
+                )
+    return _xml(root)
+
+
 def build_description(about: Description, version: int) -> bytes:
     """Return the file buildDescription.xml of the sources."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
@@ -95,6 +119,8 @@ def _interface(about: Description, version: int) -> Element:
     }
     abilities = names[version] if about.states else ("canHandleVariableCommunicationStepSize", *names[version])
     chosen = [each for each in abilities if not (about.states and each == "canInterpolateInputs")]
+    if about.states:
+        chosen.append("providesDirectionalDerivative" if version == 2 else "providesDirectionalDerivatives")
     kind = "ModelExchange" if about.states else "CoSimulation"
     found = Element(kind, {"modelIdentifier": about.identifier} | dict.fromkeys(chosen, "true"))
     if version == 2:

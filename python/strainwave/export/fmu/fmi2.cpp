@@ -142,9 +142,10 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     memcpy(*state, bytes + sizeof fmu::token, fmu::Model::state_size);
     return fmi2OK;
 }
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference[], size_t, const fmi2ValueReference[], size_t,
-                                        const fmi2Real[], fmi2Real[]) {
-    return unsupported(c, "this FMU has no directional derivatives");
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t unknown_count,
+                                        const fmi2ValueReference knowns[], size_t known_count, const fmi2Real direction[],
+                                        fmi2Real found[]) {
+    return checked(c, model_of(c).derive(unknowns, unknown_count, knowns, known_count, direction, found));
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t count, const fmi2Integer order[],

@@ -176,9 +176,12 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_
     memcpy(*state, bytes + sizeof fmu::token, fmu::Model::state_size);
     return fmi3OK;
 }
-fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, References, size_t, References, size_t, const fmi3Float64[], size_t,
-                                        fmi3Float64[], size_t) {
-    return unsupported(c, "this FMU has no directional derivatives");
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, References unknowns, size_t unknown_count, References knowns,
+                                        size_t known_count, const fmi3Float64 direction[], size_t direction_count,
+                                        fmi3Float64 found[], size_t found_count) {
+    if (direction_count != known_count || found_count != unknown_count)
+        return unsupported(c, "every variable of this FMU has one value");
+    return checked(c, model_of(c).derive(unknowns, unknown_count, knowns, known_count, direction, found));
 }
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, References, size_t, References, size_t, const fmi3Float64[], size_t,
                                     fmi3Float64[], size_t) {

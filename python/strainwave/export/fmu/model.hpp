@@ -225,6 +225,17 @@ public:
         content.is_on_trial = false;
         return memcmp(before, after, sizeof after) != 0;
     }
+    // Derivatives of variables at this instant along a direction of others, exact to rounding: of derivatives of states, and of
+    // outputs, by states and inputs. Memory and slip stay as they are.
+    template <int slopes = exchanges ? 1 : 0>  // compiled for model exchange alone: it doubles the work of the compiler
+    bool derive(const uint32_t* unknowns, size_t unknown_count, const uint32_t* knowns, size_t known_count, const double* direction,
+                double* found) {
+        if constexpr (slopes == 0) {
+            return fail("this FMU has directional derivatives for model exchange only");
+        } else {
+            return derive_by<strainwave::Dual<slopes>>(unknowns, unknown_count, knowns, known_count, direction, found);
+        }
+    }
     // Events at this instant: samples, shafts that stop or break away. `next` is the time of the next sample, or infinite.
     bool apply_events(bool& has_changed, double& next) {
         double before[state_count], after[state_count];
@@ -315,6 +326,60 @@ private:
         State x = content.here.state;
         x.continuous = content.trial;
         return {x, drive.derivatives(content.here.state, content.trial, at(0.0))};
+    }
+    template <class Slope>
+    bool derive_by(const uint32_t* unknowns, size_t unknown_count, const uint32_t* knowns, size_t known_count,
+                   const double* direction, double* found) {
+        Slope numbers[parameter_count], states[state_count];
+        strainwave::Array<Slope, input_count> inputs;
+        for (int i = 0; i < parameter_count; ++i) numbers[i] = content.numbers[i];
+        const auto trial = strainwave::flattened<double>(content.trial);
+        const auto acting = strainwave::flattened<double>(at(0.0));
+        for (int i = 0; i < state_count; ++i) states[i] = trial[i];
+        for (int i = 0; i < input_count; ++i) inputs[i] = acting[i];
+        for (size_t i = 0; i < known_count; ++i) {
+            if (is(knowns[i], first_state, state_count))
+                states[knowns[i] - first_state].slope[0] += direction[i];
+            else if (is(knowns[i], first_input, input_count))
+                inputs[int(knowns[i] - first_input)].slope[0] += direction[i];
+            else
+                return fail("there is no derivative by the variable with value reference %u", unsigned(knowns[i]));
+        }
+        strainwave::kernel::Reader<Slope> from{laws, shape, numbers + own_parameters};
+        const auto moved = strainwave::kernel::assembled<Drive<Slope>>(from).compile();
+        const Differentiated at_trial = differentiated(moved, states, strainwave::shaped<Input<Slope>>(inputs));
+        for (size_t i = 0; i < unknown_count; ++i) {
+            if (is(unknowns[i], first_state + state_count, state_count))
+                found[i] = at_trial.rates[unknowns[i] - first_state - state_count];
+            else if (is(unknowns[i], first_output, output_count))
+                found[i] = at_trial.outputs[unknowns[i] - first_output];
+            else
+                return fail("the variable with value reference %u has no derivative", unsigned(unknowns[i]));
+        }
+        return true;
+    }
+    struct Differentiated {
+        double rates[state_count], outputs[output_count];
+    };
+    template <class Moved, class S>
+    Differentiated differentiated(const Moved& moved, const S* states, const Input<S>& u) const {
+        double plain[strainwave::size_of<double, State>];
+        double* const end = strainwave::kernel::write(drive, content.here.state, plain);
+        S numbers[strainwave::size_of<double, State>];
+        for (int i = 0; i < end - plain; ++i) numbers[i] = plain[i];
+        auto x = strainwave::kernel::state_of(moved, static_cast<const S*>(numbers));
+        auto scalars = strainwave::flattened<S>(x.continuous);
+        for (int i = 0; i < state_count; ++i) scalars[i] = states[i];
+        const auto trial = strainwave::refilled(x.continuous, scalars);
+        const auto now = moved.derivatives(x, trial, u);
+        x.continuous = trial;
+        const auto rates = strainwave::flattened<S>(now.rate);
+        const auto all = strainwave::kernel::shown<S>(moved, {x, now}, u);
+        const auto places = strainwave::kernel::outputs_of(moved);
+        Differentiated found;
+        for (int i = 0; i < state_count; ++i) found.rates[i] = rates[i].slope[0];
+        for (int i = 0; i < output_count; ++i) found.outputs[i] = all[places.slot[channels[i]]].slope[0];
+        return found;
     }
     bool show_trial() {
         const auto all = strainwave::kernel::shown<double>(drive, tried(), at(0.0));
