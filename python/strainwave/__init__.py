@@ -87,7 +87,6 @@ if TYPE_CHECKING:
         pulse_width,
     )
     from strainwave.tuning.regulator import regulator
-    from strainwave.tuning.slots import Slot, slot
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
@@ -129,7 +128,6 @@ _LAZY = {
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
-    "Slot": "tuning.slots",
     "TransmissionError": "orders.two_encoders",
     "LoopMargins": "tuning.loops",
     "bearing_orders": "orders.order_spectrum",
@@ -179,7 +177,6 @@ _LAZY = {
     "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
-    "slot": "tuning.slots",
     "transmission_error": "orders.two_encoders",
     "with_faults": "dataset.faults",
 }
@@ -230,7 +227,6 @@ __all__ = [
     "ScenarioFile",
     "Seen",
     "Sensors",
-    "Slot",
     "TransmissionError",
     "bearing_orders",
     "bootstrap",
@@ -291,7 +287,6 @@ __all__ = [
     "simulate_controlled",
     "simulate_many",
     "simulate_to",
-    "slot",
     "softening",
     "stiffness",
     "structure",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from strainwave.commands.options import numeric
+from strainwave.commands.options import numeric, whole
 
 if TYPE_CHECKING:
     from strainwave.export.exported import Exported
@@ -83,6 +83,37 @@ def bam(
     from strainwave.files.gear_set import GearSet
 
     _write(exported(GearSet.read(gear), actuator=actuator, max_torque=max_torque), out)
+
+
+@export.command("slot")
+def slot(
+    gear: Gear,
+    name: Annotated[
+        str,
+        typer.Argument(help="coulomb-viscous, speed-table, viscous-coulomb-scale, anticogging-map or torque-offset."),
+    ],
+    side: Annotated[str, typer.Option(help="Shaft of speeds and torques: input or output.")] = "input",
+    unit: Annotated[str, typer.Option(help="N.m or, at the input, A.")] = "N.m",
+    speed: Annotated[float | None, numeric("Of the output in rad/s: the largest, of a map that of the motion.")] = None,
+    threshold: Annotated[float | None, numeric("Lowest speed of the output in rad/s; usually 1 % of the largest.")] = None,
+    points: Annotated[int | None, whole("Number of points of a table.")] = None,
+    load: Annotated[float | None, numeric("Torque at the output against forward motion in N.m.")] = None,
+    rated_torque: Annotated[float | None, numeric("Of the motor in N.m; usually that of the ratings.")] = None,
+    travel: Annotated[float, numeric("Of the motion of a torque-offset, from end to end in rad.")] = 0.2,
+    period: Annotated[float, numeric("At which a torque-offset is sent, in s.")] = 1e-3,
+    temperature: Annotated[float, numeric("Of the gear in K.")] = 293.15,
+    members: Annotated[int, whole("Number of drawn gears that judge the scales.")] = 200,
+    seed: Annotated[int, whole("Seed of the draw.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/slot"),
+) -> None:
+    """Numbers of friction and ripple that robot controllers, joint firmware and servo drives have a slot for."""
+    from strainwave.export.slots import slot as exported
+
+    found = exported(
+        gear, name, side=side, unit=unit, speed=speed, threshold=threshold, points=points, load=load,
+        rated_torque=rated_torque, travel=travel, period=period, temperature=temperature, members=members, seed=seed,
+    )  # fmt: skip
+    _write(found, out)
 
 
 @export.command("fmu")

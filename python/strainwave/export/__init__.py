@@ -1,4 +1,4 @@
-"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, Newton, and firmware.
+"""Export a gear or a drive to other programs: MuJoCo, URDF, ROS 2, BAM, FMU, Modelica, Newton, firmware, slots of controllers.
 
 >>> from pathlib import Path
 >>> from tempfile import TemporaryDirectory
@@ -19,6 +19,7 @@ from strainwave.export.modelica_package import modelica
 from strainwave.export.mujoco import mjcf
 from strainwave.export.newton import newton
 from strainwave.export.ros2 import ros2
+from strainwave.export.slots import slot
 from strainwave.tuning.loss import Loss
 
 __all__ = [
@@ -35,4 +36,5 @@ __all__ = [
     "newton",
     "read_bam",
     "ros2",
+    "slot",
 ]

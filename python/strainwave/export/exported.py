@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from strainwave.files.recording import Recording
 from strainwave.tuning.loss import Loss
 
 
@@ -19,7 +20,8 @@ class Exported:
         numbers: that were written, with their units
         losses: against the gear, computed
         left_out: laws of the gear that the form has no place for, in words
-        remarks: what to do with the files, and what was assumed
+        remarks: what to do with the files and numbers, and what was assumed
+        table: columns of numbers, written as <kind>.csv
     """
 
     kind: str
@@ -29,3 +31,4 @@ class Exported:
     losses: tuple[Loss, ...] = ()
     left_out: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    table: Recording | None = None

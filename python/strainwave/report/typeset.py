@@ -151,7 +151,7 @@ def uncertain_quantity(value: float, sigma: float, of: str) -> str:
 
 def prefix_power(largest: float, of: str) -> int:
     """Return the power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
-    takes_none = of == "1" or of.startswith(("k", "1/"))
+    takes_none = of in ("1", "permille") or of.startswith(("k", "1/"))
     if takes_none or not math.isfinite(largest) or 0.1 <= abs(largest) < 1e4 or largest == 0.0:
         return 0
     return min(max(3 * math.floor(_decade(largest, 3) / 3), -9), 6)

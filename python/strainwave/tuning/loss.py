@@ -18,8 +18,9 @@ class Loss:
         quantity: what differs
         rms, largest: of the difference, in `unit`
         unit: of both
-        size: of the quantity itself in the same unit, to compare with
+        size: of the quantity itself, or of `relative_to`, in the same unit
         over: the loop, the speeds or the motion over which they are taken
+        relative_to: the quantity of which `size` is, if not of the one that differs
     """
 
     quantity: str
@@ -28,11 +29,13 @@ class Loss:
     unit: str
     size: float
     over: str
+    relative_to: str = ""
 
     @classmethod
-    def between(cls, quantity: str, difference: Array, unit: str, size: float, over: str) -> Loss:
+    def between(cls, quantity: str, difference: Array, unit: str, size: float, over: str, relative_to: str = "") -> Loss:
         """Return the loss with root mean square and largest size of differences."""
-        return cls(quantity, float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max()), unit, size, over)
+        rms, largest = float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
+        return cls(quantity, rms, largest, unit, size, over, relative_to)
 
     @property
     def rms_share(self) -> float:

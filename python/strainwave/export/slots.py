@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
 from strainwave import Drive, Gear, arguments, loads, motor
+from strainwave.export.exported import Exported
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
@@ -46,33 +47,6 @@ MAX_SPEED = 1e6  # rad/s
 MAX_LOAD = 1e9  # N.m
 MIN_RATED_TORQUE = 1e-9  # N.m
 MAX_PERMILLE = 32767  # that a 16 bit number holds
-
-
-@dataclass(frozen=True)
-class Slot:
-    """Numbers that a controller takes.
-
-    Attributes:
-        name: of the slot
-        gear: name of the gear
-        side: "input" or "output": the shaft to which speeds, angles and torques belong
-        sign: the sign convention
-        values: single numbers, by name
-        units: their units, by name
-        table: columns of the numbers that form a table; None if the slot has none
-        loss: against the full model
-        remarks: what was assumed
-    """
-
-    name: str
-    gear: str
-    side: str
-    sign: str
-    values: Mapping[str, float]
-    units: Mapping[str, str]
-    table: Recording | None
-    loss: Loss
-    remarks: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -159,18 +133,19 @@ class Request:
         if self.unit == "A" and type(self.gear_set.motor) is motor.PMSM:
             yield "currents are amplitudes of the phases; the root mean square is smaller by the square root of 2"
 
-    def made(
+    def exported(
         self,
-        values: Mapping[str, tuple[float, str]],
-        loss: Loss,
+        numbers: Mapping[str, tuple[float, str]],
+        losses: tuple[Loss, ...],
         sign: str,
         remarks: Iterator[str],
         table: Recording | None = None,
-    ) -> Slot:
-        """Return the slot of these values with their units."""
-        numbers = {name: value for name, (value, _) in values.items()}
-        units = {name: unit for name, (_, unit) in values.items()}
-        return Slot(self.name, self.gear_set.name, self.side, sign, numbers, units, table, loss, tuple(remarks))
+    ) -> Exported:
+        """Return the numbers of the slot, with side and sign convention as the first remarks."""
+        side = f"speeds and torques are those of the {self.side}"
+        return Exported(
+            self.name, self.gear_set.name, {}, numbers, losses, remarks=(side, f"sign: {sign}", *remarks), table=table
+        )
 
 
 def slot(
@@ -190,7 +165,7 @@ def slot(
     temperature: float = ROOM_TEMPERATURE,
     members: int = 200,
     seed: int = 0,
-) -> Slot:
+) -> Exported:
     """Return the numbers of a gear for a slot that controllers have, with what they lose against the full model.
 
     Args:
@@ -219,8 +194,9 @@ def slot(
     >>> import strainwave as sw
     >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, viscous=1e-4))
     >>> found = slot(gear, "coulomb-viscous")
-    >>> round(found.values["coulomb_plus"], 9), round(found.values["viscous_minus"], 9), found.loss.rms < 1e-15
-    (0.05, 0.0001, True)
+    >>> (coulomb, unit), (loss,) = found.numbers["coulomb_plus"], found.losses
+    >>> round(coulomb, 9), unit, loss.rms < 1e-15
+    (0.05, 'N.m', True)
     """
     arguments.one_of("slot", name, SLOTS)
     gear_set = gear_set_of(drive)
@@ -342,27 +318,27 @@ def line_over_speed(speed: Array, torque: Array) -> tuple[float, float]:
     return float(coulomb), float(viscous / speed.max())
 
 
-def coulomb_viscous(request: Request) -> Slot:
+def coulomb_viscous(request: Request) -> Exported:
     """Return Coulomb and viscous friction of each sense, and the threshold speed below which both fall to zero in a line."""
     full = FullFriction.of(request)
     forward = full.speed > 0.0
     plus = line_over_speed(full.speed[forward], full.mean[forward])
     minus = line_over_speed(-full.speed[~forward], -full.mean[~forward])
     applied = np.where(forward, plus[0] + plus[1] * full.speed, minus[1] * full.speed - minus[0])
-    values = {
+    numbers = {
         f"{term}_{sense}": (line[k], request.unit + ".s/rad" * k)
         for sense, line in {"plus": plus, "minus": minus}.items()
         for k, term in enumerate(("coulomb", "viscous"))
     }
-    values["threshold"] = (float(full.speed[forward][0]), "rad/s")
+    numbers["threshold"] = (float(full.speed[forward][0]), "rad/s")
     sign = (
         "coulomb_plus + viscous_plus w is added at speeds w above the threshold, -coulomb_minus + viscous_minus w below its "
         "negative, and in between the line that joins both"
     )
-    return request.made(values, full.loss(applied), sign, request.remarks("friction"))
+    return request.exported(numbers, (full.loss(applied),), sign, request.remarks("friction"))
 
 
-def speed_table(request: Request) -> Slot:
+def speed_table(request: Request) -> Exported:
     """Return the friction over speeds in geometric steps from the threshold up, half of them in each sense."""
     count = arguments.whole("points", 32 if request.points is None else request.points, MIN_POINTS, MAX_POINTS)
     if count % 2:
@@ -375,10 +351,10 @@ def speed_table(request: Request) -> Slot:
     table = Recording({"speed": speed, column: torque}, {"speed": "rad/s", column: request.unit})
     loss = full.loss(np.interp(full.speed, speed, torque))
     sign = "the value is added, in the sense of the speed; lines join the points, through zero between the slowest two"
-    return request.made({"points": (float(count), "1")}, loss, sign, request.remarks("friction"), table)
+    return request.exported({"points": (float(count), "1")}, (loss,), sign, request.remarks("friction"), table)
 
 
-def viscous_coulomb_scale(request: Request) -> Slot:
+def viscous_coulomb_scale(request: Request) -> Exported:
     """Return the largest scales of viscous and Coulomb friction that over-compensate at most 5 % of the gears."""
     full = FullFriction.of(request)
     forward = full.speed > 0.0
@@ -394,7 +370,7 @@ def viscous_coulomb_scale(request: Request) -> Slot:
     found = linprog(-useful, A_ub=parts, b_ub=np.maximum(floor, 0.0), bounds=[(0.0, float(part > 0.0)) for part in useful])
     scales = np.clip(np.asarray(found.x, dtype=float), 0.0, 1.0)
     over = float(np.mean((parts @ scales > least * (1.0 + 1e-9)).any(axis=1)))
-    values = {
+    numbers = {
         "viscous_scale": (float(scales[1]), "1"),
         "coulomb_scale": (float(scales[0]), "1"),
         "viscous": (viscous, f"{request.unit}.s/rad"),
@@ -403,7 +379,7 @@ def viscous_coulomb_scale(request: Request) -> Slot:
     }
     applied = scales[0] * coulomb * np.sign(full.speed) + scales[1] * viscous * full.speed
     sign = "scale 1 is the friction of the gear as stated (coulomb and viscous), added in the sense of motion"
-    return request.made(values, full.loss(applied), sign, request.remarks("friction"))
+    return request.exported(numbers, (full.loss(applied),), sign, request.remarks("friction"))
 
 
 def _least_friction(request: Request, gear: Gear, speed: Array) -> Array:
@@ -424,7 +400,7 @@ def _drawn(request: Request) -> Iterator[Gear]:
             yield request.gear.replace({path.removeprefix("gear."): float(draws[path][k]) for path in paths})
 
 
-def anticogging_map(request: Request) -> Slot:
+def anticogging_map(request: Request) -> Exported:
     """Return what the motor adds over the angle of the input: reaction of the error, friction that varies, cogging."""
     count = arguments.whole("points", 256 if request.points is None else request.points, MIN_POINTS, MAX_POINTS)
     if request.load is None:
@@ -437,7 +413,8 @@ def anticogging_map(request: Request) -> Slot:
     angle = fine[:, np.newaxis] + 2.0 * np.pi * np.arange(turns)
     slow = CREEP_SPEED_SHARE * USUAL_SPEED / abs(request.ratio) if request.speed is None else request.speed
     speed = arguments.sized("speed", slow, "rad/s", 1e-9, MAX_SPEED) * abs(request.ratio)
-    there, back = (_over_turn(request, angle, each) for each in (speed, -speed))
+    both = {each: _over_turn(request, angle, each) for each in (speed, -speed)}
+    there = both[speed]
     if not there.ripple.any():
         raise ValueError(
             f"{request.gear_set.name}: neither kinematic error nor friction of the gear varies with the angle at a load of "
@@ -445,22 +422,24 @@ def anticogging_map(request: Request) -> Slot:
         )
     values = mean_over_last(there.ripple)[::FINER]
     applied = np.interp(fine, fine[::FINER], values, period=2.0 * np.pi)[:, np.newaxis]
-    over = f"{turns} turns of the input at {speed:.3g} rad/s under {request.load:g} N.m"
-    loss, other = (
-        Loss.between("ripple", each.ripple - applied, request.unit, _rms(each.friction), over) for each in (there, back)
-    )
+    losses = tuple(
+        Loss.between(
+            "ripple", turn.ripple - applied, request.unit, _rms(turn.friction),
+            f"{turns} turns of the input at {each:.3g} rad/s under {request.load:g} N.m", "friction",
+        )
+        for each, turn in both.items()
+    )  # fmt: skip
     column = "torque" if request.unit == "N.m" else "current"
     table = Recording({"input_angle": fine[::FINER], column: values}, {"input_angle": "rad", column: request.unit})
     numbers = {
-        "points": (float(count), "1"), "load": (request.load, "N.m"), "speed": (speed, "rad/s"),
+        "points": (float(count), "1"), "output_load": (request.load, "N.m"), "speed": (speed, "rad/s"),
         "amplitude": (float(np.abs(values).max()), request.unit),
     }  # fmt: skip
     sign = "the value is added at its input angle, positive forwards; the mean torque is left out, lines join the points"
-    return request.made(numbers, loss, sign, _map_remarks(request, other), table)
+    return request.exported(numbers, losses, sign, _map_remarks(request), table)
 
 
-def _map_remarks(request: Request, other: Loss) -> Iterator[str]:
-    yield f"in the other sense of motion it loses {other.rms:.3g} {other.unit} rms, {other.largest:.3g} {other.unit} at most"
+def _map_remarks(request: Request) -> Iterator[str]:
     if getattr(request.gear_set.motor, "cogging_torque", 0.0):
         yield "the cogging of the motor is in the map"
     yield from request.remarks("kinematic error", "friction")
@@ -483,7 +462,7 @@ def _over_turn(request: Request, angle: Array, speed: float) -> _OverTurn:
     return _OverTurn(request.per_torque * (varying - varying.mean()), request.per_torque * resisting)
 
 
-def torque_offset(request: Request) -> Slot:
+def torque_offset(request: Request) -> Exported:
     """Return the torque offset of CiA 402 along a motion, as whole permille of the rated torque of the motor."""
     rated = _rated_torque(request)
     plant = Plant.of(request.gear_set, request.period, 0.0)
@@ -514,18 +493,19 @@ def torque_offset(request: Request) -> Slot:
         "permille",
         _rms(1e3 * resisting / rated),
         f"{time[-1]:.3g} s of the motion, each value held for {request.period:g} s",
+        "friction",
     )
     sign = (
         "added to the torque command, positive drives the input forwards; inertia and load are in it: switch off other "
         "feed-forward"
     )
     table = Recording({"time": time, "permille": sent}, {"time": "s", "permille": "1"})
-    values = {
+    numbers = {
         "rated_torque": (rated, "N.m"),
         "period": (request.period, "s"),
         "largest": (float(np.abs(sent).max()), "permille"),
     }
-    return request.made(values, loss, sign, request.remarks("friction", "torsion", "kinematic error"), table)
+    return request.exported(numbers, (loss,), sign, request.remarks("friction", "torsion", "kinematic error"), table)
 
 
 def _to_and_fro(request: Request) -> Scenario:
@@ -549,7 +529,7 @@ def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-SLOTS: dict[str, Callable[[Request], Slot]] = {
+SLOTS: dict[str, Callable[[Request], Exported]] = {
     "viscous-coulomb-scale": viscous_coulomb_scale,
     "coulomb-viscous": coulomb_viscous,
     "speed-table": speed_table,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,11 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
+from strainwave.commands.export import slot as command
+from strainwave.export import Exported, Loss
+from strainwave.export.slots import OVER_COMPENSATED, SLOTS
 from strainwave.files.entries import Entry, Quantity
 from strainwave.tuning.drawn import drawn_gears
-from strainwave.tuning.slots import OVER_COMPENSATED, SLOTS, Slot
 
 from tests import strategies
 from tests.python.command import refused, strainwave
@@ -26,7 +29,15 @@ SPEED = 1.0  # rad/s of the output, 100 rad/s of the input
 OF_FRICTION = ("viscous-coulomb-scale", "coulomb-viscous", "speed-table")
 
 
-def table(found: Slot) -> tuple[np.ndarray, np.ndarray]:
+def value(found: Exported, name: str) -> float:
+    return found.numbers[name][0]
+
+
+def loss(found: Exported) -> Loss:
+    return found.losses[0]
+
+
+def table(found: Exported) -> tuple[np.ndarray, np.ndarray]:
     assert found.table is not None
     first, second = found.table.columns.values()
     return first, second
@@ -43,23 +54,23 @@ def with_torque_constant(gear: sw.Gear) -> sw.Drive:
 @pytest.mark.parametrize("name", ["coulomb-viscous", "speed-table"])
 @pytest.mark.parametrize(("side", "unit"), [("input", "N.m"), ("output", "N.m"), ("input", "A")])
 def test_a_line_of_friction_is_lost_nothing_of(name: str, side: str, unit: str) -> None:
-    found = sw.slot(with_torque_constant(PLAIN), name, side=side, unit=unit, speed=SPEED)
+    found = sw.export.slot(with_torque_constant(PLAIN), name, side=side, unit=unit, speed=SPEED)
     scale = {"N.m": 100.0 if side == "output" else 1.0, "A": 1.0 / 0.05}[unit]
-    assert found.loss.largest == pytest.approx(0.0, abs=1e-14 * scale)
-    assert found.loss.rms_share < 1e-14
+    assert loss(found).largest == pytest.approx(0.0, abs=1e-14 * scale)
+    assert loss(found).rms_share < 1e-14
     if name == "coulomb-viscous":
         per_speed = scale * (100.0 if side == "output" else 1.0)
         for sense in ("plus", "minus"):
-            assert found.values[f"coulomb_{sense}"] == pytest.approx(0.05 * scale)
-            assert found.values[f"viscous_{sense}"] == pytest.approx(3e-4 * per_speed)
-        assert found.values["threshold"] == pytest.approx(0.01 if side == "output" else 1.0)
-        assert found.units["viscous_plus"] == f"{unit}.s/rad"
+            assert value(found, f"coulomb_{sense}") == pytest.approx(0.05 * scale)
+            assert value(found, f"viscous_{sense}") == pytest.approx(3e-4 * per_speed)
+        assert value(found, "threshold") == pytest.approx(0.01 if side == "output" else 1.0)
+        assert found.numbers["viscous_plus"][1] == f"{unit}.s/rad"
 
 
 def test_a_stribeck_curve_is_lost_by_its_known_integral() -> None:
     """With the Coulomb and viscous friction fitted, both sums of squares are integrals over the speed."""
     law = sw.friction.Stribeck(coulomb=0.04, breakaway=0.08, stribeck_speed=15.0, viscous=4e-4)
-    found = sw.slot(sw.Gear(kinematics=KINEMATICS, friction_input=law), "coulomb-viscous", speed=SPEED, threshold=0.02)
+    found = sw.export.slot(sw.Gear(kinematics=KINEMATICS, friction_input=law), "coulomb-viscous", speed=SPEED, threshold=0.02)
     low, top = 2.0, 100.0
 
     def extra(speed: float, power: int = 0) -> float:
@@ -67,19 +78,19 @@ def test_a_stribeck_curve_is_lost_by_its_known_integral() -> None:
 
     moments = np.array([[quad(lambda v: v ** (i + k), low, top)[0] for k in (0, 1)] for i in (0, 1)])  # noqa: B023
     added = np.linalg.solve(moments, [quad(extra, low, top, args=(k,))[0] for k in (0, 1)])
-    assert found.values["coulomb_plus"] == pytest.approx(0.04 + added[0], rel=1e-2)
-    assert found.values["viscous_minus"] == pytest.approx(4e-4 + added[1], rel=1e-2)
+    assert value(found, "coulomb_plus") == pytest.approx(0.04 + added[0], rel=1e-2)
+    assert value(found, "viscous_minus") == pytest.approx(4e-4 + added[1], rel=1e-2)
     square, _ = quad(lambda v: (extra(v) - added[0] - added[1] * v) ** 2, low, top)
-    assert found.loss.rms == pytest.approx(np.sqrt(square / (top - low)), rel=5e-3)
-    assert found.loss.largest == pytest.approx(extra(low) - added[0] - added[1] * low, rel=5e-3)
+    assert loss(found).rms == pytest.approx(np.sqrt(square / (top - low)), rel=5e-3)
+    assert loss(found).largest == pytest.approx(extra(low) - added[0] - added[1] * low, rel=5e-3)
 
 
 def test_friction_over_the_angle_is_lost_by_its_root_mean_square() -> None:
     law = sw.friction.Cyclic(law=sw.friction.Coulomb(coulomb=0.05), order=[2.0], amplitude=[0.3], phase=[0.0])
     for name in ("coulomb-viscous", "speed-table"):
-        found = sw.slot(sw.Gear(kinematics=KINEMATICS, friction_input=law), name, speed=SPEED)
-        assert found.loss.rms == pytest.approx(0.05 * 0.3 / np.sqrt(2.0))
-        assert found.loss.largest == pytest.approx(0.05 * 0.3, rel=1e-3)
+        found = sw.export.slot(sw.Gear(kinematics=KINEMATICS, friction_input=law), name, speed=SPEED)
+        assert loss(found).rms == pytest.approx(0.05 * 0.3 / np.sqrt(2.0))
+        assert loss(found).largest == pytest.approx(0.05 * 0.3, rel=1e-3)
 
 
 def has_friction_at_every_angle(law: Any) -> bool:
@@ -90,67 +101,67 @@ def has_friction_at_every_angle(law: Any) -> bool:
 @given(law=strategies.models("friction", "steady").filter(has_friction_at_every_angle), count=st.integers(2, 20))
 def test_a_table_is_the_friction_at_its_points(law: Any, count: int) -> None:
     gear = sw.Gear(kinematics=KINEMATICS, friction_input=law)
-    found = sw.slot(gear, "speed-table", speed=SPEED, points=2 * count)
+    found = sw.export.slot(gear, "speed-table", speed=SPEED, points=2 * count)
     speed, torque = table(found)
     angle = 2.0 * np.pi * 100.0 / 257 * np.arange(257)
     full = np.array([np.mean(gear.friction_input.steady(np.full(257, v), angle)) for v in speed])
     assert torque == pytest.approx(full, rel=1e-9, abs=1e-12 * np.abs(full).max())
-    for other in (found, sw.slot(gear, "coulomb-viscous", speed=SPEED)):
-        assert 0.0 <= other.loss.rms <= other.loss.largest * (1.0 + 1e-12)
+    for other in (found, sw.export.slot(gear, "coulomb-viscous", speed=SPEED)):
+        assert 0.0 <= loss(other).rms <= loss(other).largest * (1.0 + 1e-12)
 
 
 def test_a_denser_table_loses_less() -> None:
     law = sw.friction.Stribeck(coulomb=0.04, breakaway=0.08, stribeck_speed=5.0)
     gear = sw.Gear(kinematics=KINEMATICS, friction_input=law)
-    coarse, dense = (sw.slot(gear, "speed-table", speed=SPEED, points=count).loss.rms for count in (16, 32))
+    coarse, dense = (loss(sw.export.slot(gear, "speed-table", speed=SPEED, points=count)).rms for count in (16, 32))
     assert dense == pytest.approx(coarse / 4.0, rel=0.2)  # lines through a smooth curve
 
 
 def test_scales_are_those_of_the_gear_of_little_friction() -> None:
     """All friction of a drawn gear is that of the stated one times one factor, so both scales are a factor."""
     stated = sw.GearSet.of(with_torque_constant(PLAIN), name="joint", source="measured")
-    found = sw.slot(stated, "viscous-coulomb-scale", speed=SPEED, members=99, seed=1)
+    found = sw.export.slot(stated, "viscous-coulomb-scale", speed=SPEED, members=99, seed=1)
     factors = np.sort(drawn_gears(stated, 99, 1)["gear.friction_input.viscous"] / 3e-4)
-    assert found.values["viscous_scale"] == pytest.approx(factors[4])  # of 100 equally likely places of a gear five lie below
-    assert found.values["coulomb_scale"] == pytest.approx(factors[4])
-    assert found.values["over_compensated"] == pytest.approx(4 / 99)
+    assert value(found, "viscous_scale") == pytest.approx(factors[4])  # of 100 equally likely places of a gear five lie below
+    assert value(found, "coulomb_scale") == pytest.approx(factors[4])
+    assert value(found, "over_compensated") == pytest.approx(4 / 99)
     friction = np.sqrt(np.mean((0.05 + 3e-4 * np.linspace(1.0, 100.0, 20001)) ** 2))
-    assert found.loss.rms == pytest.approx((1.0 - factors[4]) * friction, rel=1e-6)
+    assert loss(found).rms == pytest.approx((1.0 - factors[4]) * friction, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ["csg-20-100", "space-pointing-joint", "position-drive-full-friction"])
 def test_a_scale_over_compensates_few_gears(name: str) -> None:
-    found = sw.slot(name, "viscous-coulomb-scale", members=40)
-    assert found.values["over_compensated"] <= OVER_COMPENSATED
-    assert all(0.0 < found.values[f"{part}_scale"] <= 1.0 for part in ("viscous", "coulomb"))
+    found = sw.export.slot(name, "viscous-coulomb-scale", members=40)
+    assert value(found, "over_compensated") <= OVER_COMPENSATED
+    assert all(0.0 < value(found, f"{part}_scale") <= 1.0 for part in ("viscous", "coulomb"))
 
 
 def test_a_gear_that_is_known_is_compensated_nearly_in_full() -> None:
     stated = sw.GearSet.of(PLAIN, name="joint", source="measured")
     known = stated.replace(sources=dict.fromkeys(stated.sources, Entry("measured", spread=1e-6)))
-    found = sw.slot(known, "viscous-coulomb-scale", speed=SPEED, members=40)
-    assert found.values["coulomb_scale"] == pytest.approx(1.0, abs=1e-5)
-    assert not found.remarks
+    found = sw.export.slot(known, "viscous-coulomb-scale", speed=SPEED, members=40)
+    assert value(found, "coulomb_scale") == pytest.approx(1.0, abs=1e-5)
+    assert not any("assumed" in remark for remark in found.remarks)
 
 
 def test_the_reaction_of_the_kinematic_error_is_that_of_the_current_signature() -> None:
     """3e-4 rad at order 2 under 20 N.m take 240 mA at 0.05 N.m/A; 0.8e-4 and 0.5e-4 rad at orders 1 and 4 take 32 and 80 mA."""
     error = sw.kinematic_error.Fourier(order=[1.0, 2.0, 4.0], amplitude=[0.8e-4, 3e-4, 0.5e-4], phase=[0.0, 0.0, 0.0])
     gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), kinematic_error=error)
-    found = sw.slot(with_torque_constant(gear), "anticogging-map", unit="A", load=20.0, points=128)
+    found = sw.export.slot(with_torque_constant(gear), "anticogging-map", unit="A", load=20.0, points=128)
     angle, current = table(found)
     lines = {order: 2.0 / angle.size * np.sum(current * np.exp(-1j * order * angle)) for order in (1, 2, 4)}
     assert [lines[order].real for order in (1, 2, 4)] == pytest.approx([-0.032, -0.240, -0.080])
-    assert found.loss.rms < 1e-3
-    assert np.isnan(found.loss.rms_share)
+    assert loss(found).rms < 1e-3
+    assert np.isnan(loss(found).rms_share)
 
 
 def test_what_does_not_repeat_with_the_input_is_lost_from_a_map() -> None:
     error = sw.kinematic_error.Fourier(order=[2.0, 2.02], amplitude=[3e-4, 1e-4], phase=[0.3, 0.0])
     gear = PLAIN.replace(kinematic_error=error)
-    found = sw.slot(gear, "anticogging-map", load=20.0, points=256)
-    assert found.values["amplitude"] == pytest.approx(20.0 * 3e-4 * 2.0, rel=1e-3)
-    assert found.loss.rms == pytest.approx(20.0 * 1e-4 * 2.02 / np.sqrt(2.0), rel=1e-3)
+    found = sw.export.slot(gear, "anticogging-map", load=20.0, points=256)
+    assert value(found, "amplitude") == pytest.approx(20.0 * 3e-4 * 2.0, rel=1e-3)
+    assert loss(found).rms == pytest.approx(20.0 * 1e-4 * 2.02 / np.sqrt(2.0), rel=1e-3)
 
 
 def test_a_map_has_friction_of_its_sense_and_cogging() -> None:
@@ -160,11 +171,12 @@ def test_a_map_has_friction_of_its_sense_and_cogging() -> None:
         supply_voltage=48.0, current_limit=10.0, cogging_torque=0.02, cogging_order=6.0,
     )  # fmt: skip
     drive = driven(sw.Gear(kinematics=KINEMATICS, friction_input=law), motor)
-    there, back = (sw.slot(drive, "anticogging-map", load=0.0, speed=speed) for speed in (0.002, -0.002))
+    there, back = (sw.export.slot(drive, "anticogging-map", load=0.0, speed=speed) for speed in (0.002, -0.002))
     angle, forward = table(there)
     _, backward = table(back)
     assert forward - backward == pytest.approx(2.0 * 0.05 * 0.2 * _cyclic(law, angle), abs=1e-12)
     assert forward + backward == pytest.approx(-2.0 * 0.02 * np.sin(6.0 * angle), abs=1e-12)
+    assert there.losses[1].rms == pytest.approx(2.0 * 0.05 * 0.2 / np.sqrt(2.0), rel=1e-3)  # in the other sense of motion
     assert any("cogging" in remark for remark in there.remarks)
 
 
@@ -178,11 +190,11 @@ def test_a_torque_offset_is_the_inertia_in_permille() -> None:
     """A sine takes its acceleration times the inertia; rounding loses 1/sqrt(12), holding a third of the change of a period."""
     gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=1e9))
     drive = driven(gear, sw.motor.TorqueSource(inertia=1e-4), sw.loads.Inertia(inertia=0.5))
-    found = sw.slot(drive, "torque-offset", rated_torque=0.05, travel=1.0, speed=2.0, period=1e-4)
+    found = sw.export.slot(drive, "torque-offset", rated_torque=0.05, travel=1.0, speed=2.0, period=1e-4)
     time, permille = table(found)
     amplitude = 1e3 * 100.0 * (1e-4 + 0.5 / 100.0**2) * 0.5 * 4.0**2 / 0.05
     assert permille == pytest.approx(amplitude * np.cos(4.0 * time), abs=1.5)
-    assert found.loss.rms**2 == pytest.approx(1.0 / 12.0 + (4.0 * 1e-4 * amplitude) ** 2 / 6.0, rel=0.05)
+    assert loss(found).rms ** 2 == pytest.approx(1.0 / 12.0 + (4.0 * 1e-4 * amplitude) ** 2 / 6.0, rel=0.05)
     assert (permille == np.rint(permille)).all()
 
 
@@ -191,16 +203,16 @@ def test_a_torque_offset_follows_a_motion_that_is_given_and_the_rating_of_the_se
     stated = sw.GearSet.read("robot-joint")
     with_rating = stated.replace(ratings={**stated.ratings, "motor_rated_torque": rated})
     motion = sw.scenario.sine(0.1, 0.5, 2.0, phase=-np.pi / 2, offset=0.1)
-    found = sw.slot(with_rating, "torque-offset", motion=motion)
-    assert found.values["rated_torque"] == 900.0
+    found = sw.export.slot(with_rating, "torque-offset", motion=motion)
+    assert value(found, "rated_torque") == 900.0
     assert found.table is not None
     assert len(found.table["time"]) == 2001
 
 
 def test_what_is_assumed_is_remarked() -> None:
     for name in OF_FRICTION:
-        assert any("friction is assumed" in remark for remark in sw.slot("csg-20-100", name).remarks)
-    found = sw.slot("robot-joint", "anticogging-map", load=20.0, unit="A")
+        assert any("friction is assumed" in remark for remark in sw.export.slot("csg-20-100", name).remarks)
+    found = sw.export.slot("robot-joint", "anticogging-map", load=20.0, unit="A")
     assert any("both encoders" in remark for remark in found.remarks)
     assert any("amplitudes of the phases" in remark for remark in found.remarks)
 
@@ -238,39 +250,72 @@ def test_what_is_assumed_is_remarked() -> None:
 )
 def test_what_is_missing_is_stated(drive: str, name: str, changes: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sw.slot(drive, name, **changes)  # type: ignore[arg-type]
+        sw.export.slot(drive, name, **changes)  # type: ignore[arg-type]
 
 
 def test_a_motion_that_is_none_is_refused() -> None:
     with pytest.raises(TypeError, match=r"motion must be a scenario.*not 3"):
-        sw.slot("robot-joint", "torque-offset", rated_torque=1.0, motion=3)  # type: ignore[arg-type]
+        sw.export.slot("robot-joint", "torque-offset", rated_torque=1.0, motion=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="drive must be a gear, a drive, a set of one, a name or a path, not 3"):
-        sw.slot(3, "speed-table")  # type: ignore[arg-type]
+        sw.export.slot(3, "speed-table")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("side", ["input", "output"])
+def test_side_and_sign_are_the_first_remarks(side: str) -> None:
+    first, second, *_ = sw.export.slot("csg-20-100", "coulomb-viscous", side=side).remarks
+    assert first == f"speeds and torques are those of the {side}"
+    assert second.startswith("sign: ")
 
 
 @pytest.mark.parametrize("name", SLOTS)
 def test_the_command_writes_a_slot(name: str, tmp_path: Path) -> None:
-    needs: dict[str, float] = {"rated_torque": 0.9} if name == "torque-offset" else {"load": 20.0}
-    options = [word for option, value in needs.items() for word in (f"--{option.replace('_', '-')}", value)]
-    done = strainwave("compensate", "robot-joint", "--slot", name, *options, "--out", "slot", folder=tmp_path)
+    needs = {"torque-offset": {"rated_torque": 0.9}, "anticogging-map": {"load": 20.0}}.get(name, {})
+    options = [word for option, number in needs.items() for word in (f"--{option.replace('_', '-')}", number)]
+    done = strainwave("export", "slot", "robot-joint", name, *options, "--out", "slot", folder=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "loss against the full model" in done.stdout
-    written = json.loads((tmp_path / "slot" / "slot.json").read_text())
-    found = sw.slot("robot-joint", name, **needs)  # type: ignore[arg-type]
-    assert written["values"] == {name: {"value": value, "unit": found.units[name]} for name, value in found.values.items()}
-    assert written["loss"]["rms"] == found.loss.rms
+    assert "loss against the gear:" in done.stdout
+    written = json.loads((tmp_path / "slot" / "export.json").read_text())
+    found = sw.export.slot("robot-joint", name, **needs)  # type: ignore[arg-type]
+    assert written["kind"] == name
+    assert written["numbers"] == {key: {"value": number, "unit": unit} for key, (number, unit) in found.numbers.items()}
+    assert [each["rms"] for each in written["losses"]] == [each.rms for each in found.losses]
+    assert (found.table is None) != (tmp_path / "slot" / f"{name}.csv").exists()
     if found.table is not None:
-        assert sw.Recording.read(tmp_path / "slot" / "slot.csv").columns.keys() == found.table.columns.keys()
+        assert sw.Recording.read(tmp_path / "slot" / f"{name}.csv") == found.table
+
+
+def test_the_command_prints_twelve_rows_of_a_table_at_most(tmp_path: Path) -> None:
+    for points, rows in ((8, 8), (64, 12)):
+        done = strainwave("export", "slot", "csg-20-100", "speed-table", "--points", points, folder=tmp_path)
+        lines = done.stdout.splitlines()
+        first = next(k for k, line in enumerate(lines) if "speed [rad/s]" in line) + 1
+        last = lines.index("loss against the gear:")
+        assert len([line for line in lines[first:last] if len(line.split()) == 2]) == rows
+        assert ("(12 of 64 rows)" in done.stdout) == (points == 64)
+
+
+def test_a_loss_relative_to_friction_names_it(tmp_path: Path) -> None:
+    for name, option in (("torque-offset", ("--rated-torque", 0.9)), ("anticogging-map", ("--load", 20.0))):
+        done = strainwave("export", "slot", "robot-joint", name, *option, "--out", name, folder=tmp_path)
+        assert " % of the friction (" in done.stdout
+        (first, *_) = json.loads((tmp_path / name / "export.json").read_text())["losses"]
+        assert first["relative_to"] == "friction"
+        assert first["largest_share"] == pytest.approx(first["largest"] / first["size"])
+
+
+def test_the_command_has_the_defaults_of_the_function() -> None:
+    options, known = signature(command).parameters, signature(sw.export.slot).parameters
+    assert options.keys() - known.keys() == {"gear", "out"}
+    assert known.keys() - options.keys() == {"drive", "motion"}
+    for name in (options.keys() & known.keys()) - {"name"}:
+        assert options[name].default == known[name].default, name
 
 
 def test_the_command_names_its_options(tmp_path: Path) -> None:
-    refused(tmp_path, ["compensate", "robot-joint", "--slot", "anticogging-map"], "--load is needed")
-    refused(tmp_path, ["compensate", "robot-joint", "--slot", "torque-offset"], "--rated-torque is needed")
-    refused(tmp_path, ["compensate", "robot-joint", "--rated-torque", "1"], "--rated-torque belongs to a slot")
-    refused(
-        tmp_path, ["compensate", "robot-joint", "--slot", "speed-table", "--goal", "speed"], "--goal belongs to a controller"
-    )
-    refused(tmp_path, ["compensate", "robot-joint", "--slot", "speed-table", "--travel", "1"], "travel is not used by the slot")
+    refused(tmp_path, ["export", "slot", "robot-joint", "anticogging-map"], "--load is needed")
+    refused(tmp_path, ["export", "slot", "robot-joint", "torque-offset"], "--rated-torque is needed")
+    refused(tmp_path, ["export", "slot", "robot-joint", "speed-table", "--travel", "1"], "travel is not used by the slot")
+    refused(tmp_path, ["export", "slot", "robot-joint", "speed-table", "--points", "8.5"], "--points")
 
 
 @pytest.mark.parametrize(
@@ -289,4 +334,4 @@ def test_the_command_names_its_options(tmp_path: Path) -> None:
 )
 def test_an_option_that_a_slot_does_not_use_is_refused(name: str, options: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sw.slot("robot-joint", name, **options)  # type: ignore[arg-type]
+        sw.export.slot("robot-joint", name, **options)  # type: ignore[arg-type]
