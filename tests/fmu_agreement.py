@@ -1,7 +1,7 @@
 """FMUs of five drives against the simulation over 10 s, by `python -m tests.fmu_agreement`.
 
-Blocks for co-simulation follow a command with five reversals, under a load that rises, in both versions of FMI, and are compared
-in all outputs at the communication instants. Blocks for model exchange follow a command of five pulses: FMPy, whose CVODE solves
+Blocks for co-simulation follow a command with five reversals, under a load that rises, in both versions of FMI. All outputs are
+compared at the communication instants. Blocks for model exchange follow a command of five pulses: FMPy, whose CVODE solves
 them, holds other commands between the communication instants, which shows more than its tolerance.
 """
 
