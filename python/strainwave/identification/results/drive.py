@@ -134,15 +134,19 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     drive, own = _drive_of(log), _loads_of(log)
     assert drive is not None
     given = {} if log.recognised is None else log.recognised.constants
+    load: Any = drive.load
     sources = {}
-    for path in own_paths("load", drive.load):
+    for path in own_paths("load", load):
         if path in own:
             sources[path] = source_of(own[path], log.name)
         elif path == "load.inertia" and "load_inertia" in given:
             sources[path] = Entry(f"given with {log.name}")
+        elif path == "load.inertia" and hasattr(whole.load, "inertia"):  # fitted without one, no step would be short enough
+            load = load.replace(inertia=whole.load.inertia)
+            sources[path] = Entry(f"assumed: that of the start set, as {log.name} does not determine it")
         else:
             sources[path] = Entry(f"assumed: {log.name} does not determine it")
-    return _with_part(whole, "load", drive.load, sources)
+    return _with_part(whole, "load", load, sources)
 
 
 def _with_motor(whole: GearSet, log: FileResult) -> GearSet:

@@ -139,3 +139,18 @@ def test_a_measured_torque_gives_a_motor_of_torque(folder: Path) -> None:
 def test_a_name_must_be_one_line() -> None:
     with pytest.raises(ValueError, match="name = 'a\\\\nb' must be one line of text"):
         sw.identify(START, ["joint.csv"], name="a\nb")
+
+
+def test_an_inertia_that_a_log_does_not_determine_is_assumed_so_that_the_drive_runs(tmp_path: Path) -> None:
+    """A slow motion against gravity and friction. Without an inertia of the load no step is short enough."""
+    time = np.arange(0.0, 40.0, 0.02)
+    angle = 1.2 * np.sin(0.3 * time)
+    torque = 40.0 * np.sin(angle) + 6.0 * np.sign(np.cos(0.3 * time)) + 8.0 * 0.36 * np.cos(0.3 * time)
+    torque += 0.1 * np.random.default_rng(0).standard_normal(len(time))
+    units = {"t": "s", "q": "rad", "tau": "N.m"}
+    sw.Recording({"t": time, "q": angle, "tau": torque}, units).to_csv(tmp_path / "slow.csv")
+    slow = sw.identify("robot-joint", [tmp_path / "slow.csv"]).gear_set
+    assert slow.load.gravity_torque == pytest.approx(40.0, rel=0.02)
+    assert slow.load.inertia == sw.load("robot-joint").load.inertia
+    assert slow.sources["load.inertia"].source == "assumed: that of the start set, as slow.csv does not determine it"
+    sw.simulate(slow.drive, sw.scenario.constant(0.0, 1e-3))
