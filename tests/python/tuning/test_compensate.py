@@ -47,7 +47,7 @@ def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: 
 
 def test_an_error_of_unknown_phase_is_not_fed_forward() -> None:
     """It adds to the error as often as it takes away."""
-    found = sw.compensate(STATED, goal="speed", members=12, seed=3)
+    found = sw.compensate(STATED, goal="speed", members=7, seed=3)
     with_error = [each for each in found.tried if each.candidate.is_plain and "kinematic error" in each.candidate.effects]
     assert all(each.median("speed ripple") > each.nominal["speed ripple"] for each in with_error)
     assert any("kinematic error is assumed" in remark and "both encoders" in remark for remark in found.remarks)
