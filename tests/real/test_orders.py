@@ -21,6 +21,8 @@ from strainwave.identification.reading.recognise import recognise
 from strainwave.orders.measured import OrdersFound, orders_found
 from strainwave.orders.ripple import Ripple
 
+from tests.samples import sample
+
 SHARED = Path(__file__).parents[3] / "shared"
 JOINT = Path(os.environ.get("STRAINWAVE_RIG", SHARED / "independent-rig")) / "measure.py"
 ROBOT = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "cobot-temperature" / "dataset_02052023.csv"
@@ -122,10 +124,12 @@ def test_a_joint_of_the_ur10e_alone_has_its_ratio(joint: int) -> None:
 @pytest.mark.parametrize("others", [True, False])
 @pytest.mark.parametrize("name", ["01_17-ptp_10_points", "02_05-20sec_12harm", "02_19_14harm50secLoad"])
 def test_no_joint_of_the_moving_ur10e_gets_a_ratio_of_another(name: str, others: bool) -> None:
-    found = [ripple_of(ARMS / "ur10e" / f"ur-20_{name}.csv", of_the_ur10e(joint, others)) for joint in range(1, 7)]
+    """Every other joint in the suite, all with the explore profile."""
+    joints = range(1, 7, sample(2, 1))
+    found = [ripple_of(ARMS / "ur10e" / f"ur-20_{name}.csv", of_the_ur10e(joint, others)) for joint in joints]
     print(f"\n{name}: {[each.concluded for each in found]}")
     assert all(set(each.concluded) <= {100, 101} for each in found)
-    assert sum(bool(each.concluded) for each in found) >= 4
+    assert np.mean([bool(each.concluded) for each in found]) >= 4 / 6
     if others:
         assert any(each.kind == "joint" and abs(each.order - 201.0) < 3.0 for ripple in found for each in ripple.lines)
 
