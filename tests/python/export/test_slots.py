@@ -21,6 +21,7 @@ from strainwave.tuning.drawn import drawn_gears
 
 from tests import strategies
 from tests.python.command import refused, strainwave
+from tests.samples import sample
 
 RATIO = -100.0
 KINEMATICS = sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed="circular_spline")
@@ -101,7 +102,7 @@ def has_friction_at_every_angle(law: Any) -> bool:
     return not refuses_angles(law) and bool(np.any(law.steady(np.full(257, 1.0), np.arange(257.0))))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=sample(10, 30), deadline=None)
 @given(law=strategies.models("friction", "steady").filter(has_friction_at_every_angle), count=st.integers(2, 20))
 def test_a_table_is_the_friction_at_its_points(law: Any, count: int) -> None:
     gear = sw.Gear(kinematics=KINEMATICS, friction_input=law)
