@@ -19,6 +19,7 @@ from strainwave.report.predict import verdict
 from tests.arms import Joint, Recorder, fourier, rtde, run
 from tests.python.command import refused, strainwave
 from tests.rig import RIG
+from tests.samples import sample
 
 JOINT = Joint()
 STATED = sw.FileMapping(joint="1", constants={"torque_constant": 0.12, "motor_inertia": 4e-5, "ratio": 100.0})
@@ -162,7 +163,7 @@ def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
 
 
 @pytest.mark.skipif(not RIG.is_dir(), reason=f"the independent joint was not found: {RIG} (set STRAINWAVE_RIG)")
-@pytest.mark.parametrize("seed", [3, 4])
+@pytest.mark.parametrize("seed", range(3, 3 + sample(1, 2)))
 def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
     """Friction scaled by 1.3 in another record, and the loads of two other logs: 0.85 to 0.3 kg.m2, 11 to 25 N.m."""
     for name, more in (("first", [f"seed={seed}"]), ("worn", [f"seed={seed + 20}", "Fc=0.0611", "Fs=0.0806"])):
