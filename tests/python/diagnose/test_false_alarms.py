@@ -23,11 +23,12 @@ from tests.false_alarms import (
     table,
     units_with_an_alarm,
 )
+from tests.samples import sample
 from tests.shares import share_interval
 
 DAYS = Days(baseline=3, later=3)
 RATE = 0.05  # stated rate of false alarms
-UNITS = 200  # of the comparison alone, with one run each: runs of one unit are not independent
+UNITS = sample(100, 200)  # of the comparison alone, with one run each: runs of one unit are not independent
 
 
 @pytest.fixture(scope="module")
