@@ -126,9 +126,22 @@ def test_a_device_too_small_for_a_member_says_so(monkeypatch: pytest.MonkeyPatch
         ensemble("gpu")
 
 
-def test_without_a_gpu_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_gpu_gives_the_numbers_of_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
-    with pytest.raises(OSError, match=r'no GPU that CUDA can use was found .*; run on the processor by backend="cpu"'):
+    try:
+        found = ensemble("gpu")
+    except OSError as error:
+        pytest.skip(str(error))
+    assert found == ensemble("cpu")
+
+
+def test_without_a_gpu_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_driver() -> None:
+        raise RuntimeError("no driver")
+
+    monkeypatch.undo()
+    monkeypatch.setattr("cuda.core.Device", no_driver)
+    with pytest.raises(OSError, match=r'no GPU that CUDA can use was found \(no driver\); run on the processor by backend="cpu"'):
         ensemble("gpu")
 
 
