@@ -141,7 +141,9 @@ def test_without_a_gpu_one_line_says_what_to_do(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.undo()
     monkeypatch.setattr("cuda.core.Device", no_driver)
-    with pytest.raises(OSError, match=r'no GPU that CUDA can use was found \(no driver\); run on the processor by backend="cpu"'):
+    with pytest.raises(
+        OSError, match=r'no GPU that CUDA can use was found \(no driver\); run on the processor by backend="cpu"'
+    ):
         ensemble("gpu")
 
 
