@@ -254,10 +254,9 @@ def from_bam(
 def _model_text(file: Path | None) -> str | None:
     """Return the text of the MJCF file of a robot; None if none is given."""
     from strainwave.export.mujoco import MAX_MODEL_BYTES
+    from strainwave.files.budget import read_text
 
-    if file is not None and file.stat().st_size > MAX_MODEL_BYTES:
-        raise ValueError(f"{file} is larger than {MAX_MODEL_BYTES >> 20} MiB; give the MJCF file without its meshes")
-    return None if file is None else file.read_text("utf-8")
+    return None if file is None else read_text(file, MAX_MODEL_BYTES)
 
 
 def _listing(files: Collection[str]) -> str:

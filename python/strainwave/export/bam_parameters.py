@@ -15,13 +15,15 @@ from strainwave import Drive, Gear, arguments, friction, kinematics, motor
 from strainwave.export.elements import GearElements, friction_losses
 from strainwave.export.exported import Exported
 from strainwave.export.joint_numbers import left_out_if_rigid
+from strainwave.files.budget import read_text
 from strainwave.files.gear_set import GearSet
-from strainwave.messages import listed, one_line, shortened
+from strainwave.messages import listed, one_line, quoted
 from strainwave.tuning.cascade import torque_constant
 
 Array = NDArray[np.float64]
 
 MAX_BYTES = 1 << 20  # of a parameter file
+MAX_REASON_LENGTH = 120  # characters of the reason of the reader of JSON
 DEFAULT_ACTUATOR = "erob80_100"  # of BAM, a strain wave gear of 100 behind a current loop
 STRIBECK_EXPONENT = 2.0  # of the laws of this package; other ones are refused
 LOAD_TERMS = "load_friction_"  # how the names of friction that grows with the load begin
@@ -85,6 +87,13 @@ def friction_of(numbers: Mapping[str, float], speed: Array) -> Array:
     return torque
 
 
+def _reason(error: Exception) -> str:
+    """Return why a content is not that of a parameter file."""
+    if isinstance(error, KeyError):
+        return f"it has no {quoted(str(error.args[0]))}"
+    return str(error)[:MAX_REASON_LENGTH]
+
+
 def read_bam(path: Path, ratio: float) -> GearSet:
     """Return gear and motor of a parameter file of BAM.
 
@@ -93,19 +102,19 @@ def read_bam(path: Path, ratio: float) -> GearSet:
         ratio: of the gear, which BAM does not state [1]
 
     Raises:
-        OSError: the file cannot be read
-        ValueError: it is no parameter file, or has friction that the laws of this package do not have
+        ValueError: the file cannot be read, is no parameter file, or has friction that the laws of this package do not have
     """
     ratio = abs(arguments.ratio("ratio", ratio))
-    if path.stat().st_size > MAX_BYTES:
-        raise ValueError(one_line(f"{path} is larger than a parameter file of BAM, {MAX_BYTES >> 20} MiB; give another file"))
+    text = read_text(path, MAX_BYTES)
     try:
-        content = json.loads(path.read_text("utf-8"))
+        content = json.loads(text)
+        if not isinstance(content, dict):
+            raise ValueError("it contains no names with values")
         names = {name: float(content[name]) for name in content if name not in ("model", "actuator")}
         dry, viscous = names["friction_base"] / ratio, names["friction_viscous"] / ratio**2
         inertia, constant = names["armature"] / ratio**2, names["kt"] / ratio
     except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise ValueError(one_line(f"{path} is no parameter file of BAM: {shortened(str(error))}")) from None
+        raise ValueError(one_line(f"{path} is no parameter file of BAM: {_reason(error)}")) from None
     loads = [name for name, value in names.items() if name.startswith(LOAD_TERMS) and value]
     law: Any = friction.Coulomb(coulomb=dry, viscous=viscous)
     if names.get("friction_stribeck"):

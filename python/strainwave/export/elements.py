@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, nnls
 
-from strainwave import Drive, Gear, friction, hysteresis, loads, motor, stiffness
+from strainwave import Drive, Gear, arguments, friction, hysteresis, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
@@ -259,8 +259,19 @@ def rated_torque(gear_set: GearSet) -> float | None:
     return next((convert(each.value, each.unit, "N.m") for each in ratings if each), None)
 
 
+def max_torque_of(model: object, max_torque: float | None) -> float | None:
+    """Return a given torque at the output [N.m], or the largest among the ratings of a gear set; None without both.
+
+    Raises:
+        TypeError, ValueError: the torque is not a positive number
+    """
+    if max_torque is not None:
+        return arguments.number("max_torque", max_torque, "N.m", low=0.0)
+    return rated_torque(model) if isinstance(model, GearSet) else None
+
+
 def _max_torque(gear_set: GearSet, given: float | None) -> float:
-    found = rated_torque(gear_set) if given is None else given
+    found = max_torque_of(gear_set, given)
     if found is not None:
         return found
     raise ValueError(

@@ -21,11 +21,10 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
 from strainwave.export.coupled import SUFFIXES, CoupledDrive, shared_library
-from strainwave.export.elements import Friction, rated_torque
+from strainwave.export.elements import Friction, max_torque_of
 from strainwave.export.exported import Exported
-from strainwave.export.fmu.build import default_step
 from strainwave.export.fmu.comparison import moving_run
-from strainwave.export.fmu.variables import MIN_STEP
+from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import (
     Element,
     child,
@@ -113,12 +112,9 @@ def mujoco_plugin(
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
     arguments.one_of("command", command, COMMANDS)
     _check_name(arguments.text("name", name))
-    if max_torque is not None:
-        largest = arguments.number("max_torque", max_torque, "N.m", low=0.0)
-    else:
-        largest = (rated_torque(model) if isinstance(model, GearSet) else None) or 0.0
+    largest = max_torque_of(model, max_torque) or 0.0
     include, version = installed_mujoco()
-    step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
+    step = internal_step(drive, step)
     coupled = CoupledDrive.of(drive, largest)
     inertia = _inertia(drive, load_inertia, into is None)
     alone = _alone(coupled, inertia, command, name)

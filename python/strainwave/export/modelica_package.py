@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
 from strainwave.export.coupled import SUFFIXES, CoupledDrive, shared_library
-from strainwave.export.elements import rated_torque
+from strainwave.export.elements import max_torque_of
 from strainwave.export.exported import Exported
-from strainwave.export.fmu.build import default_step
 from strainwave.export.fmu.comparison import moving_run
-from strainwave.export.fmu.variables import MIN_STEP
+from strainwave.export.internal_step import internal_step
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import quoted
@@ -79,11 +78,8 @@ def modelica(
     folder = FOLDERS.get(f"{machine.machine()}-{sys.platform}")
     if folder is None:
         raise ValueError("a Modelica package is compiled on Linux and macOS; on other systems take strainwave export fmu")
-    if max_torque is not None:
-        largest = arguments.number("max_torque", max_torque, "N.m", low=0.0)
-    else:
-        largest = (rated_torque(model) if isinstance(model, GearSet) else None) or 0.0
-    step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
+    largest = max_torque_of(model, max_torque) or 0.0
+    step = internal_step(drive, step)
     coupled = CoupledDrive.of(drive, largest)
     inertia = float(getattr(drive.load, "inertia", 0.0))
     if period is not None:

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
+from strainwave.messages import one_line
+
 MIN_ALLOWED_BYTES = 2**28  # any file may expand to this: 33 million numbers
 MAX_EXPANSION = 100  # times its size, that a larger file may expand to; measured noise compresses 10 times at the most
 MAX_ALLOWED_BYTES = 2**32  # no file may expand to more
@@ -125,3 +127,19 @@ def read_regular(path: str | Path, max_bytes: int = MAX_ALLOWED_BYTES) -> bytes:
     if len(data) > size:
         raise RefusedFile("grows while it is read; read a copy of it")
     return data
+
+
+def read_text(path: str | Path, max_bytes: int) -> str:
+    """Read a text in UTF-8 of at most `max_bytes` from a regular file.
+
+    Raises:
+        ValueError: it cannot be read; states the file and the reason
+    """
+    try:
+        return read_regular(path, max_bytes).decode("utf-8-sig")
+    except RefusedFile as error:
+        raise ValueError(one_line(f"{path} {error}")) from None
+    except OSError as error:
+        raise ValueError(one_line(f"{path} cannot be read: {error.strerror}")) from None
+    except UnicodeError:
+        raise ValueError(one_line(f"{path} is not a text in UTF-8")) from None

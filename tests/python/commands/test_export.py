@@ -45,12 +45,16 @@ def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
     [
         (("joint", "hfuc-25-100"), "--max-torque 100"),
         (("mjcf", "csg-20-100"), "--load-inertia"),
-        (("mjcf", "csg-20-100", "--into", "robot.xml"), "robot.xml"),
+        (("mjcf", "csg-20-100", "--into", "."), "cannot be read"),
         (("bam", "csg-20-100"), "add a [motor] to the file"),
         (("firmware", "csg-20-100"), "has no [motor] and no [load]"),
         (("firmware", "tilt-actuator"), "must be sampled"),
         (("firmware", "tilt-actuator", "--part", "motor"), "must be one of control, drive, gear.friction_input"),
-        (("from-bam", "nothing.json", "--ratio", "100"), "nothing.json"),
+        (("from-bam", "nothing.json", "--ratio", "100"), "nothing.json cannot be read"),
+        (("mjcf", "csg-20-100", "--into", "robot.xml", "--joint", "elbow"), "robot.xml cannot be read"),
+        (("joint", "csg-20-100", "--max-torque", "-5"), "max_torque = -5.0 N.m must lie in (0, inf)"),
+        (("newton", "robot-joint", "--step", "5"), "step = 5 s is too coarse"),
+        (("firmware", "robot-joint", "--part", "drive", "--period", "0.02"), "period = 0.02 s is too coarse"),
     ],
 )
 def test_what_cannot_be_exported_is_refused_in_one_line(words: tuple[str, ...], reason: str, tmp_path: Path) -> None:

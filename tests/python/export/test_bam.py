@@ -74,7 +74,7 @@ def test_terms_without_a_law_are_named(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", "{}", '{"friction_base": "much"}', '{"friction_base": NaN, "friction_viscous": 1}', "[" * 9999]
+    "text", ["", "[]", "[1, 2]", "{}", '{"friction_base": "much"}', '{"friction_base": NaN, "friction_viscous": 1}', "[" * 9999]
 )
 def test_another_file_is_refused(text, tmp_path):
     path = tmp_path / "no.json"

@@ -17,6 +17,7 @@ import strainwave as sw
 from strainwave import parameters
 from strainwave.export.fmu import build, comparison
 from strainwave.export.fmu.variables import STEP_NAME, recorded, variables
+from strainwave.export.internal_step import default_step
 from strainwave.files.units import convert
 from strainwave.native.compilers import NoCompilerError
 from typer.testing import CliRunner
@@ -395,6 +396,7 @@ def test_source_fmu_compiles_by_a_plain_command(tmp_path):
         ({"platforms": ["amiga"]}, r"the platform \"amiga\" is not known; give some of x86_64-linux, "),
         ({"version": 1}, r"version = 1 must be 2 or 3"),
         ({"step": 0.0}, r"step = 0\.0 s must lie in"),
+        ({"step": 0.02}, r"step = 0\.02 s is too coarse: .* give .* s or less"),
         ({"drive": PRESCRIBED, "model_exchange": True}, r"model exchange needs an output shaft that torques move"),
         ({"name": "///"}, r"name = \"///\" must contain letters or digits"),
     ],
@@ -424,7 +426,7 @@ def test_bristles_shorten_the_step():
         coulomb=0.05, breakaway=0.07, stribeck_speed=2.0, bristle_stiffness=5e3, bristle_damping=5e-3, viscous=4e-4
     )
     drive = drive_of(3)
-    step = build.default_step(drive.replace(gear=drive.gear.replace(friction_input=stiff)))
+    step = default_step(drive.replace(gear=drive.gear.replace(friction_input=stiff)))
     assert step < STEP
     assert STEP / step == 2 ** round(np.log2(STEP / step))
 

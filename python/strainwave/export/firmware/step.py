@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from strainwave import Drive, _core, arguments
-from strainwave.export.fmu.build import default_step
-from strainwave.export.fmu.variables import MIN_STEP, RATES
+from strainwave.export.fmu.variables import RATES
+from strainwave.export.internal_step import MIN_STEP, default_step, internal_step
 from strainwave.messages import shortened
 from strainwave.simulation.signals import actuation, command_unit, outputs
 
@@ -179,12 +179,12 @@ def _period_of_drive(drive: Drive, period: float | None) -> float:
     """Return the period of the steps of a drive [s]: instants of its sampled controller are multiples of it.
 
     Raises:
-        ValueError: they are not
+        ValueError: they are not, or the period is too coarse for the drive
     """
     _, sampled, delay = _core.schedule(drive, drive.rest().numbers)
     if sampled == 0.0:
-        return default_step(drive) if period is None else period
-    longest = default_step(drive) if period is None else period
+        return internal_step(drive, period, "period")
+    longest = internal_step(drive, period, "period")
     for count in range(max(1, math.ceil(sampled / longest - MAX_RELATIVE_REST)), MAX_STEPS_PER_PERIOD + 1):
         own = sampled / count
         if abs(delay / own - round(delay / own)) < MAX_RELATIVE_REST * count and (

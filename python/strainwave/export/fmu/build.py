@@ -11,7 +11,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
-from inspect import signature
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,23 +19,20 @@ from strainwave.export.exported import Exported
 from strainwave.export.fmu.comparison import difference_to_simulation
 from strainwave.export.fmu.description import Description, build_description, model_description, terminals
 from strainwave.export.fmu.source import sources
-from strainwave.export.fmu.variables import MIN_STEP, Variable, has_events, state_variables, variables
+from strainwave.export.fmu.variables import Variable, has_events, state_variables, variables
+from strainwave.export.internal_step import internal_step
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import quoted
 from strainwave.native.compilers import FLAGS, Compiler, NoCompilerError, find_compiler, zig_program
 from strainwave.native.static_type import in_words
-from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, fine_enough
-from strainwave.simulation.run import simulate
 from strainwave.simulation.signals import load_input
 
 VERSIONS = (2, 3)
-DEFAULT_STEP = signature(simulate).parameters["dt"].default  # s
 MAX_NAME_LENGTH = 60  # characters of a file name
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal drives have equal FMUs
 LIBRARIES = "-Wl,--as-needed", "-Wl,-z,defs", "-lm"  # no C++ library, and no symbol without a library
 MAX_REMEMBERED = 8  # binaries, of 0.2 MB each
-MAX_HALVINGS = 20  # of the step, for bristles
 
 
 @dataclass(frozen=True)
@@ -104,7 +100,7 @@ def fmu(
     if version not in VERSIONS:
         raise ValueError(f"version = {version!r} must be 2 or 3, for FMI 2.0 or FMI 3.0")
     targets = own_platform() if platforms is None else [_platform(each) for each in platforms]
-    step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
+    step = internal_step(drive, step)
     name = _file_name(name, model)
     found, states = variables(drive, step), state_variables(drive) if model_exchange else []
     if model_exchange and load_input(drive) == "output_angle":
@@ -136,29 +132,6 @@ def own_platform() -> list[str]:
     """Return the platform of this machine, or none if FMUs have no binaries for it."""
     name = f"{machine.machine().lower().replace('amd64', 'x86_64').replace('arm64', 'aarch64')}-{machine.system().lower()}"
     return [name] if name in PLATFORMS else []
-
-
-def default_step(drive: Drive) -> float:
-    """Return the internal step of a drive [s]: 0.2 ms, or half, a quarter … where its vibrations need that.
-
-    Raises:
-        ValueError: its bristles need steps shorter than `MIN_STEP`
-
-    >>> default_step(Drive())
-    0.0002
-    """
-    step = float(fine_enough(drive, DEFAULT_STEP, MIN_STEP))
-    stiffest = _core.bristle_frequency(drive)
-    for _ in range(MAX_HALVINGS):
-        if step * stiffest <= FASTEST_ON_BRISTLES:
-            break
-        step *= 0.5
-    if step < MIN_STEP:
-        raise ValueError(
-            f"a shaft of this drive vibrates on its bristles at {stiffest:.3g} rad/s, which needs steps of "
-            f"{FASTEST_ON_BRISTLES / stiffest:.2g} s; give step, or friction with softer bristles or with Coulomb's law"
-        )
-    return step
 
 
 def _platform(name: str) -> str:

@@ -8,6 +8,7 @@ from math import inf
 from typing import Literal
 
 from strainwave import Drive, _core
+from strainwave.export.internal_step import MIN_STEP
 from strainwave.files import units
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
@@ -18,7 +19,7 @@ FIRST_OUTPUT = 101
 FIRST_PARAMETER = 1001
 FIRST_STATE = 100_001  # then the derivatives, then the event indicator
 STEP_NAME = "internal_step"
-MIN_STEP, MAX_STEP = 1e-7, 0.1  # s
+MAX_STEP = 0.1  # s
 INITIAL = ("output_angle", "output_speed", "torque")  # quantities that a run can begin with; 0 has no effect
 RATES = {"rad": "rad/s", "1": "1/s", "rad/s": "rad/s2"}
 NOMINAL_ERROR = 1e-4  # rad, of the transmission error, whose twist makes the torque

@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, loads, meter
 from strainwave.export.exported import Exported
-from strainwave.export.fmu.build import default_step
-from strainwave.export.fmu.variables import MIN_STEP
+from strainwave.export.internal_step import internal_step
 from strainwave.export.newton import source
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
@@ -85,7 +84,7 @@ def newton(
     arguments.one_of("scalar", scalar, SCALARS)
     drawn = _draws(model, arguments.whole("draws", draws, 1), seed) if draws else {}
     drive = drive.replace(load=loads.Prescribed(), meter=meter.NoMeter())
-    step = default_step(drive) if step is None else arguments.number("step", step, "s", low=MIN_STEP)
+    step = internal_step(drive, step)
     shown = sorted(signals.outputs(drive).values(), key=lambda each: each.channel)
     about = {
         "made_by": f"strainwave {version('strainwave')}",
