@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from importlib import resources
 from typing import Any
 
 from strainwave.native.kernel import INCLUDE
 from strainwave.native.static_type import NAMESPACES, parameters
+
+INCLUDING = re.compile(r'^#include (?:<(?P<found>[^>]+)>|"(?P<beside>[^"]+)").*\n', re.MULTILINE)
 
 
 def numbers(part: Any, path: str = "") -> Iterator[tuple[str, float]]:
@@ -102,28 +105,39 @@ def closure(names: Iterable[str]) -> dict[str, str]:
     return texts
 
 
-def amalgamated(names: Iterable[str]) -> str:
+def amalgamated(names: Iterable[str], own: Mapping[str, str] | None = None) -> str:
     """Return the texts of headers as one, with those that they include, each once and in the order of inclusion.
 
     Headers of the C++ standard library are left out: whoever includes the text gives what it uses of them.
+
+    Args:
+        names: of the headers, as they are included
+        own: texts by name that are no headers of the package
     """
     done: set[str] = set()
-    return "".join(_inlined(name, done) for name in names)
+    texts = {"mathematics.hpp": mathematics(), **(own or {})}
+    return "".join(_inlined(name, texts, done) for name in names)
 
 
-def _inlined(name: str, done: set[str]) -> str:
+def _inlined(name: str, own: Mapping[str, str], done: set[str]) -> str:
     """Return the text of a header with those that it includes and that are not done yet in the places of their includes."""
-    if name in done:
+    is_of_package = name.startswith("strainwave/")
+    if name in done or not (is_of_package or name in own):
         return ""
     done.add(name)
-    text = (INCLUDE / name).read_text("utf-8").replace("#pragma once\n", "", 1)
+    text = (INCLUDE / name).read_text("utf-8") if is_of_package else own[name]
     folder = name.rpartition("/")[0]
 
     def included(match: re.Match[str]) -> str:
-        own = f"{folder}/{match['beside']}" if match["beside"] else match["found"]
-        return _inlined(own, done) if own.startswith("strainwave/") else ""
+        beside = match["beside"]
+        return _inlined(match["found"] or (f"{folder}/{beside}" if folder else beside), own, done)
 
-    return re.sub(r'^#include (?:<(?P<found>[^>]+)>|"(?P<beside>[^"]+)")\n', included, text, flags=re.MULTILINE)
+    return INCLUDING.sub(included, text.replace("#pragma once\n", "", 1))
+
+
+def mathematics() -> str:
+    """Return the functions of <cmath> that the headers use, to be included in a namespace where there is no C++ library."""
+    return resources.files("strainwave.export").joinpath("mathematics.hpp").read_text("utf-8")
 
 
 def macros(source: str) -> list[str]:

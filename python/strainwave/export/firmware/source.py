@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from importlib import metadata, resources
+from importlib import metadata
 
 from strainwave.export import cplusplus
 from strainwave.export.firmware.step import Member, Step
@@ -92,7 +92,6 @@ extern "C" {name}_outputs {name}_step({name}_state* state, const {name}_inputs* 
 
 def _cplusplus(step: Step, name: str, scalar: str) -> str:
     """Return the header in C++ that contains all that it needs."""
-    mathematics = resources.files("strainwave.export.firmware").joinpath("mathematics.hpp").read_text("utf-8")
     package = cplusplus.amalgamated([*cplusplus.headers_of(step.model), *step.headers, *OWN_HEADERS])
     macros = "".join(f"#undef {each}\n" for each in cplusplus.macros(package))
     members = {"Inputs": step.inputs, "State": state_of(step), "Outputs": step.outputs}
@@ -106,7 +105,11 @@ def _cplusplus(step: Step, name: str, scalar: str) -> str:
 
 #define strainwave {name}_strainwave  // so that a program may contain several such headers
 
-{mathematics}{package}
+namespace strainwave::std {{
+
+{cplusplus.mathematics()}
+}}  // namespace strainwave::std
+{package}
 namespace {name} {{
 
 using S = {scalar};

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import re
-from collections.abc import Iterator
 from functools import lru_cache
 from importlib import metadata, resources
 
@@ -22,7 +20,6 @@ CUDA_OPTIONS = (
     "--fmad=false",
 )
 MAX_REMEMBERED = 8  # texts of PTX, of some MB each
-INCLUDE = re.compile(r'^#include [<"](?P<name>[^>"]+)[>"].*\n', re.MULTILINE)
 
 
 def source(drive: Drive, scalar: str, command: str, outputs: int) -> str:
@@ -36,28 +33,7 @@ def source(drive: Drive, scalar: str, command: str, outputs: int) -> str:
     """
     texts = {"drive.hpp": _drive_header(drive, scalar, command, outputs)}
     texts |= {name: OWN.joinpath(name).read_text("utf-8") for name in ("actuator.hpp", "standard.hpp")}
-    headers = cplusplus.closure([*cplusplus.headers_of(drive), *cplusplus.headers(texts["actuator.hpp"])])
-    return "".join(_expanded(["standard.hpp", "actuator.hpp"], {**headers, **texts}))
-
-
-def _expanded(names: list[str], texts: dict[str, str]) -> Iterator[str]:
-    """Yield texts with the texts that they include, each once; the headers of C++ are in `standard.hpp`."""
-    written: set[str] = set()
-
-    def expanded(name: str) -> str:
-        if name in written or name not in texts:
-            return ""
-        written.add(name)
-        folder = name.rpartition("/")[0]
-
-        def included(match: re.Match[str]) -> str:
-            found = match["name"]
-            beside = f"{folder}/{found}" if folder else found
-            return expanded(beside if beside in texts else found)
-
-        return INCLUDE.sub(included, texts[name]).replace("#pragma once\n", "")
-
-    return (expanded(name) for name in names)
+    return cplusplus.amalgamated(["standard.hpp", "actuator.hpp"], texts)
 
 
 def _drive_header(drive: Drive, scalar: str, command: str, outputs: int) -> str:
@@ -105,7 +81,7 @@ def ptx(text: str, *options: str) -> str:
     Raises:
         CompileError: NVRTC reports an error
     """
-    kernels = INCLUDE.sub("", OWN.joinpath("cuda.hpp").read_text("utf-8")).replace("#pragma once\n", "")
+    kernels = cplusplus.INCLUDING.sub("", OWN.joinpath("cuda.hpp").read_text("utf-8")).replace("#pragma once\n", "")
     files = metadata.files("nvidia-cuda-nvrtc") or []
     library = ctypes.CDLL(str(next(file.locate() for file in files if file.name.startswith(("libnvrtc.so", "nvrtc64")))))
     program = ctypes.c_void_p()

@@ -1,6 +1,5 @@
-// Functions of <cmath> that the headers below use. They are those of the C library: no C++ standard library is needed.
-namespace strainwave::std {
-
+// Functions of <cmath> that the headers of the package use. They are those of the C library: no C++ standard library is needed.
+// Included in a namespace.
 inline double atan(double x) { return __builtin_atan(x); }
 inline float atan(float x) { return __builtin_atanf(x); }
 inline double cos(double x) { return __builtin_cos(x); }
@@ -17,5 +16,3 @@ inline double sin(double x) { return __builtin_sin(x); }
 inline float sin(float x) { return __builtin_sinf(x); }
 inline double sqrt(double x) { return __builtin_sqrt(x); }
 inline float sqrt(float x) { return __builtin_sqrtf(x); }
-
-}  // namespace strainwave::std
