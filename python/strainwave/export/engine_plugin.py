@@ -6,7 +6,6 @@ that body, and gives the torque.
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
@@ -20,7 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
-from strainwave.export.coupled import SUFFIXES, CoupledDrive, shared_library
+from strainwave.export.coupled import (
+    COMPARED_DURATION,
+    COMPARED_SAMPLES,
+    MAX_STABLE_SHARE,
+    REFERENCE_STEP_SHARE,
+    SUFFIXES,
+    CoupledDrive,
+    shared_library,
+)
 from strainwave.export.elements import Friction, max_torque_of
 from strainwave.export.exported import Exported
 from strainwave.export.fmu.comparison import moving_run
@@ -35,22 +42,18 @@ from strainwave.export.mujoco import (
     timestep_of,
     written,
 )
+from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
-from strainwave.messages import one_line, quoted
+from strainwave.messages import one_line
 from strainwave.simulation.signals import command_unit, load_input
 from strainwave.tuning.loss import Loss
 
 Array = NDArray[np.float64]
 Command = Literal["held", "followed"]
 COMMANDS: tuple[Command, ...] = get_args(Command)
-OLDEST_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
+MIN_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
 DEFAULT_TIMESTEP = 5e-4  # s, of a model that has the gear and an inertia only
-STABLE_SHARE = 0.25  # of the longest stable timestep, that such a model has at most
-MAX_NAME_LENGTH = 40  # characters
-COMPARED_DURATION = 1.0  # s
-COMPARED_SAMPLES = 100
-REFERENCE_STEP_SHARE = 0.25  # of the internal step, of the simulation that it is compared with
 MAX_RUN_SECONDS = 300.0  # of the compared run in MuJoCo
 
 # Runs a model by itself: a plugin stays registered as long as the process lives.
@@ -111,7 +114,7 @@ def mujoco_plugin(
     if (into is None) != (joint is None):
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
     arguments.one_of("command", command, COMMANDS)
-    _check_name(arguments.text("name", name))
+    checked_name(name, "MuJoCo", hyphens=True)
     largest = max_torque_of(model, max_torque) or 0.0
     include, version = installed_mujoco()
     step = internal_step(drive, step)
@@ -144,7 +147,7 @@ def installed_mujoco() -> tuple[Path, str]:
     """Return the folder of the headers of MuJoCo, and its version.
 
     Raises:
-        ImportError: it is not installed, older than `OLDEST_VERSION`, or has no headers
+        ImportError: it is not installed, older than `MIN_VERSION`, or has no headers
         ValueError: plugins are not compiled on this system
     """
     if sys.platform not in SUFFIXES:
@@ -153,7 +156,7 @@ def installed_mujoco() -> tuple[Path, str]:
         import mujoco
     except ImportError:
         raise ImportError("a plugin needs MuJoCo 4.0 or later, which is not installed; `pip install mujoco`") from None
-    if mujoco.mj_version() < OLDEST_VERSION:
+    if mujoco.mj_version() < MIN_VERSION:
         raise ImportError(
             f"MuJoCo {mujoco.__version__} is installed, and a plugin needs 4.0 or later; `pip install --upgrade mujoco`, or "
             "take strainwave export mjcf"
@@ -178,12 +181,6 @@ def compiled(sources: Mapping[str, str], include: Path) -> bytes:
     return shared_library(sources, "mujoco_plugin.cpp", (f"-isystem{include}",))
 
 
-def _check_name(name: str) -> None:
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name) or len(name) > MAX_NAME_LENGTH:
-        allowed = f"letters, digits, underscores and hyphens, {MAX_NAME_LENGTH} at most, the first a letter"
-        raise ValueError(f"name = {quoted(name)} must be a name of a plugin: {allowed}")
-
-
 def _inertia(drive: Drive, given: float | None, is_needed: bool) -> float:
     """Return the inertia at the output of the model with an inertia alone [kg.m²]."""
     if given is not None:
@@ -197,7 +194,7 @@ def _inertia(drive: Drive, given: float | None, is_needed: bool) -> float:
 
 
 def _alone(coupled: CoupledDrive, inertia: float, command: Command, name: str) -> Element:
-    timestep = min(DEFAULT_TIMESTEP, STABLE_SHARE * coupled.max_timestep(inertia))
+    timestep = min(DEFAULT_TIMESTEP, MAX_STABLE_SHARE * coupled.max_timestep(inertia))
     root, _, shaft = inertia_on_a_hinge(inertia, timestep, name)
     _add_plugin(root, shaft, coupled, command, name)
     return root

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import math
 import platform as machine
-import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,14 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
-from strainwave.export.coupled import SUFFIXES, CoupledDrive, shared_library
+from strainwave.export.coupled import (
+    COMPARED_DURATION,
+    COMPARED_SAMPLES,
+    MAX_STABLE_SHARE,
+    REFERENCE_STEP_SHARE,
+    SUFFIXES,
+    CoupledDrive,
+    shared_library,
+)
 from strainwave.export.elements import max_torque_of
 from strainwave.export.exported import Exported
 from strainwave.export.fmu.comparison import moving_run
 from strainwave.export.internal_step import internal_step
+from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
-from strainwave.messages import quoted
 from strainwave.native.static_type import in_words
 from strainwave.simulation.signals import command_unit
 from strainwave.tuning.loss import Loss
@@ -30,12 +37,7 @@ from strainwave.tuning.loss import Loss
 Array = NDArray[np.float64]
 
 DEFAULT_PERIOD = 5e-4  # s, of the exchange between drive and Modelica
-STABLE_SHARE = 0.25  # of the longest stable period, that the default has at most
-COMPARED_DURATION = 1.0  # s
-COMPARED_SAMPLES = 100
-REFERENCE_STEP_SHARE = 0.25  # of the internal step, of the simulation that it is compared with
 EXAMPLE_INERTIA = 1.0  # kg.m², before a drive whose load has none
-MAX_NAME_LENGTH = 40  # characters
 FOLDERS = {"x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux", "x86_64-darwin": "darwin64", "arm64-darwin": "darwin64"}
 UNITS = {"1": "1", "A": "A", "V": "V", "N.m": "N.m", "rad": "rad", "rad/s": "rad/s"}  # of commands, as Modelica spells them
 
@@ -72,9 +74,7 @@ def modelica(
     'StrainWaveDrive/package.mo'
     """
     model, drive = drive, drive_of(drive)
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", arguments.text("name", name)) or len(name) > MAX_NAME_LENGTH:
-        allowed = f"letters, digits and underscores, {MAX_NAME_LENGTH} at most, the first a letter"
-        raise ValueError(f"name = {quoted(name)} must be a name in Modelica: {allowed}")
+    checked_name(name, "Modelica")
     folder = FOLDERS.get(f"{machine.machine()}-{sys.platform}")
     if folder is None:
         raise ValueError("a Modelica package is compiled on Linux and macOS; on other systems take strainwave export fmu")
@@ -85,7 +85,7 @@ def modelica(
     if period is not None:
         period = arguments.number("period", period, "s", low=0.0)
     else:
-        period = min(DEFAULT_PERIOD, STABLE_SHARE * coupled.max_timestep(inertia) if inertia else DEFAULT_PERIOD)
+        period = min(DEFAULT_PERIOD, MAX_STABLE_SHARE * coupled.max_timestep(inertia) if inertia else DEFAULT_PERIOD)
     prefix = name.lower()
     sources = coupled.sources(name, step, "functions.cpp", prefix)
     content = shared_library(sources, "functions.cpp")

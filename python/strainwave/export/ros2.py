@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from importlib import resources
 from xml.sax.saxutils import quoteattr
 
-from strainwave import arguments
 from strainwave.export.elements import GearElements
 from strainwave.export.exported import Exported
 from strainwave.export.joint_numbers import joint
+from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
-from strainwave.messages import quoted
 
 
 def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joint") -> Exported:
@@ -33,8 +31,7 @@ def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joi
     >>> sorted(ros2(sw.GearSet.read("csg-20-100"), name="elbow").files)
     ['drive_node.py', 'elbow.ros2_control.xml', 'elbow_limits.yaml']
     """
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", arguments.text("name", name)):
-        raise ValueError(f"name = {quoted(name)} must be a name in ROS: letters, digits and underscores, the first a letter")
+    checked_name(name, "ROS")
     found = joint(gear_set, max_torque=max_torque)
     elements = GearElements.of_set(gear_set, max_torque)
     numbers = {key: found.numbers[key] for key in ("frictionloss", "damping", "armature")}

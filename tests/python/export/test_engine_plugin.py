@@ -159,7 +159,7 @@ def test_another_version_of_mujoco_is_refused_in_one_line(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"name": "a b"}, "must be a name of a plugin"),
+        ({"name": "a b"}, "must be a name in MuJoCo"),
         ({"command": "hold"}, "held"),
         ({"into": ARM}, "into and joint belong together"),
         ({"into": ARM, "joint": "rail"}, "a gear turns a hinge"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -15,15 +14,14 @@ from strainwave import Drive, Gear, arguments
 from strainwave.export import cplusplus
 from strainwave.export.firmware import source
 from strainwave.export.firmware.step import Member, step
+from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.files.writing import making, write_all
-from strainwave.messages import quoted
 
 Scalar = Literal["float", "double"]
 SCALARS: tuple[Scalar, ...] = get_args(Scalar)
 FLAGS = source.FLAGS
-MAX_NAME = 40  # letters
 MAX_FLOAT = float(np.finfo(np.float32).max)
 KEYWORDS = """
     S alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl concept const
@@ -98,8 +96,8 @@ def firmware(
     (('law_speed_integral', 'actuation', 'pending', 'until_sample'), ('torque', 'tangent'))
     """
     found = step(_drive_with(drive, part), part, period)
-    name = {"control": "controller"}.get(part, part.rpartition(".")[2]) if name is None else arguments.text("name", name)
-    _check_name(name)
+    name = {"control": "controller"}.get(part, part.rpartition(".")[2]) if name is None else name
+    checked_name(name, "C", reserved=RESERVED)
     arguments.one_of("scalar", scalar, SCALARS)
     if scalar == "float":
         _check_range(found.model)
@@ -128,12 +126,6 @@ def _drive_with(model: Drive | GearSet | Gear, part: str) -> Drive:
         if isinstance(gear, Gear):
             return Drive(gear=gear)
     return drive_of(model)
-
-
-def _check_name(name: str) -> None:
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or len(name) > MAX_NAME or name in RESERVED:
-        allowed = f"letters, digits and underscores, {MAX_NAME} at most, the first a letter, and no word of the language"
-        raise ValueError(f"name = {quoted(name)} must be a name in C: {allowed}")
 
 
 def _check_range(model: Any) -> None:
