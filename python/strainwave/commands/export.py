@@ -18,6 +18,14 @@ export = typer.Typer(help="Write a gear in the form of another program, and stat
 Gear = Annotated[str, typer.Argument(help="A gear or drive: a set by name, or a file as identify writes it.")]
 Torque = Annotated[float | None, numeric("Largest torque at the output in N.m; usually the peak torque of the ratings.")]
 Name = Annotated[str, typer.Option(help="Of the gear in the files.")]
+Drive = Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")]
+Step = Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")]
+Into = Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")]
+Joint = Annotated[str | None, typer.Option(help="With --into: name of the hinge behind the gear.")]
+LoadInertia = Annotated[float | None, numeric("Inertia at the output in kg.m2; usually that of the load.")]
+Draws = Annotated[int, whole("Number of drawn gears, for domain randomisation.")]
+Seed = Annotated[int, whole("Seed of the draw.")]
+Out = Annotated[Path, typer.Option(help="Folder for the files written.", file_okay=False)]
 
 
 @export.command("joint")
@@ -25,7 +33,7 @@ def joint(
     gear: Gear,
     max_torque: Torque = None,
     name: Name = "gear",
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/joint"),
+    out: Out = Path("out/joint"),
 ) -> None:
     """Numbers of a joint without a gear: frictionloss, armature, damping for MuJoCo; dynamics and transmission for URDF."""
     from strainwave.export.joint_numbers import joint as exported
@@ -38,13 +46,13 @@ def joint(
 def mjcf(
     gear: Gear,
     max_torque: Torque = None,
-    load_inertia: Annotated[float | None, numeric("Inertia at the output in kg.m2; usually that of the load.")] = None,
-    into: Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")] = None,
-    joint: Annotated[str | None, typer.Option(help="With --into: name of the hinge behind the gear.")] = None,
-    draws: Annotated[int, typer.Option(help="Number of drawn gears, for domain randomisation.")] = 0,
-    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
+    load_inertia: LoadInertia = None,
+    into: Into = None,
+    joint: Joint = None,
+    draws: Draws = 0,
+    seed: Seed = 0,
     name: Name = "gear",
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/mjcf"),
+    out: Out = Path("out/mjcf"),
 ) -> None:
     """A model for MuJoCo without a plugin: twist with hysteresis, friction with a bristle, motor; alone or in a robot."""
     from strainwave.export.mujoco import mjcf as exported
@@ -62,7 +70,7 @@ def ros2(
     gear: Gear,
     max_torque: Torque = None,
     name: Annotated[str, typer.Option(help="Of the joint.")] = "joint",
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/ros2"),
+    out: Out = Path("out/ros2"),
 ) -> None:
     """Limits, feed-forward and transmission of a joint for ros2_control, and a node that simulates its drive."""
     from strainwave.export.ros2 import ros2 as exported
@@ -76,7 +84,7 @@ def bam(
     gear: Gear,
     max_torque: Torque = None,
     actuator: Annotated[str, typer.Option(help="Name of an actuator that BAM has, with its control law.")] = "erob80_100",
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/bam"),
+    out: Out = Path("out/bam"),
 ) -> None:
     """Parameters of BAM (better actuator models), with friction, inertia and torque constant at the output."""
     from strainwave.export.bam_parameters import bam as exported
@@ -103,8 +111,8 @@ def slot(
     period: Annotated[float, numeric("At which a torque-offset is sent, in s.")] = 1e-3,
     temperature: Annotated[float, numeric("Of the gear in K.")] = 293.15,
     members: Annotated[int, whole("Number of drawn gears that judge the scales.")] = 200,
-    seed: Annotated[int, whole("Seed of the draw.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/slot"),
+    seed: Seed = 0,
+    out: Out = Path("out/slot"),
 ) -> None:
     """Numbers of friction and ripple that robot controllers, joint firmware and servo drives have a slot for."""
     from strainwave.export.slots import slot as exported
@@ -118,16 +126,16 @@ def slot(
 
 @export.command("fmu")
 def fmu(
-    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")],
+    drive: Drive,
     version: Annotated[int, typer.Option(help="Of FMI: 2 or 3.")] = 2,
     platform: Annotated[
         list[str] | None,
         typer.Option(help="Of a binary, as x86_64-windows; may be repeated. `source` makes no binary. Default: this machine."),
     ] = None,
     model_exchange: Annotated[bool, typer.Option("--model-exchange", help="For the solver of the tool.")] = False,
-    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    step: Step = None,
     name: Annotated[str | None, typer.Option(help="Of the model and of the file.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/fmu"),
+    out: Out = Path("out/fmu"),
 ) -> None:
     """The whole drive as an FMU for Simulink, OpenModelica, Dymola or FMPy."""
     from strainwave.export.fmu import fmu as exported
@@ -142,15 +150,15 @@ def fmu(
 
 @export.command("mujoco-plugin")
 def mujoco_plugin(
-    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")],
-    into: Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the drive.")] = None,
-    joint: Annotated[str | None, typer.Option(help="With --into: name of the hinge behind the gear.")] = None,
-    load_inertia: Annotated[float | None, numeric("Inertia at the output in kg.m2; usually that of the load.")] = None,
+    drive: Drive,
+    into: Into = None,
+    joint: Joint = None,
+    load_inertia: LoadInertia = None,
     max_torque: Torque = None,
     command: Annotated[str, typer.Option(help="Within a timestep: held, or followed at the rate of the last one.")] = "held",
-    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    step: Step = None,
     name: Annotated[str, typer.Option(help="Of the library, the plugin and the actuator.")] = "gear",
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/mujoco-plugin"),
+    out: Out = Path("out/mujoco-plugin"),
 ) -> None:
     """The whole drive as an actuator plugin, compiled for the MuJoCo that is installed, with a model that has it."""
     from strainwave.export.engine_plugin import mujoco_plugin as exported
@@ -165,12 +173,12 @@ def mujoco_plugin(
 
 @export.command("modelica")
 def modelica(
-    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")],
+    drive: Drive,
     max_torque: Torque = None,
     period: Annotated[float | None, numeric("Of the exchange in s; 0.5 ms, or shorter if the drive needs that.")] = None,
-    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
+    step: Step = None,
     name: Annotated[str, typer.Option(help="Of the package and the library.")] = "StrainWaveDrive",
-    out: Annotated[Path, typer.Option(help="Folder for the package.")] = Path("out/modelica"),
+    out: Out = Path("out/modelica"),
 ) -> None:
     """The whole drive as a Modelica package: a component with a flange, and the library that it calls."""
     from strainwave.export.modelica_package import modelica as exported
@@ -181,16 +189,16 @@ def modelica(
 
 @export.command("newton")
 def newton(
-    drive: Annotated[str, typer.Argument(help="A drive: a set with a motor, by name or as a file.")],
+    drive: Drive,
     scalar: Annotated[
         str, typer.Option(help="Type of all numbers: double, or float for GPUs that are slow with doubles.")
     ] = "double",
-    step: Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")] = None,
-    draws: Annotated[int, typer.Option(help="Number of drawn gears, for domain randomisation.")] = 0,
-    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
+    step: Step = None,
+    draws: Draws = 0,
+    seed: Seed = 0,
     gpu: Annotated[bool, typer.Option(help="Code for GPUs, if the package nvidia-cuda-nvrtc is installed.")] = True,
     compare: Annotated[bool, typer.Option(help="Compare with the simulation, if Newton is installed.")] = True,
-    out: Annotated[Path, typer.Option(help="Folder for the files; it is a Python package.")] = Path("out/strainwave_drive"),
+    out: Out = Path("out/strainwave_drive"),
 ) -> None:
     """The drive as an actuator of Newton, for thousands of joints in one launch, on the CPU and on GPUs."""
     from strainwave.export.newton import newton as exported
@@ -220,7 +228,7 @@ def firmware(
     name: Annotated[
         str | None, typer.Option(help="Of the files, and prefix of all names in C; else the end of the part.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/firmware"),
+    out: Out = Path("out/firmware"),
 ) -> None:
     """A part of a drive for a microcontroller: a header of C++20 without includes, with an interface in C."""
     from strainwave.export.firmware import firmware as exported
