@@ -1,4 +1,4 @@
-"""Ensembles on a GPU, beside all cores of the processor: agreement, and time.
+"""Ensembles on a GPU compared with all cores of the processor: agreement and time.
 
 Drives of the catalogue run through one command with as many inertias of the load as there are members, and keep angle and
 torque of the output every 10 ms. Kernels are compiled before. The difference is the largest over members and instants, relative
@@ -89,7 +89,7 @@ def row(one: Comparison) -> list[str]:
 
 
 def run(console: Console) -> None:
-    """Measures and prints; says what is missing where there is no GPU."""
+    """Measure and print; without a GPU print the missing package or driver."""
     try:
         found = [comparison(name) for name in SETS]
     except (ImportError, OSError) as error:

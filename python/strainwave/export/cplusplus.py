@@ -12,6 +12,7 @@ from strainwave.native.kernel import INCLUDE
 from strainwave.native.static_type import NAMESPACES, parameters
 
 INCLUDING = re.compile(r'^#include (?:<(?P<found>[^>]+)>|"(?P<beside>[^"]+)").*\n', re.MULTILINE)
+SHARED = "contradictions.hpp", "mathematics.hpp"  # texts of exports
 
 
 def numbers(part: Any, path: str = "") -> Iterator[tuple[str, float]]:
@@ -115,7 +116,7 @@ def amalgamated(names: Iterable[str], own: Mapping[str, str] | None = None) -> s
         own: texts by name that are no headers of the package
     """
     done: set[str] = set()
-    texts = {"mathematics.hpp": mathematics(), **(own or {})}
+    texts = {name: own_text(name) for name in SHARED} | dict(own or {})
     return "".join(_inlined(name, texts, done) for name in names)
 
 
@@ -135,9 +136,9 @@ def _inlined(name: str, own: Mapping[str, str], done: set[str]) -> str:
     return INCLUDING.sub(included, text.replace("#pragma once\n", "", 1))
 
 
-def mathematics() -> str:
-    """Return the functions of <cmath> that the headers use, to be included in a namespace where there is no C++ library."""
-    return resources.files("strainwave.export").joinpath("mathematics.hpp").read_text("utf-8")
+def own_text(name: str) -> str:
+    """Return a C++ text that several exports share."""
+    return resources.files("strainwave.export").joinpath(name).read_text("utf-8")
 
 
 def macros(source: str) -> list[str]:

@@ -34,12 +34,12 @@ from strainwave.tuning.steady_torque import steady_torque
 Array = NDArray[np.float64]
 
 MIN_TEMPERATURE = 200.0  # K: less is a temperature in another unit
-SPEEDS = 1001  # of each sense, over which friction is compared
-DRAWN_SPEEDS = 33  # likewise of each drawn gear
-ANGLES = 257  # of a turn of the output: prime, so that they are spread over the turns of the input, too
+SPEEDS_PER_SENSE = 1001  # of each sense, over which friction is compared
+SPEEDS_OF_DRAWS = 33  # likewise of each drawn gear
+ANGLES_PER_TURN = 257  # of a turn of the output: prime, so that they are spread over the turns of the input, too
 MAX_TURNS = 200  # of the input, over which a map is averaged
-FINER = 4  # angles at which a map is compared, per point
-OVER_COMPENSATED = 0.05  # share of gears of which the scaled friction may exceed that of the gear
+COMPARED_ANGLES_PER_POINT = 4  # angles at which a map is compared, per point
+MAX_OVER_COMPENSATED_SHARE = 0.05  # share of gears of which the scaled friction may exceed that of the gear
 MIN_MEMBERS = 19  # drawn gears, of which the weakest stands for that share
 MIN_POINTS, MAX_POINTS = 4, 4096  # of a table
 MAX_VALUES = 1_000_000  # of a torque offset along a motion
@@ -100,7 +100,7 @@ class Request:
             )
         return constant
 
-    def friction(self, gear: Gear, speed: Array, angles: int = ANGLES) -> Array:
+    def friction(self, gear: Gear, speed: Array, angles: int = ANGLES_PER_TURN) -> Array:
         """Return the friction over speeds of the side, shape (speeds, angles), in the unit wanted."""
         angle = 2.0 * np.pi * abs(self.ratio) / angles * np.arange(angles)
         at_input = (speed * self.speed_ratio)[:, np.newaxis]
@@ -256,8 +256,8 @@ class FullFriction:
     """Friction of a gear over the speeds of a side, each sense from the threshold to the largest speed.
 
     Attributes:
-        speed: shape (2 SPEEDS,), those of the negative sense first, rising
-        torque: shape (2 SPEEDS, ANGLES), in `unit`
+        speed: shape (2 SPEEDS_PER_SENSE,), those of the negative sense first, rising
+        torque: shape (2 SPEEDS_PER_SENSE, ANGLES_PER_TURN), in `unit`
         unit: of the torque
         over: the range in words
     """
@@ -275,7 +275,7 @@ class FullFriction:
             ValueError: the gear has none
         """
         low, top = request.speed_range()
-        forward = np.linspace(low, top, SPEEDS)
+        forward = np.linspace(low, top, SPEEDS_PER_SENSE)
         speed = np.concatenate((-forward[::-1], forward))
         torque = request.friction(request.gear, speed)
         if not torque.any():
@@ -301,7 +301,7 @@ class FullFriction:
 
     def _rms(self, values: Array) -> float:
         """Return the root mean square over the speeds, by trapezoids, and over the angles."""
-        weight = np.ones(SPEEDS)
+        weight = np.ones(SPEEDS_PER_SENSE)
         weight[[0, -1]] = 0.5
         return float(np.sqrt(np.average((values**2).mean(axis=1), weights=np.tile(weight, 2))))
 
@@ -344,7 +344,7 @@ def speed_table(request: Request) -> Exported:
     if count % 2:
         raise ValueError(f"points = {count} must be even: half of them belong to each sense of motion")
     full = FullFriction.of(request)
-    forward = np.geomspace(full.speed[SPEEDS], full.speed[-1], count // 2)
+    forward = np.geomspace(full.speed[SPEEDS_PER_SENSE], full.speed[-1], count // 2)
     speed = np.concatenate((-forward[::-1], forward))
     torque = mean_over_last(request.friction(request.gear, speed))
     column = "torque" if request.unit == "N.m" else "current"
@@ -359,11 +359,12 @@ def viscous_coulomb_scale(request: Request) -> Exported:
     full = FullFriction.of(request)
     forward = full.speed > 0.0
     coulomb, viscous = line_over_speed(full.speed[forward], (full.mean[forward] - full.mean[~forward][::-1]) / 2.0)
-    speed = np.linspace(full.speed[SPEEDS], full.speed[-1], DRAWN_SPEEDS)
+    speed = np.linspace(full.speed[SPEEDS_PER_SENSE], full.speed[-1], SPEEDS_OF_DRAWS)
     least = np.array([_least_friction(request, gear, speed) for gear in _drawn(request)])
     if len(least) < MIN_MEMBERS:
         raise ValueError(f"{request.gear_set.name}: {len(least)} of {request.members} drawn gears have friction in its range")
-    weaker = int(OVER_COMPENSATED * (len(least) + 1) + 1e-9) - 1  # so that another gear is weaker in that share of draws
+    # Another gear is weaker in that share of draws.
+    weaker = int(MAX_OVER_COMPENSATED_SHARE * (len(least) + 1) + 1e-9) - 1
     floor = least[np.argsort(least.mean(axis=1))[weaker:]].min(axis=0)
     parts = np.column_stack((np.full(speed.size, coulomb), viscous * speed))
     useful = parts.mean(axis=0)
@@ -409,7 +410,7 @@ def anticogging_map(request: Request) -> Exported:
             "[N.m] at the output"
         )
     turns = min(max(round(abs(request.ratio)), 1), MAX_TURNS)
-    fine = 2.0 * np.pi / (FINER * count) * np.arange(FINER * count)
+    fine = 2.0 * np.pi / (COMPARED_ANGLES_PER_POINT * count) * np.arange(COMPARED_ANGLES_PER_POINT * count)
     angle = fine[:, np.newaxis] + 2.0 * np.pi * np.arange(turns)
     slow = CREEP_SPEED_SHARE * USUAL_SPEED / abs(request.ratio) if request.speed is None else request.speed
     speed = arguments.sized("speed", slow, "rad/s", 1e-9, MAX_SPEED) * abs(request.ratio)
@@ -420,8 +421,8 @@ def anticogging_map(request: Request) -> Exported:
             f"{request.gear_set.name}: neither kinematic error nor friction of the gear varies with the angle at a load of "
             f"{request.load:g} N.m, so the map is zero; {MEASUREMENTS['kinematic error']}"
         )
-    values = mean_over_last(there.ripple)[::FINER]
-    applied = np.interp(fine, fine[::FINER], values, period=2.0 * np.pi)[:, np.newaxis]
+    values = mean_over_last(there.ripple)[::COMPARED_ANGLES_PER_POINT]
+    applied = np.interp(fine, fine[::COMPARED_ANGLES_PER_POINT], values, period=2.0 * np.pi)[:, np.newaxis]
     losses = tuple(
         Loss.between(
             "ripple", turn.ripple - applied, request.unit, _rms(turn.friction),
@@ -430,7 +431,9 @@ def anticogging_map(request: Request) -> Exported:
         for each, turn in both.items()
     )  # fmt: skip
     column = "torque" if request.unit == "N.m" else "current"
-    table = Recording({"input_angle": fine[::FINER], column: values}, {"input_angle": "rad", column: request.unit})
+    table = Recording(
+        {"input_angle": fine[::COMPARED_ANGLES_PER_POINT], column: values}, {"input_angle": "rad", column: request.unit}
+    )
     numbers = {
         "points": (float(count), "1"), "output_load": (request.load, "N.m"), "speed": (speed, "rad/s"),
         "amplitude": (float(np.abs(values).max()), request.unit),

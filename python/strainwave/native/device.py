@@ -19,11 +19,11 @@ Array = NDArray[np.float64]
 Scalar = Literal["double", "float"]
 SCALARS: tuple[Scalar, ...] = get_args(Scalar)
 ENTRY = "strainwave_members"
-BLOCK = 64  # threads: a member takes most of the registers of a thread
+THREADS_PER_BLOCK = 64  # a member takes most of the registers of a thread
 MEMORY_SHARE = 0.7  # of the free memory of the device, that a launch may fill
 MAX_CACHE_BYTES = 256_000_000  # of all kernels of devices in the cache
-TALLIES = 5  # numbers, as `DeviceEnsemble` lists them
-EXTRA = "a GPU needs the packages of the extra cuda: pip install 'strainwave[cuda]'"
+TALLY_COUNT = 5  # numbers of a member, as `DeviceEnsemble` lists them
+MISSING_PACKAGES = "a GPU needs the packages of the extra cuda: pip install 'strainwave[cuda]'"
 
 Result = tuple[NDArray[np.bool_], Array, Array, Array, dict[int, str]]
 
@@ -63,7 +63,7 @@ def machine_code(drive: Drive, scalar: Scalar, architecture: str) -> Any:
         from cuda.core import ObjectCode, Program, ProgramOptions
         from cuda.core.utils import FileStreamProgramCache, make_program_cache_key
     except ImportError:
-        raise ImportError(EXTRA) from None
+        raise ImportError(MISSING_PACKAGES) from None
     text = source(drive, scalar)
     options = ProgramOptions(
         std="c++20", arch=architecture, fma=False, device_as_default_execution_space=True, include_path=[str(INCLUDE)]
@@ -101,7 +101,7 @@ def simulate_many(
 ) -> Result:
     """Run members as `_core.simulate_many` does, with the same arguments and results, on the first GPU that CUDA finds.
 
-    Members that leave the range of a law run again on the processor, which says where.
+    Members that leave the range of a law run again on the processor, whose message states where.
 
     Raises:
         ImportError: the packages for it are not installed
@@ -109,7 +109,7 @@ def simulate_many(
         ValueError: not even one member fits into the memory of the device
     """
     sets, states, refusals = _core.member_starts(drive, numbers, values, initial, inputs, threads)
-    tally = np.zeros((TALLIES, len(sets)))
+    tally = np.zeros((TALLY_COUNT, len(sets)))
     out[:] = np.nan
     begin = np.array([member for member in range(len(sets)) if member not in refusals], np.intp)
     done = len(refusals) * (len(instants) - 1)
@@ -153,7 +153,7 @@ class _Device:
         try:
             from cuda.core import Device
         except ImportError:
-            raise ImportError(EXTRA) from None
+            raise ImportError(MISSING_PACKAGES) from None
         try:
             self.device: Any = Device()
             self.device.set_current()
@@ -198,13 +198,13 @@ class _Device:
         """Run the kernel, one thread a member, to its end."""
         from cuda.core import LaunchConfig, launch
 
-        config = LaunchConfig(grid=-(-members // BLOCK), block=BLOCK)
+        config = LaunchConfig(grid=-(-members // THREADS_PER_BLOCK), block=THREADS_PER_BLOCK)
         launch(self.device.default_stream, config, self.kernel, *arguments)
         self.device.default_stream.sync()
 
 
 class _Course:
-    """What acts on all members, on the device, and what is recorded of each."""
+    """Inputs of all members on the device, and the outputs that are recorded of each."""
 
     def __init__(
         self, device: _Device, drive: Drive, instants: Array, inputs: Array, keep: Any, max_rate: float, recorded: Sequence[int]
@@ -220,7 +220,7 @@ class _Course:
     def bytes_of_member(self, numbers: int, states: int) -> int:
         """Return the memory that a member takes on the device."""
         size = np.dtype(self.device.scalar).itemsize
-        return size * (self.samples * self.recorded + numbers + states) + TALLIES * np.dtype(np.float64).itemsize
+        return size * (self.samples * self.recorded + numbers + states) + TALLY_COUNT * np.dtype(np.float64).itemsize
 
     def run(self, sets: Array, states: Array) -> tuple[Array, Array]:
         """Return tallies, shape (5, members), and outputs, shape (recorded, members, samples), of members."""
@@ -228,13 +228,13 @@ class _Course:
         with ExitStack() as stack:
             numbers, starts = device.put(stack, sets, device.scalar), device.put(stack, states, device.scalar)
             out = device.empty(stack, self.samples * self.recorded * members, device.scalar)
-            tally = device.empty(stack, TALLIES * members, np.float64)
+            tally = device.empty(stack, TALLY_COUNT * members, np.float64)
             device.launch(
                 members, self.shape, numbers, np.int32(sets.shape[1]), starts, np.int32(states.shape[1]), *self.schedule,
                 np.uint64(self.steps), np.float64(self.max_rate), self.places, np.int32(self.recorded), out, tally,
                 np.int32(members),
             )  # fmt: skip
-            tallies = device.get(tally, (TALLIES, members), np.float64)
+            tallies = device.get(tally, (TALLY_COUNT, members), np.float64)
             outputs = device.get(out, (self.samples, self.recorded, members), device.scalar)
         return tallies, outputs.transpose(1, 2, 0)
 

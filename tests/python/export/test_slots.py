@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from strainwave.commands.export import slot as command
 from strainwave.export import Exported, Loss
-from strainwave.export.slots import OVER_COMPENSATED, SLOTS
+from strainwave.export.slots import MAX_OVER_COMPENSATED_SHARE, SLOTS
 from strainwave.files.entries import Entry, Quantity
 from strainwave.tuning.drawn import drawn_gears
 
@@ -137,7 +137,7 @@ def test_scales_are_those_of_the_gear_of_little_friction() -> None:
 @pytest.mark.parametrize("name", ["csg-20-100", "space-pointing-joint", "position-drive-full-friction"])
 def test_a_scale_over_compensates_few_gears(name: str) -> None:
     found = sw.export.slot(name, "viscous-coulomb-scale", members=40)
-    assert value(found, "over_compensated") <= OVER_COMPENSATED
+    assert value(found, "over_compensated") <= MAX_OVER_COMPENSATED_SHARE
     assert all(0.0 < value(found, f"{part}_scale") <= 1.0 for part in ("viscous", "coulomb"))
 
 

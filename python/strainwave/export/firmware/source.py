@@ -107,7 +107,7 @@ def _cplusplus(step: Step, name: str, scalar: str) -> str:
 
 namespace strainwave::std {{
 
-{cplusplus.mathematics()}
+{cplusplus.own_text("mathematics.hpp")}
 }}  // namespace strainwave::std
 {package}
 namespace {name} {{

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strainwave/kernel/run.hpp>
 
+#include "contradictions.hpp"
 #include "drive.hpp"  // Drive, laws, shape, parameters, channels, names; written for each drive
 
 namespace fmu {
@@ -20,13 +21,13 @@ using Compiled = decltype(Drive<double>{}.compile());
 using Evaluation = Compiled::Evaluation;
 using State = Compiled::State;
 
-inline constexpr double same_length = 1e-9;    // relative: steps closer than this are of one length
-inline constexpr double max_step_rate = 1.0;   // internal step times the fastest angular frequency of the drive
+inline constexpr double same_length = 1e-9;      // relative: steps closer than this are of one length
+inline constexpr double max_step_rate = 1.0;     // internal step times the fastest angular frequency of the drive
 inline constexpr double max_bristle_rate = 2.0;  // internal step times the angular frequency of a shaft on its bristles
 inline constexpr double event_tolerance = 1e-6;  // of the internal step: how far a tool may miss an instant of sampling
-inline constexpr double event_delay = 1e-9;    // rad/s of a shaft that slips, N.m of one that sticks
-inline constexpr int max_events = 16;          // at one instant
-inline constexpr int message_size = 512;       // characters
+inline constexpr double event_delay = 1e-9;      // rad/s of a shaft that slips, N.m of one that sticks
+inline constexpr int max_events = 16;            // at one instant
+inline constexpr int message_size = 512;         // characters
 
 enum class Phase : int32_t { instantiated, initialising, stepping, failed, ended };
 using Continuous = Compiled::Continuous;
@@ -47,28 +48,6 @@ struct Content {
     Continuous trial;                // numbers that the solver tries
 };
 static_assert(__is_trivially_copyable(Content));
-
-// First contradiction among the numbers of a part and of those in it.
-struct Contradictions {
-    const char* text = nullptr;
-    double first = 0.0, second = 0.0;
-
-    template <class T>
-    void of(const T& part) {
-        if constexpr (requires { part.problem(); }) {
-            if constexpr (requires { part.problem().text; }) {
-                if (const auto found = part.problem(); !text && found.text) *this = {found.text, found.first, found.second};
-            } else if (const char* found = part.problem(); !text && found) {
-                text = found;
-            }
-        }
-        if constexpr (strainwave::Described<T>) T::fields(part, *this);
-    }
-    template <class T>
-    void operator()(const T& member, const strainwave::Field&) {
-        if constexpr (strainwave::Described<T>) of(member);
-    }
-};
 
 class Model {
     Content content;
@@ -402,14 +381,14 @@ private:
     bool make() {
         strainwave::kernel::Reader<double> from{laws, shape, content.numbers + own_parameters};
         const auto model = strainwave::kernel::assembled<Drive<double>>(from);
-        Contradictions found;
+        strainwave::exported::Contradictions found;
         found.of(model);
         if (found.text) return contradiction(found);
         drive = model.compile();
         steps = {};
         return true;
     }
-    bool contradiction(const Contradictions& found) {
+    bool contradiction(const strainwave::exported::Contradictions& found) {
         const double values[] = {found.first, found.second};
         char* to = message;
         int next = 0;

@@ -3,6 +3,7 @@
 #include <strainwave/integrate.hpp>
 #include <strainwave/kernel/assemble.hpp>
 
+#include "contradictions.hpp"
 #include "drive.hpp"  // S, Drive, laws, shape, parameter_count, output_count, command_is; written for each drive
 
 namespace actuator {
@@ -17,7 +18,7 @@ using Steps = strainwave::integrate::Steps<S, Compiled>;
 inline constexpr double same_length = sizeof(S) == sizeof(float) ? 1e-4 : 1e-9;  // relative: closer instants are the same
 inline constexpr int settling_rounds = 8;  // the kinematic error depends on the angle that it changes
 
-// What a joint does and is asked to do at an instant.
+// Motion and command of a joint at an instant.
 struct Instant {
     S position, speed, command, command_rate;
 };
@@ -32,26 +33,6 @@ struct Prepared {
 static_assert(alignof(Prepared) <= 8 && __is_trivially_copyable(Prepared));
 inline constexpr int prepared_words = (sizeof(Prepared) + 7) / 8;  // of 8 bytes
 
-// Whether some numbers of a model contradict each other.
-struct Contradictions {
-    bool any = false;
-
-    template <class T>
-    constexpr void of(const T& part) {
-        if constexpr (requires { part.problem(); }) {
-            if constexpr (requires { part.problem().text; })
-                any = any || part.problem().text;
-            else
-                any = any || part.problem();
-        }
-        if constexpr (strainwave::Described<T>) T::fields(part, *this);
-    }
-    template <class T>
-    constexpr void operator()(const T& member, const strainwave::Field&) {
-        if constexpr (strainwave::Described<T>) of(member);
-    }
-};
-
 // Write the size of a gear, in words of 8 bytes.
 inline void measure(int* words) { words[0] = prepared_words; }
 
@@ -59,9 +40,9 @@ inline void measure(int* words) { words[0] = prepared_words; }
 inline void prepare(int i, const S* numbers, double* prepared, int* problems) {
     strainwave::kernel::Reader<S> from{laws, shape, numbers + i * (parameter_count + 1)};
     const auto model = strainwave::kernel::assembled<Drive<S>>(from);
-    Contradictions found;
+    strainwave::exported::Contradictions found;
     found.of(model);
-    problems[i] = found.any;
+    problems[i] = found.text != nullptr;
     *reinterpret_cast<Prepared*>(prepared + i * prepared_words) = {model.compile(), *from.numbers};
 }
 
@@ -104,13 +85,13 @@ constexpr State at_joint(const Compiled& drive, const Input& u) {
     return drive.consistent(x);
 }
 
-// The time to the next instant at which a sampled controller acts; `most` [s] if there is none before.
-constexpr S next_instant(const Compiled& drive, const State& x, const S& most, const S& tolerance) {
+// The time to the next instant at which a sampled controller acts; `limit` [s] if there is none before.
+constexpr S next_instant(const Compiled& drive, const State& x, const S& limit, const S& tolerance) {
     const auto schedule = drive.schedule(x);
-    if (!(schedule.period > S(0.0))) return most;
+    if (!(schedule.period > S(0.0))) return limit;
     const S first = schedule.first, given = first + schedule.delay;
     const S instants[] = {given - schedule.period, first, given, first + schedule.period};
-    S next = most;
+    S next = limit;
     for (const S& each : instants)
         if (each > tolerance && each < next) next = each;
     return next;

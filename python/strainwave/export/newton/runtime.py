@@ -162,7 +162,7 @@ class DriveStrainWave(DriveBase):
 
     @dataclass
     class State(DriveBase.State):
-        """What each gear remembers, and what it shows.
+        """Memory and outputs of each gear.
 
         Attributes:
             memory: numbers of the drives, shape (numbers, gears); a gear whose first number is 0 begins at its joint, untwisted
