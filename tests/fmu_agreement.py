@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from strainwave.export.fmu import comparison
 from strainwave.export.fmu.variables import recorded, variables
 
-from tests.python.export.test_firmware_drives import COMMAND, DRIVES, LOAD, PERIODS
+from tests.five_drives import COMMAND, DRIVES, LOAD, PERIODS
 
 Array = NDArray[np.float64]
 COMMUNICATION = 2.0**-8  # s; its multiples are exact
