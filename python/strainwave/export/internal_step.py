@@ -11,6 +11,7 @@ from strainwave.simulation.run import simulate
 
 MIN_STEP = 1e-7  # s
 DEFAULT_STEP = signature(simulate).parameters["dt"].default  # s
+STATED_SHARE = 0.95  # of the longest step, that a message states: two digits of it are no longer step
 MAX_HALVINGS = 20  # of the step, for bristles
 
 
@@ -27,19 +28,20 @@ def internal_step(drive: Drive, step: float | None, name: str = "step") -> float
 
     >>> internal_step(Drive(), 0.1)
     Traceback (most recent call last):
-    ValueError: step = 0.1 s is too coarse: the drive is as fast as a vibration of 1.68e+04 rad/s; give 5.9e-05 s or less
+    ValueError: step = 0.1 s is too coarse: the drive is as fast as a vibration of 1.68e+04 rad/s; give 5.6e-05 s or less
     """
     if step is None:
         return default_step(drive)
     step = arguments.number(name, step, "s", low=MIN_STEP)
-    fastest = _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
-    if fastest * step > COARSEST:
-        reason, longest = f"the drive is as fast as a vibration of {fastest:.3g} rad/s", COARSEST / fastest
-    elif (bristles := _core.bristle_frequency(drive)) * step > FASTEST_ON_BRISTLES:
-        reason, longest = f"a shaft vibrates on its bristles at {bristles:.3g} rad/s", FASTEST_ON_BRISTLES / bristles
-    else:
+    fastest, bristles = _core.max_rate(drive, 0.0, ROOM_TEMPERATURE), _core.bristle_frequency(drive)
+    longest = COARSEST / fastest
+    reason = f"the drive is as fast as a vibration of {fastest:.3g} rad/s"
+    if bristles * longest > FASTEST_ON_BRISTLES:
+        longest = FASTEST_ON_BRISTLES / bristles
+        reason = f"a shaft vibrates on its bristles at {bristles:.3g} rad/s"
+    if step <= longest:
         return step
-    raise ValueError(f"{name} = {step:g} s is too coarse: {reason}; give {longest:.2g} s or less")
+    raise ValueError(f"{name} = {step:g} s is too coarse: {reason}; give {STATED_SHARE * longest:.2g} s or less")
 
 
 def default_step(drive: Drive) -> float:
