@@ -28,7 +28,7 @@ def internal_step(drive: Drive, step: float | None, name: str = "step") -> float
 
     >>> internal_step(Drive(), 0.1)
     Traceback (most recent call last):
-    ValueError: step = 0.1 s is too coarse: the drive is as fast as a vibration of 1.68e+04 rad/s; give 5.6e-05 s or less
+    ValueError: step = 0.1 s is too coarse: the drive is as fast as a vibration of 1.05e+03 rad/s; give 0.00091 s or less
     """
     if step is None:
         return default_step(drive)
