@@ -55,7 +55,7 @@ PART, DEVICE_PART = 64 << 20, 1 << 30
 
 Backend = Literal["cpu", "gpu", "gpu-float"]
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
-RUN_MEMBERS: Mapping[Backend, Callable[..., Any]] = {
+RUN_MEMBERS: dict[Backend, Callable[..., Any]] = {
     "cpu": _core.simulate_many,
     "gpu": partial(device.simulate_many, scalar="double"),
     "gpu-float": partial(device.simulate_many, scalar="float"),

@@ -24,9 +24,9 @@ def headers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (tmp_path / "inner" / "one.hpp").write_text("1")
     (tmp_path / "two.hpp").write_text("2")
     monkeypatch.setattr(kernel, "INCLUDE", tmp_path)
-    kernel._headers.cache_clear()
+    kernel.headers_digest.cache_clear()
     yield tmp_path
-    kernel._headers.cache_clear()
+    kernel.headers_digest.cache_clear()
 
 
 def test_the_headers_are_those_that_the_package_brings() -> None:
@@ -56,6 +56,6 @@ def test_names_and_contents_of_all_headers_are_in_the_key(headers: Path) -> None
         lambda: shutil.copy(headers / "other.hpp", headers / "inner"),
     ):
         change()
-        kernel._headers.cache_clear()
+        kernel.headers_digest.cache_clear()
         keys.add(KERNEL.shipped_key())
     assert len(keys) == 4

@@ -267,7 +267,7 @@ def test_outputs_that_do_not_fit_into_memory_are_told_by_their_size(monkeypatch:
     def exhausted(*arguments: object) -> None:
         raise MemoryError("std::bad_alloc")
 
-    monkeypatch.setattr(_core, "simulate_many", exhausted)
+    monkeypatch.setitem(ensemble.RUN_MEMBERS, "cpu", exhausted)
     with pytest.raises(MemoryError, match=r"^the outputs take 4e-06 GB; .*simulate_to"):  # 5 members, 100 samples, 8 bytes each
         sw.simulate_many(DRIVE, command(0.099), {"load.inertia": np.full(5, 0.5)}, record=["torque"], sample=1e-3)
 
