@@ -23,11 +23,11 @@ from strainwave.simulation.threads import available_threads
 
 SETS = ("position-drive", "two-inertia-gear", "tilt-actuator-lumped", "robot-joint")
 COMMANDS = {"rad": 0.2, "V": 5.0, "N.m": 0.5}  # steps
-STEP = 2e-4  # s
-SAMPLE = 1e-2  # s
+SIMULATION_STEP = 2e-4  # s
+SAMPLE_INTERVAL = 1e-2  # s
 OUTPUTS = ("output_angle", "torque")
-MEMBERS = 65536
-DURATION = 2.0  # s
+MEMBER_COUNT = 65536
+RUN_DURATION = 2.0  # s
 
 COLUMNS = (
     Column("drive", words=True),
@@ -52,9 +52,9 @@ class Comparison:
 
 def timed(drive: sw.Drive, backend: Backend) -> tuple[sw.Ensemble, float]:
     """Return an ensemble and the time that it took [s], a few members having run before."""
-    command = sw.scenario.step(COMMANDS[command_unit(drive)], DURATION)
-    inertia = drive.load.inertia * np.geomspace(0.5, 2.0, MEMBERS)  # type: ignore[union-attr] # those of SETS have one
-    run = partial(sw.simulate_many, drive, command, dt=STEP, sample=SAMPLE, record=OUTPUTS, backend=backend)
+    command = sw.scenario.step(COMMANDS[command_unit(drive)], RUN_DURATION)
+    inertia = drive.load.inertia * np.geomspace(0.5, 2.0, MEMBER_COUNT)  # type: ignore[union-attr] # those of SETS have one
+    run = partial(sw.simulate_many, drive, command, dt=SIMULATION_STEP, sample=SAMPLE_INTERVAL, record=OUTPUTS, backend=backend)
     run(parameters={"load.inertia": inertia[:64]})
     began = time.perf_counter()
     found = run(parameters={"load.inertia": inertia})
@@ -96,5 +96,7 @@ def run(console: Console) -> None:
         console.print(f"gpu: {error}", markup=False)
         return
     caption = f"ratios: of time on {available_threads()} threads of the processor, over that on the GPU"
-    print_table(console, f"{MEMBERS} members of {DURATION:g} s on a GPU", COLUMNS, [row(one) for one in found], caption)
+    print_table(
+        console, f"{MEMBER_COUNT} members of {RUN_DURATION:g} s on a GPU", COLUMNS, [row(one) for one in found], caption
+    )
     save("gpu", found)

@@ -11,14 +11,14 @@
 
 #define DEPTH 65536 /* bytes of stack that are looked at */
 #define PAINT 0xA5
-#define REPEATS 1000
+#define REPEATED_STEPS 1000
 #define KINDS 3 /* of a step: a shaft sticks; both slip; a shaft stops, breaks away or turns round */
 #define TIMER ((volatile unsigned*)0xE000E010)
 #define TICKS 0xFFFFFFu
 
 struct Counts {
     unsigned steps, depth; /* bytes of stack, in the longest steps */
-    unsigned empty;        /* ticks of `REPEATS` calls of a function of one instruction, each measured by itself */
+    unsigned empty;        /* ticks of `REPEATED_STEPS` calls of a function of one instruction, each measured by itself */
     unsigned found[KINDS], repeated[KINDS], idle[KINDS]; /* steps, ticks of repeats of the longest, and of the loop alone */
 };
 typedef OUTPUTS (*Step)(STATE*, const INPUTS*);
@@ -46,7 +46,7 @@ static unsigned now(void) { return TIMER[2]; }
 
 __attribute__((noinline)) static unsigned repeats(Step volatile function, int kind) {
     const unsigned begin = now();
-    for (int i = 0; i < REPEATS; ++i) {
+    for (int i = 0; i < REPEATED_STEPS; ++i) {
         state = longest[kind];
         last = function(&state, &input[kind]);
     }
@@ -100,7 +100,7 @@ void steps(void) {
     counts.steps = (unsigned)size / sizeof *inputs;
     run();
     paint();
-    for (unsigned i = 0; i < REPEATS; ++i) counts.empty += timed(nothing, inputs, i);
+    for (unsigned i = 0; i < REPEATED_STEPS; ++i) counts.empty += timed(nothing, inputs, i);
     counts.depth = 0u - painted_over();
     paint();
     for (int kind = 0; kind < KINDS; ++kind) {

@@ -22,31 +22,38 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import five_drives
 import numpy as np
 import strainwave as sw
+from five_drives import COMMAND_KNOTS, LOAD_KNOTS
 from numpy.typing import NDArray
 from peers import strainwave_drive
 from report import Column, print_table, save
 from rich.console import Console
 from strainwave.export.firmware import FLAGS
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
 QEMU, GCC = "qemu-system-arm", "arm-none-eabi-"
 PROGRAMS = (QEMU, *(GCC + name for name in ("gcc", "g++", "size")))
 CLOCK = ("-icount", "shift=0")  # 1 ns with each instruction
-TICK = 40  # ns, of the system timer of both machines
+TIMER_TICK = 40  # ns, of the system timer of both machines
 DRIVER = Path(__file__).with_suffix(".c")
 MEMORY = ("--section-start=.vectors=0", "-Ttext=0x400", "-Tdata=0x20000000", "-Tbss=0x20001000", "-e", "steps")
-REPEATS = 1000  # of the longest step, as in the driver
+REPEATED_STEPS = 1000  # of the longest step, as in the driver
 SAMPLE_PERIOD = 1e-3  # s, of the controllers
 MOTION_STEPS = 400  # sampling instants of the simulated motion
 RANDOM_STEPS = 100
 RANGES = {"input_angle": 1e3, "command": 1e1, "low": 0.0, "high": 0.0}  # of random inputs of controllers; of others 1e2
 LAW_STEPS = 2000
 LAW_RANGES = {"twist": 2e-3, "speed": 20.0, "load": 5.0, "temperature": 0.0}  # of inputs of laws; of others 1e2
-ROOM = 293.15  # K
-COMMAND = ((0.0, 1.0, 3.0, 5.0, 7.0, 9.0, 10.0), (0.0, 0.25, -0.25, 0.25, -0.25, 0.25, 0.0))  # s and rad, of drives
-LOAD = ((0.0, 5.5, 6.5, 10.0), (0.0, 0.0, 1.0, 1.0))  # s and N.m
+DRIVE_NAMES = {
+    "reference": "reference drive",
+    "robot": "robot-joint",
+    "lumped": "tilt-actuator-lumped",
+    "staged": "tilt-actuator",
+    "soft": "soft gear of example 14",
+}
 
 COLUMNS = (
     Column("firmware", words=True),
@@ -125,27 +132,9 @@ def cases() -> Iterator[Case]:
 
 
 def drives() -> dict[str, sw.Drive]:
-    """Return the drives whose runs the tests compare with their firmware, without noise, thermal model and energy meter."""
-    soft_law = sw.control.PositionSpeed(
-        position_gain=40.0, speed_proportional=0.05, speed_integral=1.0, limit=5.0, feedback="output"
-    )
-    soft = sw.Drive(
-        gear=sw.rig.printed_gear(0).replace(damping=20.0),
-        motor=sw.motor.TorqueSource(inertia=1e-4),
-        control=soft_law,
-        load=sw.loads.Inertia(inertia=5.0),
-    )
-    sets = {name: sw.GearSet.read(name).drive for name in ("robot-joint", "tilt-actuator-lumped", "tilt-actuator")}
-    found = {"reference drive": strainwave_drive.drive(), **sets, "soft gear of example 14": soft}
-    return {name: quiet(drive) for name, drive in found.items()}
-
-
-def quiet(noisy: sw.Drive) -> sw.Drive:
-    """Return a drive without noise of its sensors, at one temperature, with no energy measured."""
-    plain, sensors = sw.Drive(), noisy.sensors
-    found = {field["name"]: getattr(sensors, field["name"]) for field in type(sensors).fields}
-    found = {name: sensor.law if isinstance(sensor, sw.sensor.Noisy) else sensor for name, sensor in found.items()}
-    return noisy.replace(sensors=sensors.replace(**found), thermal=plain.thermal, meter=plain.meter)
+    """Return the drives whose runs the tests compare with their firmware; the robot joint samples as the catalogue has it."""
+    models = five_drives.drives() | {"robot": sw.load("robot-joint")}
+    return {name: five_drives.quiet(models[key]) for key, name in DRIVE_NAMES.items()}
 
 
 def laws() -> dict[str, tuple[str, Any]]:
@@ -246,9 +235,9 @@ def joint(control: Any = None) -> sw.Drive:
 
 def drive_inputs(firmware: sw.export.Firmware) -> Array:
     """Return the inputs of a drive over 10 s."""
-    time = firmware.period * np.arange(round(COMMAND[0][-1] / firmware.period))
-    columns = {"temperature": np.full(len(time), ROOM)}
-    for name, (knots, values) in {"command": COMMAND, "load_torque": LOAD}.items():
+    time = firmware.period * np.arange(round(COMMAND_KNOTS[0][-1] / firmware.period))
+    columns = {"temperature": np.full(len(time), ROOM_TEMPERATURE)}
+    for name, (knots, values) in {"command": COMMAND_KNOTS, "load_torque": LOAD_KNOTS}.items():
         rates = np.diff(values) / np.diff(knots)
         columns[name] = np.interp(time, knots, values)
         columns[f"{name}_rate"] = rates[np.searchsorted(knots, time, side="right") - 1]
@@ -260,7 +249,10 @@ def law_inputs(firmware: sw.export.Firmware) -> Array:
     random = np.random.default_rng(1)
     columns = [LAW_RANGES.get(name, 1e2) * random.uniform(-1.0, 1.0, LAW_STEPS) for name in firmware.inputs]
     return np.column_stack(
-        [ROOM + each if name == "temperature" else each for name, each in zip(firmware.inputs, columns, strict=True)]
+        [
+            ROOM_TEMPERATURE + each if name == "temperature" else each
+            for name, each in zip(firmware.inputs, columns, strict=True)
+        ]
     )
 
 
@@ -333,8 +325,10 @@ def counted(processor: Processor, folder: Path, naming: Sequence[str]) -> Counts
     numbers = np.fromfile(folder / "counts", "<u4").astype(int)
     steps, depth, empty = numbers[:3]
     found, repeated, idle = numbers[3:12].reshape(3, 3)
-    exact = np.where(found > 0, np.rint((repeated - idle) * TICK / REPEATS).astype(int) + 1, 0)  # 1: the function that is idle
-    mean = TICK * (float(np.mean(numbers[12 : 12 + steps])) - empty / REPEATS) + 1.0
+    exact = np.where(
+        found > 0, np.rint(TIMER_TICK * (repeated - idle) / REPEATED_STEPS).astype(int) + 1, 0
+    )  # 1: the function that is idle
+    mean = TIMER_TICK * (float(np.mean(numbers[12 : 12 + steps])) - empty / REPEATED_STEPS) + 1.0
     return Counts(mean, tuple(exact.tolist()), int(depth))
 
 

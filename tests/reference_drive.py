@@ -10,6 +10,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "benchmarks"))
 
+import five_drives
 import strainwave as sw
 from peers.strainwave_drive import command, drive
 
@@ -18,4 +19,4 @@ NO_HYSTERESIS = sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[])
 SMOOTH = DRIVE.replace(gear=DRIVE.gear.replace(hysteresis=NO_HYSTERESIS, friction_input=sw.friction.Viscous(viscous=1e-4)))
 STICKING = SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=sw.friction.Coulomb(coulomb=0.03, breakaway=0.045)))
 
-__all__ = ["DRIVE", "SMOOTH", "STICKING", "command"]
+__all__ = ["DRIVE", "SMOOTH", "STICKING", "command", "five_drives"]

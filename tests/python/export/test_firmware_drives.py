@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
+from five_drives import COMMAND_KNOTS, EXACT_STEP, LOAD_KNOTS, NAMES, PERIODS, drives, quiet
 from strainwave.export.firmware import FLAGS, Scalar
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 from tests.cplusplus import checker
 from tests.firmware import NO_LIBRARY, Array, Loaded, library, written
-from tests.five_drives import COMMAND, DRIVES, LOAD, PERIODS, ROOM, STEP, quiet
 
 FLOAT_SHARE = 1e-4  # of the largest value of a signal
 # A shaft that has just stopped holds what drives it, which falls fast: there an instant later shows.
@@ -23,7 +24,8 @@ FLOAT_SHARES = {("robot", "friction_input"): 2e-4}
 
 
 def drive_of(name: str, scalar: Scalar) -> sw.Drive:
-    return DRIVES[name] if scalar == "double" else quiet(DRIVES[name])
+    drive = drives()[name]
+    return drive if scalar == "double" else quiet(drive)
 
 
 @pytest.fixture(scope="module", params=["double", "float"])
@@ -32,7 +34,7 @@ def programs(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     folder, scalar = tmp_path_factory.mktemp("drives"), request.param
     firmware = {
         name: written(drive_of(name, scalar), folder, scalar, name=f"own_{name}", part="drive", period=PERIODS[name])
-        for name in DRIVES
+        for name in NAMES
     }
     shared = library(folder, list(firmware.values()), "-O1", *(["-Wdouble-promotion"] if scalar == "float" else []))
     return {name: Loaded(each, shared) for name, each in firmware.items()}
@@ -41,26 +43,26 @@ def programs(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 @cache
 def motion(period: float) -> dict[str, Array]:
     """Inputs of all steps, held at their rates within each."""
-    time = period * np.arange(round(COMMAND[0][-1] / period) + 1)
-    inputs: dict[str, Any] = {"temperature": ROOM}
-    for name, (knots, values) in {"command": COMMAND, "load_torque": LOAD}.items():
+    time = period * np.arange(round(COMMAND_KNOTS[0][-1] / period) + 1)
+    inputs: dict[str, Any] = {"temperature": ROOM_TEMPERATURE}
+    for name, (knots, values) in {"command": COMMAND_KNOTS, "load_torque": LOAD_KNOTS}.items():
         rates = np.diff(values) / np.diff(knots)
         inputs[name] = np.interp(time, knots, values)
         inputs[f"{name}_rate"] = rates[np.clip(np.searchsorted(knots, time, side="right") - 1, 0, len(rates) - 1)]
     return inputs
 
 
-@pytest.mark.parametrize("name", DRIVES)
+@pytest.mark.parametrize("name", NAMES)
 def test_firmware_moves_as_simulation(name: str, programs: dict[str, Loaded]) -> None:
     program, period = programs[name], PERIODS[name]
     drive, scalar = drive_of(name, program.firmware.scalar), program.firmware.scalar
     with warnings.catch_warnings(action="ignore"):
         run = sw.simulate(
-            drive, sw.scenario.table(*COMMAND), period, sample=period, load_torque=sw.scenario.table(*LOAD)
+            drive, sw.scenario.table(*COMMAND_KNOTS), period, sample=period, load_torque=sw.scenario.table(*LOAD_KNOTS)
         )  # fmt: skip
     found = program.run(**motion(period))
     assert set(found) == set(run.names) - {"time", "command"}
-    smooth = ~np.isin(run.time, [*COMMAND[0], *LOAD[0]])  # where a rate jumps, the simulation shows what was before
+    smooth = ~np.isin(run.time, [*COMMAND_KNOTS[0], *LOAD_KNOTS[0]])  # where a rate jumps, the simulation shows what was before
     assert np.ptp(run["output_angle"]) > 0.4
     for output, values in found.items():
         difference = np.abs(values - run[output])[smooth]
@@ -75,7 +77,10 @@ def test_headers_of_drives_compile_in_clang(programs: dict[str, Loaded]) -> None
 
 def test_a_state_goes_on_where_a_copy_was_made(programs: dict[str, Loaded]) -> None:
     """The state in C is all that a drive remembers."""
-    program, inputs = programs["staged"], {name: np.resize(values, 400) for name, values in motion(STEP).items()}
+    program, inputs = (
+        programs["staged"],
+        {name: np.resize(values, 400) for name, values in motion(EXACT_STEP).items()},
+    )
     whole = program.run(**inputs)
     first = {name: values[:150] for name, values in inputs.items()}
     program.run(**first)
