@@ -26,7 +26,7 @@ struct Start {
     }
 };
 
-/// Where a member begins.
+/// Beginning of a member: its parameters and its state.
 struct MemberStart {
     std::vector<double> numbers{};  ///< its parameters
     std::string problem{};          ///< what is wrong with them, if anything is

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.export.firmware import FLAGS, Firmware, Scalar
+from strainwave.export.firmware import FLAGS, Firmware
+from strainwave.native.static_type import Scalar
 from strainwave.simulation.controller import Seen
 
 from tests.cplusplus import compiler

@@ -27,6 +27,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.export.newton import build
 from strainwave.native.compilers import FLAGS, find_compiler
+from strainwave.native.static_type import SCALARS, Scalar
 from strainwave.rig.virtual.printed import printed_gear
 
 Array = NDArray[np.float64]
@@ -142,7 +143,7 @@ def motion(about: dict[str, Any]) -> tuple[sw.Scenario, sw.Scenario]:
     return joint, sw.scenario.table(knots, 1.01 * angle)
 
 
-def follower(drive: sw.Drive, scalar: build.Scalar, folder: Path) -> tuple[Follower, sw.Run]:
+def follower(drive: sw.Drive, scalar: Scalar, folder: Path) -> tuple[Follower, sw.Run]:
     """Export a drive, and return it with its simulation."""
     exported = build.newton(drive, scalar=scalar, gpu=False, compare=False)
     for path, content in exported.files.items():
@@ -223,7 +224,7 @@ def main() -> int:
     for name, drive in drives().items():
         if options.drive and options.drive not in name:
             continue
-        for scalar in build.SCALARS:
+        for scalar in SCALARS:
             with TemporaryDirectory() as folder:
                 found, run = follower(drive, scalar, Path(folder))
                 outputs = found.by_warp(options.device)

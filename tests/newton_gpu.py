@@ -28,12 +28,13 @@ COMPARED = ("torque", "load_torque", "twist", "input_angle", "input_speed", "cur
 
 def prepare(folder: Path) -> None:
     """Write each drive in each precision: package, joint, and outputs of native code."""
-    from strainwave.export.newton import build, source
+    from strainwave.export.newton import source
+    from strainwave.native.static_type import SCALARS
 
     from tests import newton_agreement as agreement
 
     for name, short in DRIVES.items():
-        for scalar in build.SCALARS:
+        for scalar in SCALARS:
             target = folder / f"{short}_{scalar}"
             target.mkdir(parents=True, exist_ok=True)
             follower, _ = agreement.follower(agreement.drives()[name], scalar, target)

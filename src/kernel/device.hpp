@@ -4,7 +4,7 @@
 /// Members of an ensemble on a GPU, one to a thread.
 namespace strainwave::kernel {
 
-/// What a launch works on: members side by side, those of the host's arrays from some member on.
+/// Arguments of a launch: arrays of the device, with the members of the launch.
 template <class S>
 struct DeviceEnsemble {
     const int* shape;  ///< of the set of parameters

@@ -1,9 +1,10 @@
 #pragma once
-/// What kernels take of the standard library. NVRTC brings none.
-#if defined(__CUDACC_RTC__)
+/// Names of the standard library that kernels use, for compilers that come without it: NVRTC, and those that a text for another
+/// program sets SW_NO_STANDARD_LIBRARY for.
+#if defined(__CUDACC_RTC__) || defined(SW_NO_STANDARD_LIBRARY)
 namespace std {
 
-using ::size_t;
+using size_t = decltype(sizeof 0);
 using uint8_t = unsigned char;
 
 template <class A, class B>

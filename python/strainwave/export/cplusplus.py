@@ -12,7 +12,7 @@ from strainwave.native.kernel import INCLUDE
 from strainwave.native.static_type import NAMESPACES, parameters
 
 INCLUDING = re.compile(r'^#include (?:<(?P<found>[^>]+)>|"(?P<beside>[^"]+)").*\n', re.MULTILINE)
-SHARED = "contradictions.hpp", "mathematics.hpp"  # texts of exports
+SHARED = "contradictions.hpp", "mathematics.hpp", "stretches.hpp"  # texts of exports
 
 
 def numbers(part: Any, path: str = "") -> Iterator[tuple[str, float]]:

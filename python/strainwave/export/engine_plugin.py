@@ -9,6 +9,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,18 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
-from strainwave.export.coupled import (
-    COMPARED_DURATION,
-    COMPARED_SAMPLES,
-    MAX_STABLE_SHARE,
-    REFERENCE_STEP_SHARE,
-    SUFFIXES,
-    CoupledDrive,
-    shared_library,
-)
+from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
+from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import Friction, max_torque_of
 from strainwave.export.exported import Exported
-from strainwave.export.fmu.comparison import moving_run
 from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import (
     Element,
@@ -46,8 +39,7 @@ from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import one_line
-from strainwave.simulation.signals import command_unit, load_input
-from strainwave.tuning.loss import Loss
+from strainwave.simulation.signals import load_input
 
 Array = NDArray[np.float64]
 Command = Literal["held", "followed"]
@@ -131,13 +123,13 @@ def mujoco_plugin(
         "inertia_there": (inertia, "kg.m2"),
         "internal_step": (step, "s"),
     }
-    losses = list(_losses(drive, inertia, content, alone, step))
+    lost = losses(drive, inertia, step, timestep_of(alone), "timestep", partial(_run_in_mujoco, content, written(alone)))
     return Exported(
         "MuJoCo plugin",
         model.name if isinstance(model, GearSet) else name,
         {f"{name}{suffix}": content, "gear.xml": text},
         numbers,
-        tuple(losses),
+        tuple(lost),
         tuple(_left_out(drive)),
         (*remarks, *_remarks(name + suffix, version, content)),
     )
@@ -225,23 +217,7 @@ def _add_plugin(root: Element, shaft: Element, coupled: CoupledDrive, command: C
         shaft.attrib.update(friction_attributes(Friction(dry=dry, viscous=0.0), timestep_of(root)))
 
 
-def _losses(drive: Drive, inertia: float, content: bytes, alone: Element, step: float) -> Iterator[Loss]:
-    """Yield what the output angle differs by from the simulation over a step of the command, at two timesteps of MuJoCo."""
-    drive = drive.replace(load=loads.Inertia(inertia=inertia))
-    interval = max(1, round(COMPARED_DURATION / COMPARED_SAMPLES / step)) * step
-    duration = COMPARED_SAMPLES * interval
-    size, run = moving_run(drive, duration, REFERENCE_STEP_SHARE * step, interval)
-    angle = run["output_angle"]
-    for halvings in (0, 1):
-        wanted = timestep_of(alone) * 0.5**halvings
-        every = max(1, round(interval / wanted))
-        timestep = interval / every
-        found = _run_in_mujoco(content, written(alone), size, timestep, every, float(angle[0]))
-        over = f"a step of the command by {size:g} {command_unit(drive)}, {duration:.3g} s, timestep {1e3 * timestep:.3g} ms"
-        yield Loss.between("output_angle", found - angle, "rad", float(np.ptp(angle)), over)
-
-
-def _run_in_mujoco(content: bytes, model: str, command: float, timestep: float, every: int, angle: float) -> Array:
+def _run_in_mujoco(content: bytes, model: str, command: float, angle: float, timestep: float, every: int) -> Array:
     """Return the output angle under a constant command [rad], in a process of its own."""
     with TemporaryDirectory() as folder:
         paths = [Path(folder, each) for each in ("plugin.so", "model.xml", "rows.npy")]

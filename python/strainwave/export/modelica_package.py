@@ -13,26 +13,17 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, arguments, loads
-from strainwave.export.coupled import (
-    COMPARED_DURATION,
-    COMPARED_SAMPLES,
-    MAX_STABLE_SHARE,
-    REFERENCE_STEP_SHARE,
-    SUFFIXES,
-    CoupledDrive,
-    shared_library,
-)
+from strainwave import Drive, arguments
+from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
+from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import max_torque_of
 from strainwave.export.exported import Exported
-from strainwave.export.fmu.comparison import moving_run
 from strainwave.export.internal_step import internal_step
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.native.static_type import in_words
 from strainwave.simulation.signals import command_unit
-from strainwave.tuning.loss import Loss
 
 Array = NDArray[np.float64]
 
@@ -101,30 +92,21 @@ def modelica(
         "period": (period, "s"),
         "internal_step": (step, "s"),
     }
+
+    def moved(command: float, angle: float, exchange: float, every: int) -> Array:
+        duration = COMPARED_SAMPLES * every * exchange
+        found = inertia_moved(content, prefix, inertia or EXAMPLE_INERTIA, coupled, command, angle, exchange, duration)
+        return found[::every]
+
     return Exported(
         "Modelica package",
         model.name if isinstance(model, GearSet) else name,
         files,
         numbers,
-        tuple(_losses(drive, coupled, content, prefix, inertia or EXAMPLE_INERTIA, period, step)),
+        tuple(losses(drive, inertia or EXAMPLE_INERTIA, step, period, "period", moved)),
         tuple(_left_out()),
         tuple(_remarks(name, coupled, inertia)),
     )
-
-
-def _losses(
-    drive: Drive, coupled: CoupledDrive, content: bytes, prefix: str, inertia: float, period: float, step: float
-) -> Iterator[Loss]:
-    """Yield what the output angle differs by from the simulation over a step of the command, at two periods."""
-    drive = drive.replace(load=loads.Inertia(inertia=inertia))
-    interval = max(1, round(COMPARED_DURATION / COMPARED_SAMPLES / period)) * period
-    size, run = moving_run(drive, COMPARED_SAMPLES * interval, REFERENCE_STEP_SHARE * min(step, period), interval)
-    angle = run["output_angle"]
-    for each in (period, 0.5 * period):
-        found = inertia_moved(content, prefix, inertia, coupled, size, float(angle[0]), each, COMPARED_SAMPLES * interval)
-        error = found[:: round(interval / each)] - angle
-        over = f"a step of the command by {size:g} {command_unit(drive)}, {run['time'][-1]:.3g} s, period {1e3 * each:.3g} ms"
-        yield Loss.between("output_angle", error, "rad", float(np.ptp(angle)), over)
 
 
 def inertia_moved(

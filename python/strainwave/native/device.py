@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,9 @@ from strainwave import Drive, _core
 from strainwave.native.folder import cache_folder
 from strainwave.native.kernel import INCLUDE, headers_digest
 from strainwave.native.private import make_private
-from strainwave.native.static_type import static_type
+from strainwave.native.static_type import Scalar, static_type
 
 Array = NDArray[np.float64]
-Scalar = Literal["double", "float"]
-SCALARS: tuple[Scalar, ...] = get_args(Scalar)
 ENTRY = "strainwave_members"
 THREADS_PER_BLOCK = 64  # a member takes most of the registers of a thread
 MEMORY_SHARE = 0.7  # of the free memory of the device, that a launch may fill

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Literal, get_args
 
 from strainwave import _core
 
+Scalar = Literal["double", "float"]
+SCALARS: tuple[Scalar, ...] = get_args(Scalar)
 # Members that are template parameters, in the order of the C++ templates; of a law they are its members of a chosen law.
 PARAMETERS = {
     _core.Drive: ("control", "motor", "gear", "load", "sensors", "thermal", "meter"),

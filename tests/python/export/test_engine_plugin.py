@@ -196,7 +196,7 @@ def test_command_writes_the_files(tmp_path, monkeypatch):
     from strainwave.commands.export import export as verb
 
     monkeypatch.setattr(export, "compiled", lambda sources, include: b"library")
-    monkeypatch.setattr(export, "_losses", lambda *_: ())
+    monkeypatch.setattr(export, "losses", lambda *_: ())
     result = CliRunner().invoke(verb, ["mujoco-plugin", "robot-joint", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     assert {path.name for path in tmp_path.iterdir()} >= {"gear.xml", "export.json"}

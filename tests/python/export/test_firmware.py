@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
-from strainwave.export.firmware import FLAGS, Scalar
-from strainwave.native.static_type import parameters
+from strainwave.export.firmware import FLAGS
+from strainwave.native.static_type import Scalar, parameters
 from strainwave.simulation.controller import Seen
 
 from tests.cplusplus import compiler, zig
@@ -245,7 +245,7 @@ def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(doubled
         ({"drive": LAW}, TypeError, "drive = PositionSpeed"),
         ({"name": "2nd"}, ValueError, 'name = "2nd" must be a name in C'),
         ({"name": "float"}, ValueError, 'name = "float" must be a name in C'),
-        ({"scalar": "half"}, ValueError, 'scalar = "half" must be one of float, double'),
+        ({"scalar": "half"}, ValueError, 'scalar = "half" must be one of double, float'),
         (
             {"drive": drive(LAW.replace(speed_limit=1e300))},
             ValueError,

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from five_drives import COMMAND_KNOTS, EXACT_STEP, LOAD_KNOTS, NAMES, PERIODS, drives, quiet
-from strainwave.export.firmware import FLAGS, Scalar
+from strainwave.export.firmware import FLAGS
+from strainwave.native.static_type import Scalar
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 from tests.cplusplus import checker

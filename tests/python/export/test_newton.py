@@ -9,6 +9,7 @@ import pytest
 import strainwave as sw
 from strainwave.commands.export import export
 from strainwave.export.newton import build, source
+from strainwave.native import nvrtc
 from typer.testing import CliRunner
 
 NAME = "position-drive"  # whose code Warp compiles in a few seconds
@@ -145,7 +146,7 @@ def test_numbers_that_no_gear_has_are_refused(package, numbers, message):
 
 
 def test_its_source_is_one_text_and_has_code_for_gpus(monkeypatch):
-    if not source.has_nvrtc():
+    if not nvrtc.is_installed():
         pytest.skip("the package nvidia-cuda-nvrtc is not installed")
     compiled = source.ptx
     monkeypatch.setattr(source, "ptx", lambda text: compiled(text, "--device-debug"))  # optimised it takes 20 s

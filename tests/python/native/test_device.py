@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.native import device
+from strainwave.native.static_type import Scalar
 
 from tests.cplusplus import compiler
 from tests.strategies import made
@@ -47,7 +48,7 @@ STEP = sw.scenario.step(amplitude=5.0, duration=0.2)
 
 
 @cache
-def library(drive: sw.Drive, scalar: device.Scalar) -> ctypes.CDLL:
+def library(drive: sw.Drive, scalar: Scalar) -> ctypes.CDLL:
     """The code of the device, compiled for the processor."""
     folder = Path(mkdtemp())
     (folder / "device.cpp").write_text(ON_THE_PROCESSOR + device.source(drive, scalar) + THREAD_AFTER_THREAD)
@@ -62,7 +63,7 @@ class Processor:
     memory = 1 << 15  # bytes
     launches = 0
 
-    def __init__(self, stack: ExitStack, drive: sw.Drive, scalar: device.Scalar) -> None:
+    def __init__(self, stack: ExitStack, drive: sw.Drive, scalar: Scalar) -> None:
         self.stack, self.library = stack, library(drive, scalar)
         self.scalar = np.float32 if scalar == "float" else np.float64
 

@@ -20,9 +20,6 @@ TORQUE_LEVELS = (-1.0, -0.5, 0.0, 0.5, 1.0)  # of the largest torque, at which t
 SMALL_ANGLE = 1e-8  # rad, of the output, over which it is a difference
 SMALL_SPEED = 1.0  # rad/s, likewise of the damping
 MAX_STABLE_SHARE = 0.25  # of the longest stable timestep: a default is not longer
-COMPARED_DURATION = 1.0  # s, of the run that is compared with the simulation
-COMPARED_SAMPLES = 100  # of that run
-REFERENCE_STEP_SHARE = 0.25  # of the internal step: step of that simulation
 TORQUE = [name for name, _, _ in _core.quantities].index("torque")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +18,8 @@ from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.files.writing import making, write_all
+from strainwave.native.static_type import SCALARS, Scalar
 
-Scalar = Literal["float", "double"]
-SCALARS: tuple[Scalar, ...] = get_args(Scalar)
 FLAGS = source.FLAGS
 MAX_FLOAT = float(np.finfo(np.float32).max)
 KEYWORDS = """

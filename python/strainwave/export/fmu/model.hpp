@@ -9,6 +9,7 @@
 #include <strainwave/kernel/run.hpp>
 
 #include "contradictions.hpp"
+#include "stretches.hpp"
 #include "drive.hpp"  // Drive, laws, shape, parameters, channels, names; written for each drive
 
 namespace fmu {
@@ -21,7 +22,6 @@ using Compiled = decltype(Drive<double>{}.compile());
 using Evaluation = Compiled::Evaluation;
 using State = Compiled::State;
 
-inline constexpr double same_length = 1e-9;      // relative: steps closer than this are of one length
 inline constexpr double max_step_rate = 1.0;     // internal step times the fastest angular frequency of the drive
 inline constexpr double max_bristle_rate = 2.0;  // internal step times the angular frequency of a shaft on its bristles
 inline constexpr double event_tolerance = 1e-6;  // of the internal step: how far a tool may miss an instant of sampling
@@ -436,35 +436,14 @@ private:
     }
 
     bool advance(double length) {
-        double count = ceil(length / max_step() * (1.0 - same_length));
-        if (count < 1.0) count = 1.0;
-        double dt = length / count;
-        if (fabs(dt - max_step()) <= same_length * max_step()) dt = max_step();
-        for (double i = 0.0; i < count; ++i)
-            if (!through(i * dt, dt)) return false;
-        return true;
+        const auto state = [this]() -> const State& { return content.here.state; };
+        return strainwave::exported::in_steps(drive, length, max_step(), state, [this](double from, double dt) {
+            sample(from, dt);
+            return take(from, dt);
+        });
     }
-    // An internal step of `dt` [s], cut where a sampled controller acts.
-    bool through(double done, double dt) {
-        for (double within = 0.0;;) {
-            const double left = dt - within, next = next_instant(left), tolerance = same_length * max_step();
-            const bool is_last = next >= left - tolerance;
-            const double stretch = is_last ? left : next;
-            sample(done + within, stretch);
-            if (!take(done + within, stretch)) return false;
-            if (is_last) return true;
-            within += stretch;
-        }
-    }
-    // The time to the next instant at which a sampled controller acts, later than now; `most` [s] if there is none before.
-    double next_instant(double most) const {
-        const auto schedule = drive.schedule(content.here.state);
-        if (!(schedule.period > 0.0)) return most;
-        const double first = schedule.first, given = first + schedule.delay;
-        double next = most;
-        for (const double each : {given - schedule.period, first, given, first + schedule.period})
-            if (each > same_length * max_step() && each < next) next = each;
-        return next;
+    double next_instant(double limit) const {
+        return strainwave::exported::next_instant(drive, content.here.state, limit, max_step());
     }
     void sample(double from, double dt) {
         if (strainwave::system::due(drive, content.here.state, 0.5 * dt))

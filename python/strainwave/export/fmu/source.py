@@ -38,7 +38,7 @@ def drive_sources(
 ) -> tuple[dict[str, str], str]:
     """Return the sources that step a drive with the others that use them, by their names, and a token that depends on all."""
     model = resources.files("strainwave.export.fmu").joinpath("model.hpp").read_text("utf-8")
-    shared = {"contradictions.hpp": cplusplus.own_text("contradictions.hpp")}
+    shared = {name: cplusplus.own_text(name) for name in ("contradictions.hpp", "stretches.hpp")}
     files = {"model.hpp": model, **shared, **others, **cplusplus.closure([*cplusplus.headers_of(drive), *RUN_HEADERS])}
     header = partial(_drive_header, drive, found, exchanges)
     digest = sha256("\0".join([*files.values(), header("")]).encode()).hexdigest()[:DIGEST_LENGTH]

@@ -4,6 +4,7 @@
 #include <strainwave/kernel/assemble.hpp>
 
 #include "contradictions.hpp"
+#include "stretches.hpp"
 #include "drive.hpp"  // S, Drive, laws, shape, parameter_count, output_count, command_is; written for each drive
 
 namespace actuator {
@@ -15,7 +16,6 @@ using Input = strainwave::Input<S>;
 using Interval = strainwave::Interval<Input>;
 using Steps = strainwave::integrate::Steps<S, Compiled>;
 
-inline constexpr double same_length = sizeof(S) == sizeof(float) ? 1e-4 : 1e-9;  // relative: closer instants are the same
 inline constexpr int settling_rounds = 8;  // the kinematic error depends on the angle that it changes
 
 // Motion and command of a joint at an instant.
@@ -85,18 +85,6 @@ constexpr State at_joint(const Compiled& drive, const Input& u) {
     return drive.consistent(x);
 }
 
-// The time to the next instant at which a sampled controller acts; `limit` [s] if there is none before.
-constexpr S next_instant(const Compiled& drive, const State& x, const S& limit, const S& tolerance) {
-    const auto schedule = drive.schedule(x);
-    if (!(schedule.period > S(0.0))) return limit;
-    const S first = schedule.first, given = first + schedule.delay;
-    const S instants[] = {given - schedule.period, first, given, first + schedule.period};
-    S next = limit;
-    for (const S& each : instants)
-        if (each > tolerance && each < next) next = each;
-    return next;
-}
-
 // A step without events, once in the code however often it is called.
 __attribute__((noinline)) inline Evaluation smooth_step(const Compiled& drive, const Evaluation& from, const Interval& u,
                                                         const S& dt, Steps& steps) {
@@ -110,22 +98,14 @@ inline Evaluation moved(const Compiled& drive, const State& x, const Motion& mot
     const auto smooth = [&steps](const Compiled& system, const Evaluation& from, const Interval& u, const S& h) {
         return smooth_step(system, from, u, h, steps);
     };
-    const S tolerance = S(same_length) * max_step;
-    int count = 1;
-    while (S(count) * max_step * S(1.0 + same_length) < dt) ++count;
-    const S most = dt / S(count);
-    for (int i = 0; i < count; ++i)
-        for (S done{0.0};;) {
-            const S left = most - done, next = next_instant(drive, here.state, left, tolerance);
-            const bool is_last = next >= left - tolerance;
-            const S stretch = is_last ? left : next, time = S(i) * most + done;
-            const Interval u{motion.at(time), motion.at(time + S(0.5) * stretch), motion.at(time + stretch)};
-            here = strainwave::system::up_to_date(drive, here, u.start, S(0.5) * stretch);
-            steps.begin(stretch);
-            here = strainwave::step(drive, here, u, stretch, smooth);
-            if (is_last) break;
-            done = done + next;
-        }
+    const auto state = [&here]() -> const State& { return here.state; };
+    strainwave::exported::in_steps(drive, dt, max_step, state, [&](const S& time, const S& stretch) {
+        const Interval u{motion.at(time), motion.at(time + S(0.5) * stretch), motion.at(time + stretch)};
+        here = strainwave::system::up_to_date(drive, here, u.start, S(0.5) * stretch);
+        steps.begin(stretch);
+        here = strainwave::step(drive, here, u, stretch, smooth);
+        return true;
+    });
     return here;
 }
 

@@ -12,7 +12,7 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ from strainwave.export.internal_step import internal_step
 from strainwave.export.newton import source
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
+from strainwave.native import nvrtc
+from strainwave.native.static_type import SCALARS, Scalar
 from strainwave.simulation import scenario, signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import Run, simulate
@@ -31,8 +33,6 @@ from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import Loss
 
 Array = NDArray[np.float64]
-Scalar = Literal["double", "float"]
-SCALARS: tuple[Scalar, ...] = get_args(Scalar)
 MAX_NAME_LENGTH = 60  # characters
 COMPARED = ("torque", "load_torque", "twist", "input_speed", "current")
 COMPARED_DURATION = 0.2  # s
@@ -103,7 +103,7 @@ def newton(
         "drive.json": json.dumps(about, indent=1) + "\n",
         "README.md": _readme(about),
     }
-    if gpu and source.has_nvrtc():
+    if gpu and nvrtc.is_installed():
         files["drive.ptx"] = source.ptx(text)
     if drawn:
         files["draws.json"] = json.dumps({path: values.tolist() for path, values in drawn.items()}) + "\n"

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import ctypes
 from functools import lru_cache
-from importlib import metadata, resources
+from importlib import resources
 
 from strainwave import Drive, _core
 from strainwave.export import cplusplus
-from strainwave.native.compilers import CompileError
+from strainwave.native import nvrtc
 from strainwave.native.static_type import in_words, static_type
 
 OWN = resources.files("strainwave.export.newton")
 COMMANDS = {"rad": "position", "rad/s": "speed"}  # target of a joint by the unit of the command; feedforward for other units
 FIRST_STATE = 5  # numbers of a gear before those of its state, as in actuator.hpp
 CUDA_ARCHITECTURE = "compute_75"  # virtual, of Turing and later; a driver compiles it for its GPU
-CUDA_OPTIONS = (
-    *("--std=c++20", "--device-as-default-execution-space", f"--gpu-architecture={CUDA_ARCHITECTURE}"),
-    "--fmad=false",
-)
-MAX_REMEMBERED = 8  # texts of PTX, of some MB each
+MAX_REMEMBERED_TEXTS = 8  # texts of PTX, of some MB each
 
 
 def source(drive: Drive, scalar: str, command: str, outputs: int) -> str:
@@ -61,18 +56,9 @@ inline constexpr CommandIs command_is = CommandIs::{COMMANDS.get(command, "feedf
 """
 
 
-def has_nvrtc() -> bool:
-    """True if the package nvidia-cuda-nvrtc is installed, which compiles for GPUs without one."""
-    try:
-        metadata.distribution("nvidia-cuda-nvrtc")
-    except metadata.PackageNotFoundError:
-        return False
-    return True
-
-
-@lru_cache(maxsize=MAX_REMEMBERED)
+@lru_cache(maxsize=MAX_REMEMBERED_TEXTS)
 def ptx(text: str, *options: str) -> str:
-    """Return the PTX of an actuator, compiled by NVRTC itself: cuda-core needs a driver even to compile.
+    """Return the PTX of an actuator.
 
     Args:
         text: source of the actuator
@@ -82,24 +68,4 @@ def ptx(text: str, *options: str) -> str:
         CompileError: NVRTC reports an error
     """
     kernels = cplusplus.INCLUDING.sub("", OWN.joinpath("cuda.hpp").read_text("utf-8")).replace("#pragma once\n", "")
-    files = metadata.files("nvidia-cuda-nvrtc") or []
-    library = ctypes.CDLL(str(next(file.locate() for file in files if file.name.startswith(("libnvrtc.so", "nvrtc64")))))
-    program = ctypes.c_void_p()
-    library.nvrtcCreateProgram(ctypes.byref(program), (text + kernels).encode(), b"drive.cu", 0, None, None)
-    try:
-        all_options = [each.encode() for each in (*CUDA_OPTIONS, *options)]
-        result = library.nvrtcCompileProgram(program, len(all_options), (ctypes.c_char_p * len(all_options))(*all_options))
-        if result:
-            log = _text(library, program, "ProgramLog")
-            raise CompileError(f"NVRTC reports: {log[:200]}", log)
-        return _text(library, program, "PTX")
-    finally:
-        library.nvrtcDestroyProgram(ctypes.byref(program))
-
-
-def _text(library: ctypes.CDLL, program: ctypes.c_void_p, kind: str) -> str:
-    size = ctypes.c_size_t()
-    library[f"nvrtcGet{kind}Size"](program, ctypes.byref(size))
-    text = ctypes.create_string_buffer(size.value)
-    library[f"nvrtcGet{kind}"](program, text)
-    return text.value.decode()
+    return nvrtc.compiled(text + kernels, f"--gpu-architecture={CUDA_ARCHITECTURE}", *options)[0]

@@ -1,14 +1,9 @@
-// What the headers need of the C++ library, for compilers that come without one, as Warp's for the CPU. NVRTC takes what it needs
-// from strainwave/kernel/standard.hpp.
+// Mathematics of the C library under the names of <cmath>, for compilers that come without the C++ library, such as Warp's for the CPU.
 #pragma once
+#define SW_NO_STANDARD_LIBRARY
 #if !defined(__CUDACC_RTC__)
 
 namespace std {
-
-template <class A, class B>
-inline constexpr bool is_same_v = false;
-template <class A>
-inline constexpr bool is_same_v<A, A> = true;
 
 #include "mathematics.hpp"
 
