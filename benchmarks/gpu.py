@@ -22,7 +22,7 @@ from strainwave.simulation.signals import command_unit
 from strainwave.simulation.threads import available_threads
 
 SETS = ("position-drive", "two-inertia-gear", "tilt-actuator-lumped", "robot-joint")
-COMMANDS = {"rad": 0.2, "V": 5.0, "N.m": 0.5}  # steps
+COMMAND_SIZES = {"rad": 0.2, "V": 5.0, "N.m": 0.5}  # steps
 SIMULATION_STEP = 2e-4  # s
 SAMPLE_INTERVAL = 1e-2  # s
 OUTPUTS = ("output_angle", "torque")
@@ -52,7 +52,7 @@ class Comparison:
 
 def timed(drive: sw.Drive, backend: Backend) -> tuple[sw.Ensemble, float]:
     """Return an ensemble and the time that it took [s], a few members having run before."""
-    command = sw.scenario.step(COMMANDS[command_unit(drive)], RUN_DURATION)
+    command = sw.scenario.step(COMMAND_SIZES[command_unit(drive)], RUN_DURATION)
     inertia = drive.load.inertia * np.geomspace(0.5, 2.0, MEMBER_COUNT)  # type: ignore[union-attr] # those of SETS have one
     run = partial(sw.simulate_many, drive, command, dt=SIMULATION_STEP, sample=SAMPLE_INTERVAL, record=OUTPUTS, backend=backend)
     run(parameters={"load.inertia": inertia[:64]})

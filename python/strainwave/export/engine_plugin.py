@@ -43,7 +43,7 @@ from strainwave.simulation.signals import load_input
 
 Array = NDArray[np.float64]
 Command = Literal["held", "followed"]
-COMMANDS: tuple[Command, ...] = get_args(Command)
+COMMAND_MODES: tuple[Command, ...] = get_args(Command)
 MIN_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
 DEFAULT_TIMESTEP = 5e-4  # s, of a model that has the gear and an inertia only
 MAX_RUN_SECONDS = 300.0  # of the compared run in MuJoCo
@@ -105,7 +105,7 @@ def mujoco_plugin(
     model, drive = drive, drive_of(drive)
     if (into is None) != (joint is None):
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
-    arguments.one_of("command", command, COMMANDS)
+    arguments.one_of("command", command, COMMAND_MODES)
     checked_name(name, "MuJoCo", hyphens=True)
     largest = max_torque_of(model, max_torque) or 0.0
     include, version = installed_mujoco()
@@ -197,9 +197,7 @@ def _attached(model: str, joint: str, coupled: CoupledDrive, command: Command, n
     root, _, shaft = hinge_of(model, joint)
     remarks = list(others_on(root, joint, name))
     if armature := shaft.get("armature"):
-        remarks.append(
-            f"the armature {armature} of {joint} counts beside the rotor of the drive; remove it if it is that rotor"
-        )
+        remarks.append(f"the armature {armature} of {joint} is added to the rotor of the drive; remove it if it is that rotor")
     _add_plugin(root, shaft, coupled, command, name)
     return written(root), tuple(remarks)
 

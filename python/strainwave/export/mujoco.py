@@ -182,7 +182,7 @@ def attached(
 
 
 def others_on(root: Element, joint: str, name: str) -> Iterator[str]:
-    """Yield a remark on each actuator of a robot that acts on a joint beside the motor of a gear."""
+    """Yield a remark on each actuator of a robot that acts on a joint in addition to the motor of a gear."""
     motor = f"{name}_motor"
     for each in root.findall("actuator/*"):
         if each.get("joint") == joint and (own := each.get("name")) != motor:

@@ -27,7 +27,7 @@ def test_parameters_have_the_numbers_of_the_joint():
 
 
 class FakeNode:
-    """What the node uses of rclpy's, with the messages that it published."""
+    """Stand-in for the node class of rclpy, with the messages that were published."""
 
     settings = MappingProxyType({"drive": "robot-joint", "joint": "elbow", "rate": 100.0})
 

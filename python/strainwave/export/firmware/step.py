@@ -49,7 +49,7 @@ class Step:
         period: time from one call to the next [s]; 0 if the time does not matter
         memory: described state of the model in C++, over scalars S
         body: C++ that turns the inputs `in` and the memory `x` into the outputs `out`, and `x` into the next memory
-        headers: of the package that the body needs beside those of the model
+        headers: of the package that the body needs besides those of the model
     """
 
     model: Any

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 COMMUNICATION_STEPS = 1000  # of the compared run
 MIN_DURATION = 0.2  # s, of that run
-COMMANDS = {"rad": 0.1, "rad/s": 1.0}  # size of the command by its unit
+COMMAND_SIZES = {"rad": 0.1, "rad/s": 1.0}  # size of the command by its unit
 OTHER_COMMAND = 0.1  # in other units: V, A, N.m
 MAX_COMMAND_FACTOR = 1000.0  # by which the command is raised until the drive moves
 COMPARED = ("input_angle", "output_angle", "twist", "torque")
@@ -56,7 +56,7 @@ def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable]
 
 def moving_run(drive: Drive, duration: float, step: float, interval: float) -> tuple[float, Run]:
     """Return the size of a constant command at which a drive moves, and its run; the largest tried if it does not move."""
-    size = COMMANDS.get(signals.command_unit(drive), OTHER_COMMAND)
+    size = COMMAND_SIZES.get(signals.command_unit(drive), OTHER_COMMAND)
     largest = MAX_COMMAND_FACTOR * size
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

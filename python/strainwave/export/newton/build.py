@@ -39,7 +39,7 @@ COMPARED_DURATION = 0.2  # s
 COMPARED_BEGIN = 0.02  # s, of the command
 COMPARED_AMPLITUDE = 0.02  # rad, of the joint
 COMPARED_FREQUENCY = 5.0  # Hz
-COMMANDS = {"rad": 0.02, "rad/s": 0.5}  # size of the command by its unit
+COMMAND_SIZES = {"rad": 0.02, "rad/s": 0.5}  # size of the command by its unit
 OTHER_COMMAND = 0.1  # in other units: V, A, N.m
 PACKAGE = "strainwave_drive"  # folder by default; `newton` would hide the package of that name
 DIGEST_LENGTH = 16  # hexadecimal digits
@@ -91,7 +91,7 @@ def newton(
         "scalar": scalar,
         "step": step,
         "memory": source.FIRST_STATE + len(_core.state(drive)[0]),
-        "command": source.COMMANDS.get(signals.command_unit(drive), "feedforward"),
+        "command": source.TARGETS_BY_UNIT.get(signals.command_unit(drive), "feedforward"),
         "command_unit": signals.command_unit(drive),
         "outputs": {each.name: each.unit for each in shown},
         "parameters": dict(_parameters(drive)),
@@ -145,7 +145,7 @@ def _draws(model: Drive | GearSet, members: int, seed: int) -> dict[str, Array]:
 
 def difference_to_simulation(drive: Drive, files: dict[str, str | bytes], about: dict[str, Any]) -> list[Loss]:
     """Return what an actuator loses against `sw.simulate` while its joint follows a sine, in some of its outputs."""
-    size = COMMANDS.get(about["command_unit"], OTHER_COMMAND)
+    size = COMMAND_SIZES.get(about["command_unit"], OTHER_COMMAND)
     duration = round(COMPARED_DURATION / about["step"]) * about["step"]
     begin = round(COMPARED_BEGIN / about["step"]) * about["step"]
     command = scenario.table([0.0, begin, duration], [0.0, 0.0, size])

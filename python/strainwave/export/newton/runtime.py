@@ -1,6 +1,6 @@
 """A drive with strain wave gear as an actuator of Newton, written by strainwave. It needs the packages newton and warp-lang.
 
-`PARAMETERS` lists the numbers of the drive, `OUTPUTS` what a state shows. README.md beside this file shows how to use it.
+`PARAMETERS` lists the numbers of the drive, `OUTPUTS` the outputs of a state. README.md in this folder shows how to use it.
 """
 
 # mypy: ignore-errors

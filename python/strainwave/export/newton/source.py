@@ -11,7 +11,10 @@ from strainwave.native import nvrtc
 from strainwave.native.static_type import in_words, static_type
 
 OWN = resources.files("strainwave.export.newton")
-COMMANDS = {"rad": "position", "rad/s": "speed"}  # target of a joint by the unit of the command; feedforward for other units
+TARGETS_BY_UNIT = {
+    "rad": "position",
+    "rad/s": "speed",
+}  # target of a joint by the unit of the command; feedforward for other units
 FIRST_STATE = 5  # numbers of a gear before those of its state, as in actuator.hpp
 CUDA_ARCHITECTURE = "compute_75"  # virtual, of Turing and later; a driver compiles it for its GPU
 MAX_REMEMBERED_TEXTS = 8  # texts of PTX, of some MB each
@@ -50,7 +53,7 @@ inline constexpr int shape[] = {{{", ".join(map(str, [*shape, 0]))}}};  // so th
 inline constexpr int parameter_count = {len(_core.parameters(drive))}, output_count = {outputs};
 
 enum class CommandIs {{ position, speed, feedforward }};
-inline constexpr CommandIs command_is = CommandIs::{COMMANDS.get(command, "feedforward")};
+inline constexpr CommandIs command_is = CommandIs::{TARGETS_BY_UNIT.get(command, "feedforward")};
 
 }}  // namespace actuator
 """
