@@ -1,4 +1,4 @@
-"""Brings docs/benchmarks.md up to date with the last runs: its pictures, and each table whose columns it knows.
+"""Brings docs/validation/benchmarks.md up to date with the last runs: its pictures, and each table whose columns it knows.
 
 A part that has not been run keeps what the page has.
 
@@ -17,7 +17,7 @@ import targets
 from report import TABLES, save_figure, saved
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
-PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "pictures"
+PAGE, PICTURES = DOCS / "validation" / "benchmarks.md", DOCS / "pictures"
 
 
 def draw() -> list[str]:

@@ -18,7 +18,7 @@ from sphinx.cmd.build import main as sphinx
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 SOURCE = ROOT / "build" / "docs"
-SHOWN = re.compile(r"\]\(drawn/(\d\d_\w+)/\w+\.png\)")  # a picture that an example draws
+SHOWN = re.compile(r"\]\((?:\.\./)?drawn/(\d\d_\w+)/\w+\.png\)")  # a picture that an example draws
 
 
 def gather() -> None:
@@ -34,7 +34,7 @@ def gather() -> None:
 
 def draw() -> None:
     """Run each example whose picture a page shows, in the folder `drawn/` and its name."""
-    pages = [page.read_text(encoding="utf-8") for page in SOURCE.glob("*.md")]
+    pages = [page.read_text(encoding="utf-8") for page in SOURCE.rglob("*.md")]
     for name in sorted({name for page in pages for name in SHOWN.findall(page)}):
         folder = SOURCE / "drawn" / name
         folder.mkdir(parents=True)

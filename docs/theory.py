@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 Model = type[Any]
 Draw = Callable[[Axes], None]
 
-ERRATA = Path(__file__).with_name("errata.md")
-WORKS = Path(__file__).with_name("references.md")
+ERRATA = Path(__file__).with_name("validation") / "errata.md"
+WORKS = Path(__file__).with_name("theory") / "references.md"
 KEY = r"[A-Z][A-Za-z]+(?:1[6-9]|20)\d\d"  # of a work: its authors and its year
 GREEK = (
     "[Aa]lpha|[Bb]eta|[Gg]amma|[Dd]elta|[Ee]psilon|[Zz]eta|[Ee]ta|[Tt]heta|[Kk]appa|[Ll]ambda|[Mm]u|[Nn]u|[Xx]i|[Pp]i|[Rr]ho|"
@@ -37,7 +37,7 @@ LOAD_TORQUE = 10.0  # N.m, transmitted where a figure shows an error or a fricti
 
 def write(folder: Path) -> None:
     """Write one page for each module of models, one for gear and drive, and their figures."""
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     for name, (about, models) in pages().items():
         title = name.replace("_", " ").capitalize()
         sections = [saved_section(folder, model) for model in models]
@@ -209,13 +209,13 @@ def anchors() -> dict[str, str]:
     headings = re.findall(r"^### ((E-\w+) .*)$", ERRATA.read_text(encoding="utf-8"), re.MULTILINE)
     plain = {number: re.sub(r"\$[^$]*\$|[*]", "", title) for title, number in headings}
     slugs = {number: re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for number, title in plain.items()}
-    return {number: f"errata.md#{slug}" for number, slug in slugs.items()}
+    return {number: f"validation/errata.md#{slug}" for number, slug in slugs.items()}
 
 
 def references() -> dict[str, str]:
     """Where each key of a source stands."""
     keys = re.findall(r"^### (\w+)$", WORKS.read_text(encoding="utf-8"), re.MULTILINE)
-    return {key: f"references.md#{key.lower()}" for key in keys}
+    return {key: f"theory/references.md#{key.lower()}" for key in keys}
 
 
 def titles() -> dict[str, str]:
@@ -224,7 +224,9 @@ def titles() -> dict[str, str]:
 
 
 TITLES = titles()
-DOCUMENTS = {f"{word} {letter}": "errata.md#the-four-documents" for word in ("Document", "document") for letter in TITLES}
+DOCUMENTS = {
+    f"{word} {letter}": "validation/errata.md#the-four-documents" for word in ("Document", "document") for letter in TITLES
+}
 TARGETS = anchors() | references() | DOCUMENTS
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ VERBS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_a_page_that_refers_to_a_document_gives_its_title(page: Path) -> None:
-    errata = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+    errata = (ROOT / "docs" / "validation" / "errata.md").read_text(encoding="utf-8")
     titles = dict(re.findall(r'^\| \*\*([RPAT])\*\* \| "([^"]+)"', errata, re.MULTILINE))
     text = " ".join(page.read_text(encoding="utf-8").split())
     assert [letter for letter in sorted(set(re.findall(r"[Dd]ocument ([RPAT])\b", text))) if titles[letter] not in text] == []
@@ -33,7 +33,7 @@ def test_the_names_in_the_readme_exist() -> None:
 
 
 def test_the_readme_lists_the_verbs_of_the_command() -> None:
-    (listed,) = re.findall(r"\[the command\]\(docs/command-line\.md\): ([^|]*) \|", README)
+    (listed,) = re.findall(r"\[the command\]\(docs/reference/command-line\.md\): ([^|]*) \|", README)
     assert sorted(listed.split(", ")) == sorted(VERBS)
 
 

@@ -63,4 +63,4 @@ def test_symbols_within_words_become_formulas_and_code_stays(theory: ModuleType)
 def test_a_page_names_each_document_once(theory: ModuleType) -> None:
     page = theory.titled(theory.linked("Document P's K_s; document P, document T"))
     assert page.count(f'("{theory.TITLES["P"]}")') == page.count(f'("{theory.TITLES["T"]}")') == 1
-    assert page.startswith(f'[Document P](../errata.md#the-four-documents)\'s ("{theory.TITLES["P"]}") $K_')
+    assert page.startswith(f'[Document P](../validation/errata.md#the-four-documents)\'s ("{theory.TITLES["P"]}") $K_')

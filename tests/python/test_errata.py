@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "validation" / "errata.md").read_text(encoding="utf-8")
 SEVERITIES = {"wrong result", "misleading", "gap", "wording"}
 HEADINGS = re.findall(r"^### ((E-\w+) .*)$", PAGE, re.MULTILINE)
 ROWS = [
@@ -41,8 +41,8 @@ def test_numbers_of_entries_run_without_a_gap() -> None:
 
 def test_each_link_to_an_entry_leads_to_one() -> None:
     known = {anchor(title) for title, _ in HEADINGS}
-    for page in (Path(__file__).resolve().parents[2] / "docs").glob("*.md"):
+    for page in (Path(__file__).resolve().parents[2] / "docs").rglob("*.md"):
         text = page.read_text(encoding="utf-8")
-        used = re.findall(r"\(errata\.md#(e-[rpat]\d+[^)]*)\)", text)
+        used = re.findall(r"\((?:\.\./validation/)?errata\.md#(e-[rpat]\d+[^)]*)\)", text)
         used += re.findall(r"\(#(e-[rpat]\d+[^)]*)\)", text) if page.name == "errata.md" else []
         assert known.issuperset(used), (page.name, sorted(set(used) - known))

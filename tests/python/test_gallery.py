@@ -55,7 +55,7 @@ def test_an_example_says_what_it_shows_and_draws_it(
 
 def test_examples_are_numbered_and_listed() -> None:
     assert [script.stem[:2] for script in SCRIPTS] == [f"{number:02}" for number in range(1, len(SCRIPTS) + 1)]
-    page = (ROOT.parent / "docs" / "examples.md").read_text(encoding="utf-8")
+    page = (ROOT.parent / "docs" / "gallery.md").read_text(encoding="utf-8")
     assert [script.name for script in SCRIPTS if f"`{script.name}`" not in page] == []
 
 
@@ -89,7 +89,7 @@ def test_the_ten_drives_have_every_model_between_them() -> None:
     models = [
         each for family in families for each in vars(family).values() if isinstance(each, type) and hasattr(each, "fields")
     ]
-    # What a sensor is untold, another density, an inverse, and laws that contain a second gear: docs/control.md has these.
+    # What a sensor is untold, another density, an inverse, and laws that contain a second gear: see docs/how-to/control.md.
     aside = {"ideal", "grid_density", "prandtl_ishlinskii", "feedback_linearisation", "kinematic_error_tracking"}
     wanted = {model.name for model in models} - aside
     assert sorted(wanted - used) == []

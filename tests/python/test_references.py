@@ -12,6 +12,6 @@ KEY = re.compile(r"\b[A-Z][A-Za-z]+(?:1[6-9]|20)\d\d\b")  # authors and year
 def test_every_key_of_a_source_resolves() -> None:
     sources = [*(ROOT / "include").rglob("*.hpp"), *(ROOT / "python").rglob("*.py")]
     used = {key for source in sources for key in KEY.findall(source.read_text(encoding="utf-8"))}
-    page = (ROOT / "docs" / "references.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "theory" / "references.md").read_text(encoding="utf-8")
     described = re.findall(r"^### (\w+)\n\n\S", page, re.MULTILINE)
     assert described == sorted(used)

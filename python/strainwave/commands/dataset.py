@@ -20,7 +20,7 @@ QUIET_SECONDS = 60.0  # between lines of progress where nobody watches
 
 
 def dataset(
-    plan: Annotated[Path | None, typer.Argument(help="Plan, TOML. docs/datasets.md shows the format.")] = None,
+    plan: Annotated[Path | None, typer.Argument(help="Plan, TOML. docs/how-to/datasets.md shows the format.")] = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder of the data set; of --member a .parquet file.")
     ] = None,

@@ -1,6 +1,6 @@
 """Plans of data sets: what a TOML file may contain, each key checked with its limits before anything runs.
 
-docs/datasets.md shows the format. A plan is data: it names one gear set, and nothing in it is run or opened otherwise.
+docs/how-to/datasets.md shows the format. A plan is data: it names one gear set, and nothing in it is run or opened otherwise.
 """
 
 from __future__ import annotations
@@ -390,7 +390,7 @@ def _in_words(error: ValidationError, content: dict[str, Any]) -> str:
     place = ".".join(f"{each}" for each in first["loc"] if f"{each}" not in kinds)
     reason = first["msg"].removeprefix("Value error, ")
     if first["type"] == "extra_forbidden":
-        return one_line(f"{place} is no key of a plan; docs/datasets.md lists the keys")
+        return one_line(f"{place} is no key of a plan; docs/how-to/datasets.md lists the keys")
     if first["type"] == "missing":
         return one_line(f"{place} is missing; give it")
     if first["type"] == "value_error":

@@ -1,7 +1,7 @@
 """Gear files: what may be written where, and how a set is read from TOML and written to it.
 
 What a table may hold is what its model describes; no parameter is named here. What is wrong in a file is refused in one line
-with file, table and key. docs/gear-files.md shows the format.
+with file, table and key. docs/reference/gear-files.md shows the format.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What is assumed of a strain wave gear whose maker does not say it: the rules of docs/catalogue.md.
+"""What is assumed of a strain wave gear whose maker does not say it: the rules of docs/reference/catalogue.md.
 
 Two principles. A typical unit takes half of what the maker bounds. Similar gears of one lubricant have torque, stiffness and
 viscous torque that grow with the cube of the size, and an inertia that grows with its fifth power. `size` is that of the
@@ -110,7 +110,7 @@ class Divided:
 
     @classmethod
     def of(cls, k1: float, t1: float, t2: float, loss: float) -> Divided:
-        """Of secant K1 up to T1, and the bound on the hysteresis loss; docs/catalogue.md derives it.
+        """Of secant K1 up to T1, and the bound on the hysteresis loss; docs/reference/catalogue.md derives it.
 
         The gear reaches T1 at the twist T1/K1 when it is loaded for the first time, and its loop is half as wide as the bound.
 

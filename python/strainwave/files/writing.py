@@ -1,4 +1,4 @@
-"""Files that are whole or not there at all. docs/files.md says what is promised of them."""
+"""Files that are whole or not there at all. docs/reference/files.md says what is promised of them."""
 
 from __future__ import annotations
 

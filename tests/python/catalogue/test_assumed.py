@@ -1,4 +1,4 @@
-"""Assumed figures of the sets, against the rule that docs/catalogue.md states for each."""
+"""Assumed figures of the sets, against the rule that docs/reference/catalogue.md states for each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Published figures of the sets, against the published tables; the slips in these are in docs/catalogue.md."""
+"""Published figures of the sets, against the published tables; the slips in these are in docs/reference/catalogue.md."""
 
 from __future__ import annotations
 

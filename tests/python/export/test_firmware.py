@@ -161,7 +161,7 @@ def test_single_precision_is_as_accurate_as_stated(name: str, doubled: dict[str,
     ],
 )
 def test_the_page_states_these_numbers(statement: str) -> None:
-    page = Path(__file__).parents[3] / "docs" / "firmware.md"
+    page = Path(__file__).parents[3] / "docs" / "how-to" / "firmware.md"
     assert statement in " ".join(page.read_text(encoding="utf-8").split())
 
 

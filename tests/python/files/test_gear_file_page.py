@@ -15,7 +15,7 @@ from strainwave.files.gear_set import GearSet, load
 from tests.python.files.test_gear_file_refusals import REFUSED
 
 ROOT = Path(__file__).resolve().parents[3]
-DOCUMENT = (ROOT / "docs" / "gear-files.md").read_text(encoding="utf-8")
+DOCUMENT = (ROOT / "docs" / "reference" / "gear-files.md").read_text(encoding="utf-8")
 
 
 def blocks(language: str) -> list[str]:

@@ -60,7 +60,7 @@ def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, Level
 
 
 def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, Levels]) -> None:
-    """The tilted section of a cylinder is longer by the tilt squared: a beta^2 / 4 at order 2 (docs/errata.md, E-A8)."""
+    """The tilted section of a cylinder is longer by the tilt squared: a beta^2 / 4 at order 2 (erratum E-A8)."""
     without = levels["single"].column("h", "error_2")[0]
     assert without == pytest.approx(25.3e-3 * study.SHOWN_TILT**2 / 4.0 * PER_METRE, rel=1e-2)
     assert levels["single"].column("h", "error_1")[0] < 1e-6 * PER_METRE * 1e-3

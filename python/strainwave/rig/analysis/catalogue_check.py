@@ -101,7 +101,7 @@ def published(gear_set: GearSet, side: Side) -> dict[str, float] | None:
     """K1, K2, K3 [N.m/rad] and T1, T2 [N.m] of the whole gear at a shaft; None where its spring has no such knees.
 
     A set divides them between spring and hysteresis, which is undone here: T = t + F and K1 = k1 T1 / t1, with F the sum of
-    the breakaways (docs/catalogue.md).
+    the breakaways (docs/reference/catalogue.md).
 
     >>> {name: round(value, 1) for name, value in published(GearSet.read("csg-20-100"), "output").items()}
     {'K1': 16000.0, 'K2': 25000.0, 'K3': 29000.0, 'T1': 7.0, 'T2': 25.0}

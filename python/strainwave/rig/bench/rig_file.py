@@ -1,6 +1,6 @@
 """Files of rigs: what may be written where, and how a rig is read from TOML and written to it.
 
-What is wrong in a file is refused in one line with file, table and key. docs/torsion-rig.md shows the format.
+What is wrong in a file is refused in one line with file, table and key. docs/how-to/torsion-rig.md shows the format.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The record of a torsion test: `steps.csv` in the folder of the test, a row for each step.
 
-What is wrong in it is refused in one line with file, line and column; nothing is repaired. docs/torsion-rig.md shows the
+What is wrong in it is refused in one line with file, line and column; nothing is repaired. docs/how-to/torsion-rig.md shows the
 format.
 """
 
