@@ -11,7 +11,7 @@ from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
 from strainwave.identification.results import combined_parameter, file_result, identifiability
 
-PAGE = " ".join(Path(__file__).parents[3].joinpath("docs", "identify.md").read_text(encoding="utf-8").split())
+PAGE = " ".join(Path(__file__).parents[3].joinpath("docs", "reference", "identify.md").read_text(encoding="utf-8").split())
 NUMBERS = ("no", "one", "two", "three", "four", "five")
 
 
