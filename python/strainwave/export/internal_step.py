@@ -6,12 +6,11 @@ from inspect import signature
 
 from strainwave import Drive, _core, arguments
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.simulation.resolution import COARSEST, FASTEST_ON_BRISTLES, fine_enough
+from strainwave.simulation.resolution import COARSEST, FASTEST_ON_BRISTLES, fine_enough, rounded_down
 from strainwave.simulation.run import simulate
 
 MIN_STEP = 1e-7  # s
 DEFAULT_STEP = signature(simulate).parameters["dt"].default  # s
-STATED_SHARE = 0.95  # of the longest step, that a message states: two digits of it are no longer step
 MAX_HALVINGS = 20  # of the step, for bristles
 
 
@@ -28,7 +27,7 @@ def internal_step(drive: Drive, step: float | None, name: str = "step") -> float
 
     >>> internal_step(Drive(), 0.1)
     Traceback (most recent call last):
-    ValueError: step = 0.1 s is too coarse: the drive is as fast as a vibration of 1.05e+03 rad/s; give 0.00091 s or less
+    ValueError: step = 0.1 s is too coarse: the drive is as fast as a vibration of 1.05e+03 rad/s; give 0.00095 s or less
     """
     if step is None:
         return default_step(drive)
@@ -41,7 +40,7 @@ def internal_step(drive: Drive, step: float | None, name: str = "step") -> float
         reason = f"a shaft vibrates on its bristles at {bristles:.3g} rad/s"
     if step <= longest:
         return step
-    raise ValueError(f"{name} = {step:g} s is too coarse: {reason}; give {STATED_SHARE * longest:.2g} s or less")
+    raise ValueError(f"{name} = {step:g} s is too coarse: {reason}; give {rounded_down(longest):g} s or less")
 
 
 def default_step(drive: Drive) -> float:

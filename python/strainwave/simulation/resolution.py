@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from decimal import ROUND_FLOOR, Context
 from typing import Any
 
 import numpy as np
@@ -79,15 +80,21 @@ def too_coarse(dt: float, twist: float, fastest: float, part: str) -> str:
     """
     return (
         f"dt = {dt:g} s is too coarse for this drive: {part} is as fast as a vibration of {fastest:.4g} rad/s "
-        f"at a twist of {twist:.3g} rad; take dt = {COARSEST / fastest:.2g} s or less"
+        f"at a twist of {twist:.3g} rad; take dt = {rounded_down(COARSEST / fastest):g} s or less"
     )
+
+
+def rounded_down(step: float) -> float:
+    """Return the largest number of two digits that does not exceed a step [s], beyond errors of rounding."""
+    return float(Context(prec=2, rounding=ROUND_FLOOR).create_decimal(f"{step:.12g}"))
 
 
 def too_stiff(dt: float, vibration: float) -> str:
     """Says of bristles on which a shaft vibrates [rad/s] that fixed steps of `dt` [s] are in doubt."""
     return (
         f"bristles on which a shaft vibrates faster than steps of {dt:g} s can follow, at {vibration:.3g} rad/s; where it "
-        f"comes to rest or turns round results may be wrong: take dt = {FASTEST_ON_BRISTLES / vibration:.2g} s or less"
+        f"comes to rest or turns round results may be wrong: "
+        f"take dt = {rounded_down(FASTEST_ON_BRISTLES / vibration):g} s or less"
     )
 
 

@@ -404,14 +404,15 @@ private:
         return false;
     }
     bool resolves() {
+        constexpr double below_rounding = 1.0 - 1e-5;  // so that the six digits of a step that is stated do not exceed it
         const double fastest = strainwave::own_motion::max_rate<double>(drive, 0.0, content.acting.temperature);
         const double bristle = strainwave::own_motion::bristle_frequency<double>(drive);
         if (fastest * max_step() > max_step_rate)
             return fail("%s = %g s is too coarse: the drive is as fast as a vibration of %g rad/s; set %g s or less",
-                        parameters[0].name, max_step(), fastest, max_step_rate / fastest);
+                        parameters[0].name, max_step(), fastest, below_rounding * max_step_rate / fastest);
         if (bristle * max_step() > max_bristle_rate)
             return fail("%s = %g s is too coarse: a shaft vibrates on its bristles at %g rad/s; set %g s or less",
-                        parameters[0].name, max_step(), bristle, max_bristle_rate / bristle);
+                        parameters[0].name, max_step(), bristle, below_rounding * max_bristle_rate / bristle);
         return true;
     }
 
