@@ -8,7 +8,6 @@
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
     python3 dev.py docs         build the documentation; it begins at out/docs/index.html
     python3 dev.py wheel        build a wheel for every machine of this kind into dist/, and try it where no compiler is
-    python3 dev.py stubs        write the type stubs of the compiled modules anew
     python3 dev.py pin          write the exact versions of all dependencies anew, the newest that pyproject.toml allows
 
 The first call of each makes .venv and installs what it needs into it, with uv. Later calls find this done.
@@ -287,11 +286,6 @@ def add_kernels(made: Path, python: Path) -> None:
     call(PYTHON, "-m", "wheel", "pack", "--dest-dir", made.parent, package.parent)
 
 
-def stubs(options: Sequence[str]) -> int:
-    prepare()
-    return attempt(PYTHON, "src/stubs.py", *options)
-
-
 def pin(options: Sequence[str]) -> int:
     groups = [word for group in ("build", "docs", "lint", "test") for word in ("--group", group)]
     plain = ("--no-header", "--no-annotate", "--no-emit-index-url", "--no-emit-find-links")
@@ -300,7 +294,7 @@ def pin(options: Sequence[str]) -> int:
 
 
 VERBS: dict[str, Callable[[Sequence[str]], int]] = {
-    verb.__name__: verb for verb in (demo, test, times, lint, sanitize, bench, docs, wheel, stubs, pin)
+    verb.__name__: verb for verb in (demo, test, times, lint, sanitize, bench, docs, wheel, pin)
 }
 
 

@@ -1,21 +1,24 @@
-"""Type stubs of the compiled modules, as the extension itself describes them: `python3 dev.py stubs` writes them."""
+"""Type stubs of the compiled modules, as the extension describes them. The build runs it after `_core` is linked.
+
+python src/stubs.py EXTENSION FOLDER
+"""
 
 from __future__ import annotations
 
 import os
 import re
 import sys
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 
-import strainwave
 from nanobind.stubgen import ReplacePattern, StubGen
-from strainwave import _core
 
-PACKAGE = Path(strainwave.__file__).parent
+CORE = "strainwave._core"
 
 # Plain attributes carry no signature, and what Python adds is not the extension's own, so their types stand here.
 ATTRIBUTES = {
-    r"\.Gear\.from_datasheet$": "@staticmethod\ndef from_datasheet(ratio: float, **figures: Any) -> Gear: ...",
+    r"\.Gear\.__suffix__$": "@staticmethod\ndef from_datasheet(ratio: float, **figures: Any) -> Gear: ...",
     r"\.fields$": "fields: tuple[dict[str, Any], ...]",
     r"\.quantities$": "quantities: tuple[tuple[str, str, str], ...]",
     r"\.families$": "families: dict[str, dict[str, type[Any]]]",
@@ -23,12 +26,21 @@ ATTRIBUTES = {
 }
 
 
-def stubs() -> dict[Path, str]:
-    """The text of each stub, by its place in the package."""
-    every = (*_core.families.values(), *_core.fault_families.values())
+def load(extension: str) -> ModuleType:
+    """Return the core of a file, without the package, whose import would start the build again."""
+    spec = spec_from_file_location(CORE, extension)
+    assert spec is not None
+    assert spec.loader is not None
+    sys.modules[CORE] = core = module_from_spec(spec)
+    spec.loader.exec_module(core)
+    return core
+
+
+def stubs(core: ModuleType) -> dict[str, str]:
+    """Return the text of each stub by the name of its file."""
+    every = (*core.families.values(), *core.fault_families.values())
     of_models = {model.__module__ for family in every for model in family.values()}
-    modules = ("strainwave._core", *sorted(of_models))
-    return {PACKAGE / f"{module.rpartition('.')[2]}.pyi": stub(module) for module in modules}
+    return {f"{module.rpartition('.')[2]}.pyi": stub(module) for module in (CORE, *sorted(of_models))}
 
 
 def stub(module: str) -> str:
@@ -42,12 +54,12 @@ def pattern(name: str, declaration: str) -> ReplacePattern:
     return ReplacePattern(re.compile(name), [r"\from typing import Any", *declaration.splitlines(), ""], 0)
 
 
-def main() -> None:
-    for path, text in stubs().items():
-        partial = path.with_suffix(".partial")
+def main(extension: str, folder: str) -> None:
+    for name, text in stubs(load(extension)).items():
+        partial = Path(folder, f"{name}.partial")
         partial.write_text(text)
-        os.replace(partial, path)
+        os.replace(partial, Path(folder, name))
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])
