@@ -1,4 +1,4 @@
-"""Builds the documentation: the pages of this folder, pictures of examples, and a theory page for each family of models.
+"""Builds the documentation: the pages of this folder, tutorials, pictures of examples, and a theory page for each family.
 
 python docs/build.py FOLDER
 """
@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import theory
+import tutorials
 from sphinx.cmd.build import main as sphinx
 
 HERE = Path(__file__).resolve().parent
@@ -24,11 +25,14 @@ SHOWN = re.compile(r"\]\((?:\.\./)?drawn/(\d\d_\w+)/\w+\.png\)")  # a picture th
 def gather() -> None:
     """Everything Sphinx reads, in one folder: this one, the pages of the root with their links from here, the theory."""
     shutil.rmtree(SOURCE, ignore_errors=True)
-    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", "build.py", "theory.py", "parts.py"))
+    shutil.copytree(
+        HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", "build.py", "theory.py", "tutorials.py", "parts.py")
+    )
     for page in ("CONTRIBUTING.md", "CHANGELOG.md"):
         text = (ROOT / page).read_text(encoding="utf-8")
         (SOURCE / page.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
     theory.write(SOURCE / "theory")
+    tutorials.write(SOURCE / "tutorials")
     draw()
 
 

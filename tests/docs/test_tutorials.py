@@ -1,0 +1,104 @@
+"""Every tutorial runs from its first cell to its last, shows a picture, and finds the files that it needs."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import resource
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "examples" / "tutorials"
+SCRIPTS = sorted(FOLDER.glob("*.py"))
+MAX_SECONDS = 25.0  # of processor time of a tutorial and the commands in it
+MAX_BYTES = 150_000  # of a file that belongs to a tutorial
+
+
+@pytest.fixture(scope="module")
+def tutorials() -> Iterator[ModuleType]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(ROOT / "docs")
+        yield importlib.import_module("tutorials")
+
+
+def processor_seconds() -> float:
+    """Return the processor time [s] of the processes that this one has started and that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tutorials: ModuleType, tmp_path: Path) -> None:
+    before = processor_seconds()
+    tutorials.write_page(script, tmp_path)
+    seconds = processor_seconds() - before
+    page = (tmp_path / f"{script.stem}.md").read_text(encoding="utf-8")
+    pictures = re.findall(r"^!\[.+\]\((.+)\)$", page, re.MULTILINE)
+    assert pictures
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == sorted(pictures)
+    assert page.startswith("# ")
+    downloads = re.findall(r"\{download\}`([^`]+)`", page)
+    assert downloads[0] == script.name
+    assert [name for name in downloads if not (tmp_path / name).is_file()] == []
+    assert seconds < MAX_SECONDS
+
+
+def test_the_files_of_tutorials_are_small_text_and_each_is_used(tutorials: ModuleType) -> None:
+    texts = [script.read_text(encoding="utf-8") for script in SCRIPTS]
+    for path in FOLDER.glob("*.*"):
+        if path.suffix != ".py":
+            assert len(path.read_text(encoding="utf-8").encode()) <= MAX_BYTES, path.name
+            assert any(tutorials.is_named(path.name, text) for text in texts), path.name
+
+
+def test_the_page_of_tutorials_lists_each() -> None:
+    rows = re.findall(
+        r"^\| (\d) · ([^|]+) \|", (ROOT / "docs" / "tutorials" / "index.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert [number for number, _ in rows] == [str(k) for k in range(1, 10)]
+    titles = {script.name: script.read_text(encoding="utf-8").splitlines()[1] for script in SCRIPTS}
+    expected = {f"0{number}": f"# # {title}" for number, title in rows}
+    assert {name: expected[name[:2]] for name in titles} == titles
+
+
+@pytest.mark.parametrize(
+    ("cell", "message"),
+    [
+        ("# %%\nvalue = 1.0\nvalue / 0", r"^wrong\.py, line 6: ZeroDivisionError: "),
+        ("# %%\nvalue =", r"^wrong\.py, line 5: SyntaxError: "),
+        (
+            "# %% [console]\n# $ echo one\n# $ strainwave nonsense | cat",
+            r"^wrong\.py, line 6: exit code 2 of strainwave nonsense",
+        ),
+    ],
+)
+def test_a_cell_that_fails_is_named_with_its_line(cell: str, message: str, tutorials: ModuleType, tmp_path: Path) -> None:
+    script = tmp_path / "wrong.py"
+    script.write_text(f"# %% [markdown]\n# # Wrong\n\n{cell}\n")
+    with pytest.raises(tutorials.TutorialError, match=message):
+        tutorials.write_page(script, tmp_path / "out")
+
+
+def test_a_page_shows_what_cells_print_and_draw(tutorials: ModuleType, tmp_path: Path) -> None:
+    """The folder of a tutorial has its data; a command that may fail shows its exit code."""
+    (tmp_path / "data.csv").write_text("1\n2\n")
+    script = tmp_path / "01_name.py"
+    script.write_text(
+        "# %% [markdown]\n# # Title\n#\n# Words.\n\n"
+        '# %%\nimport subprocess\n\nprint(open("data.csv").read().split())\nsubprocess.run(["echo", "two"])\n\n'
+        '# %% [console]\n# $ cat data.csv \\\n#   | tail -n 1\n# $ false || echo "exit code $?"\n\n'
+        '# %%\nimport matplotlib.pyplot as plt\n\n_ = plt.figure().suptitle("a square")\n'
+    )
+    out = tmp_path / "out"
+    tutorials.write_page(script, out)
+    page = (out / "01_name.md").read_text()
+    assert page.startswith("# Title\n\n*To try it yourself")
+    assert "{download}`01_name.py`, {download}`data.csv`\n\nWords.\n\n```python\n" in page
+    assert ":class: output\n\n['1', '2']\ntwo\n```" in page
+    assert '```console\n$ cat data.csv \\\n  | tail -n 1\n2\n$ false || echo "exit code $?"\nexit code 1\n```' in page
+    (picture,) = re.findall(r"^!\[a square\]\((.+)\)$", page, re.MULTILINE)
+    assert (out / picture).stat().st_size > 1000
