@@ -256,14 +256,14 @@ def docs(options: Sequence[str]) -> int:
 
 
 def wheel(options: Sequence[str]) -> int:
-    install_tools()
+    docs(())
     dist, clean = ROOT / "dist", BUILD / "clean"
     shutil.rmtree(dist, ignore_errors=True)
     say("compiling the package")
     call(uv(), "build", "--quiet", "--wheel", "--no-build-isolation", "--python", PYTHON, "--out-dir", dist, *options)
     (made,) = dist.glob("*.whl")
     install_into(clean, made)
-    add_kernels(made, clean / "bin" / "python")
+    complete(made, clean / "bin" / "python")
     install_into(clean, made)
     say(f"trying {made.relative_to(ROOT)}, {made.stat().st_size / 1e6:.1f} MB, where no compiler is found")
     return attempt(clean / "bin" / "python", "-I", ROOT / "tests" / "wheel.py", PATH=str(clean / "bin"))
@@ -275,14 +275,15 @@ def install_into(clean: Path, made: Path) -> None:
     call(uv(), "pip", "install", "--quiet", "--python", clean / "bin" / "python", "--constraints", PINS, made)
 
 
-def add_kernels(made: Path, python: Path) -> None:
-    """Adds kernels to a wheel, compiled by the package that a Python has from it: only that knows their sources."""
+def complete(made: Path, python: Path) -> None:
+    """Adds documentation and kernels to a wheel. A Python with its package compiles them: only that knows their sources."""
     say("compiling the kernels of the drives of the catalogue for all instruction sets; this takes some minutes")
     unpacked = BUILD / "wheel"
     shutil.rmtree(unpacked, ignore_errors=True)
     call(PYTHON, "-m", "wheel", "unpack", "--dest", unpacked, made)
     (package,) = unpacked.glob("*/strainwave")
     call(python, "-I", "src/ship.py", package / "kernels")
+    shutil.copytree(OUT / "docs", package / "docs", ignore=shutil.ignore_patterns(".buildinfo", "_sources"))
     call(PYTHON, "-m", "wheel", "pack", "--dest-dir", made.parent, package.parent)
 
 

@@ -25,12 +25,11 @@ SHOWN = re.compile(r"\]\((?:\.\./)?drawn/(\d\d_\w+)/\w+\.png\)")  # a picture th
 def gather() -> None:
     """Everything Sphinx reads, in one folder: this one, the pages of the root with their links from here, the theory."""
     shutil.rmtree(SOURCE, ignore_errors=True)
-    shutil.copytree(
-        HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", "build.py", "theory.py", "tutorials.py", "parts.py")
-    )
-    for page in ("CONTRIBUTING.md", "CHANGELOG.md"):
-        text = (ROOT / page).read_text(encoding="utf-8")
-        (SOURCE / page.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
+    programs = (path.name for path in HERE.glob("*.py") if path.name != "conf.py")
+    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", *programs))
+    for page in (ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", ROOT / "python" / "strainwave" / "AGENTS.md"):
+        text = page.read_text(encoding="utf-8")
+        (SOURCE / page.name.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
     theory.write(SOURCE / "theory")
     tutorials.write(SOURCE / "tutorials")
     draw()

@@ -1,4 +1,4 @@
-"""Tries an installed wheel: every kind of run, kernels of each instruction set of this machine, and a report.
+"""Tries an installed wheel: its contents, every kind of run, kernels of each instruction set of this machine, and a report.
 
 `python3 dev.py wheel` runs it with the Python of an environment that has the wheel and what it needs, and no compiler. The
 drives of the catalogue run by the kernels that the wheel carries, to the same bits as without.
@@ -76,6 +76,42 @@ def results(drive: Any, wave: Any, dt: float) -> Iterator[bytes]:
         yield from (column.tobytes() for column in run.columns.values())
 
 
+def check_contents() -> None:
+    """Check that the wheel brings documentation, guide and stubs, and that `strainwave doctor` states what is there."""
+    import strainwave as sw
+
+    package = Path(sw.__file__).parent
+    assert (package / "py.typed").is_file()
+    assert "class Stribeck" in (package / "friction.pyi").read_text()
+    page = Path(answer("docs", "--path"))
+    assert page.parent == package / "docs"
+    assert "strainwave" in page.read_text()
+    assert answer("docs", "--agents") == (package / "AGENTS.md").read_text().strip()
+    size = sum(path.stat().st_size for path in page.parent.rglob("*") if path.is_file())
+    print(f"the documentation: {len(list(page.parent.rglob('*.html')))} pages, {size / 1e6:.1f} MB", flush=True)
+    found = answer("doctor")
+    print(found, flush=True)
+    kernels = len(list((package / "kernels").glob("*.so")))
+    assert kernels > 0
+    for line in (
+        f"package         {package}",
+        "C++ compiler    none: ",
+        f"shipped kernels {kernels}, ",
+        f"documentation   {page.parent}; ",
+    ):
+        assert f"\n{line}" in found, line
+    works, fails = found.splitlines()[-2:]
+    assert works == "works: simulation, identification, reports"
+    assert fails.startswith("does not work: kernels of any drive, ")
+
+
+def answer(*words: str) -> str:
+    """Return what the command of the wheel prints."""
+    command = shutil.which("strainwave")
+    assert command, "the wheel brings no command"
+    return subprocess.run([command, *words], check=True, capture_output=True, text=True).stdout.strip()
+
+
 def told(work: str, **variables: str) -> str:
     """What another process with these environment variables finds."""
     command = [sys.executable, "-I", "-W", "ignore", __file__, work]
@@ -85,6 +121,7 @@ def told(work: str, **variables: str) -> str:
 
 def main() -> None:
     assert not any(map(shutil.which, ("cc", "c++", "g++", "clang++", "cmake", "ninja"))), "a compiler is found"
+    check_contents()
     print(f"any laws: {told('of_any_laws')}", flush=True)
     general = told("of_the_catalogue", STRAINWAVE_KERNELS="off")
     print(f"drives of the catalogue, without kernels: {general}", flush=True)
@@ -97,10 +134,7 @@ def main() -> None:
             assert found == general, found
             print(f"by the kernels that the wheel carries, {name}: {found}", flush=True)
         assert not list(Path(folder).iterdir()), "a kernel was compiled"
-        command = shutil.which("strainwave")
-        assert command, "the wheel brings no command"
-        subprocess.run([command, "--version"], check=True)
-        subprocess.run([command, "demo", "--out", folder], check=True, stdout=subprocess.DEVNULL)
+        answer("demo", "--out", folder)
         reports = [path.name for path in Path(folder).glob("*/report.html")]
         assert reports
     print("the wheel works")

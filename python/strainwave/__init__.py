@@ -11,7 +11,16 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from strainwave import drives
+try:
+    from strainwave import drives
+except ImportError as error:
+    import sys
+    import sysconfig
+
+    raise ImportError(
+        f"the compiled core of strainwave does not load: {error}. In a clone, `python3 dev.py demo` compiles it; a wheel must "
+        f"be one for Python {sys.version_info.major}.{sys.version_info.minor} on {sysconfig.get_platform()}"
+    ) from None
 from strainwave._core import (
     Compensation,
     Drive,

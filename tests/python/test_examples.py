@@ -39,7 +39,12 @@ def examples(page: Path) -> list[Example]:
 
 
 PAGES = [
-    page for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))) if examples(page)
+    page
+    for page in (
+        *map(ROOT.joinpath, ("README.md", "CONTRIBUTING.md", "python/strainwave/AGENTS.md")),
+        *sorted((ROOT / "docs").rglob("*.md")),
+    )
+    if examples(page)
 ]
 
 

@@ -19,6 +19,8 @@ from strainwave.commands.compile import compile
 from strainwave.commands.dataset import dataset
 from strainwave.commands.demo import demo
 from strainwave.commands.diagnose import diagnose
+from strainwave.commands.docs import docs
+from strainwave.commands.doctor import doctor
 from strainwave.commands.drives import drives
 from strainwave.commands.export import export
 from strainwave.commands.gears import gears
@@ -54,6 +56,8 @@ VERBS = (
     models,
     cache,
     compile,
+    doctor,
+    docs,
 )
 WITH_COLUMNS = {"identify", "predict", "rank", "orders", "diagnose"}  # verbs with the options --column and --unit
 

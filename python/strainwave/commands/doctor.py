@@ -1,0 +1,154 @@
+"""The command `strainwave doctor`: what is installed, what is missing, and what for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from packaging.requirements import Requirement
+
+LABEL_WIDTH = 16  # characters
+
+# What each extra of the package adds; the extras and their packages are read from the metadata of the installation.
+PURPOSES = {
+    "bench": "benchmarks against other solvers",
+    "compiler": "a C++ compiler as a Python package",
+    "cuda": "ensembles on a GPU",
+    "dask": "data sets on a Dask cluster",
+    "fmu": "export of FMUs",
+    "formats": "HDF5 and MAT 7.3 files",
+    "learn": "classification of faults",
+    "newton": "export of actuators of Newton",
+    "predictive": "predictive control",
+    "video": "videos of the torsion rig",
+}
+CORE_WORKS = ("simulation", "identification", "reports")
+
+
+def doctor() -> None:
+    """Show what is installed and what is missing: the core, compilers, kernels, the GPU, documentation and extras."""
+    import platform
+    from importlib.metadata import metadata, version
+    from pathlib import Path
+
+    import strainwave
+    from strainwave import _core
+    from strainwave.commands.docs import MISSING, documentation
+
+    works, fails = list(CORE_WORKS), []
+    print(f"strainwave {version('strainwave')}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")
+    _show("package", str(Path(strainwave.__file__).parent))
+    _show("core", f"loads; instruction set {_core.instruction_set()}")
+
+    compiler = _compiler()
+    _show("C++ compiler", compiler or "none: g++ 12, clang++ 14 or later, or pip install 'strainwave[compiler]'")
+    (works if compiler else fails).append("kernels of any drive")
+    for label, text in _kernels():
+        _show(label, text)
+
+    device = _gpu()
+    _show("GPU", device or "none: no NVIDIA driver, or no device")
+    found = documentation()
+    _show("documentation", f"{found}; strainwave docs opens it" if found else MISSING)
+
+    print("\nextras")
+    base = _problems("")
+    for extra in metadata("strainwave").get_all("Provides-Extra") or []:
+        problems = _problems(extra)
+        has_all = not problems and (extra != "cuda" or device)
+        (works if has_all else fails).append(PURPOSES[extra])
+        state = f"missing ({'; '.join(problems)}): pip install 'strainwave[{extra}]'" if problems else "installed"
+        print(f"  {extra:{LABEL_WIDTH - 2}}{PURPOSES[extra]}: {state}")
+    if base:
+        print(f"\nrequired packages: {'; '.join(base)}; install strainwave again")
+        works, fails = [], [*works, *fails]
+    print(f"\nworks: {', '.join(works) or 'nothing'}")
+    print(f"does not work: {', '.join(fails) or 'nothing'}")
+
+
+def _show(label: str, text: str) -> None:
+    print(f"{label:{LABEL_WIDTH}}{text}")
+
+
+def _compiler() -> str:
+    """Return the name and path of the compiler that kernels would be compiled by; empty if there is none."""
+    from strainwave.native.compilers import NoCompilerError, find_compiler
+
+    try:
+        compiler = find_compiler()
+    except NoCompilerError:
+        return ""
+    return f"{compiler.name}, {compiler.command[0]}"
+
+
+def _kernels() -> Iterator[tuple[str, str]]:
+    """Yield a label and a text for the kernels that the package contains, and for those of this user."""
+    from strainwave.native.cache import listing
+    from strainwave.native.folder import SHIPPED, VARIABLE, cache_folder
+
+    shipped = [path.stat().st_size for path in SHIPPED.glob("*.so")]
+    yield "shipped kernels", _counted(shipped, "in the package")
+    try:
+        folder, records = cache_folder(), listing()
+    except (OSError, ValueError) as error:
+        yield "cached kernels", f"not used: {error}"
+        return
+    if folder is None:
+        yield "cached kernels", f"switched off by {VARIABLE}"
+    else:
+        yield "cached kernels", _counted([record.size for record in records], f"in {folder}")
+
+
+def _counted(sizes: list[int], where: str) -> str:
+    return f"{len(sizes)}, {sum(sizes) / 1e6:.1f} MB, {where}"
+
+
+def _gpu() -> str:
+    """Return the names of the devices of the NVIDIA driver; empty without a driver or a device."""
+    import ctypes
+    import sys
+
+    try:
+        driver = ctypes.CDLL("nvcuda.dll" if sys.platform == "win32" else "libcuda.so.1")
+    except OSError:
+        return ""
+    count = ctypes.c_int()
+    if driver.cuInit(0) or driver.cuDeviceGetCount(ctypes.byref(count)):
+        return ""
+    names = []
+    for device in range(count.value):
+        text = ctypes.create_string_buffer(256)
+        driver.cuDeviceGetName(text, len(text), device)
+        names.append(text.value.decode(errors="replace"))
+    return ", ".join(names)
+
+
+def _problems(extra: str) -> list[str]:
+    """Return what is wrong with the packages of an extra, or with those that are always needed: missing, or too old."""
+    return [problem for requirement in _requirements(extra) if (problem := _problem(requirement))]
+
+
+def _requirements(extra: str) -> list[Requirement]:
+    """Return the requirements of an extra; without one, those that are always needed."""
+    from importlib.metadata import requires
+
+    from packaging.requirements import Requirement
+
+    every = map(Requirement, requires("strainwave") or [])
+    marked = [each for each in every if each.marker is None or each.marker.evaluate({"extra": extra})]
+    return [each for each in marked if not extra or (each.marker is not None and not each.marker.evaluate({"extra": ""}))]
+
+
+def _problem(requirement: Requirement) -> str:
+    """Return what is wrong with an installed package; empty if it meets the requirement."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        installed = version(requirement.name)
+    except PackageNotFoundError:
+        return f"{requirement.name} is not installed"
+    if requirement.specifier.contains(installed, prereleases=True):
+        return ""
+    return f"{requirement.name} {installed} is installed, {requirement.specifier} is needed"
