@@ -1,4 +1,4 @@
-"""Builds the documentation: the pages of this folder, tutorials, pictures of examples, and a theory page for each family.
+"""Builds the documentation: the pages of this folder, tutorials, pictures of examples, and pages of models, names and verbs.
 
 python docs/build.py FOLDER
 """
@@ -12,26 +12,32 @@ import subprocess
 import sys
 from pathlib import Path
 
+import api
+import cli_reference
 import theory
 import tutorials
 from sphinx.cmd.build import main as sphinx
+from sphinx.util.inventory import InventoryFile
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 SOURCE = ROOT / "build" / "docs"
+TOOLS = ("__pycache__", "*.py")
 SHOWN = re.compile(r"\]\((?:\.\./)?drawn/(\d\d_\w+)/\w+\.png\)")  # a picture that an example draws
 
 
 def gather() -> None:
-    """Everything Sphinx reads, in one folder: this one, the pages of the root with their links from here, the theory."""
+    """Everything Sphinx reads, in one folder: this one, the pages of the root with their links from here, those generated."""
     shutil.rmtree(SOURCE, ignore_errors=True)
-    programs = (path.name for path in HERE.glob("*.py") if path.name != "conf.py")
-    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", *programs))
+    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns(*TOOLS))
+    shutil.copy(HERE / "conf.py", SOURCE)
     for page in (ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", ROOT / "python" / "strainwave" / "AGENTS.md"):
         text = page.read_text(encoding="utf-8")
         (SOURCE / page.name.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
     theory.write(SOURCE / "theory")
     tutorials.write(SOURCE / "tutorials")
+    api.write(SOURCE / "reference" / "api")
+    cli_reference.write(SOURCE / "reference")
     draw()
 
 
@@ -49,7 +55,15 @@ def main(out: str) -> int:
     gather()
     shutil.rmtree(out, ignore_errors=True)
     code: int = sphinx(["--quiet", "--fail-on-warning", "--keep-going", "-d", str(SOURCE) + ".doctrees", str(SOURCE), out])
-    return code
+    return code or unlisted(Path(out) / "objects.inv")
+
+
+def unlisted(inventory: Path) -> int:
+    """Print the public names that the inventory lacks, for want of a docstring; return 1 if there are some, else 0."""
+    listed = {name for names in InventoryFile.loads(inventory.read_bytes(), uri="").data.values() for name in names}
+    lacking = sorted(api.public() - listed)
+    print(*(f"the reference has no entry for {name}: give it a docstring" for name in lacking), sep="\n", file=sys.stderr)
+    return int(bool(lacking))
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ def test_the_names_in_the_readme_exist() -> None:
 
 
 def test_the_readme_lists_the_verbs_of_the_command() -> None:
-    (listed,) = re.findall(r"\[the command\]\(docs/reference/command-line\.md\): ([^|]*) \|", README)
+    (listed,) = re.findall(r"\[the command\]\(docs/how-to/command-line\.md\): ([^|]*) \|", README)
     assert sorted(listed.split(", ")) == sorted(VERBS)
 
 

@@ -369,8 +369,8 @@ def simulate_to(
 
     Args:
         folder: where to write; must not exist, be empty, or hold the beginning of the same ensemble
-        drive, command, parameters, dt, record, sample, load_torque, temperature, inputs, initial, threads, backend,
-            progress: as for `simulate_many`
+        drive, command, parameters: as for `simulate_many`
+        dt, record, sample, load_torque, temperature, inputs, initial, threads, backend, progress: as for `simulate_many`
 
     Returns:
         the folder

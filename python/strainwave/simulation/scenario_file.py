@@ -1,6 +1,6 @@
 """Scenario files: what a run commands, what else acts on the drive, and how it starts; read from TOML, CSV and Parquet.
 
-docs/reference/command-line.md shows the format. What is wrong in a file is refused in one line with file, table and key.
+docs/how-to/command-line.md shows the format. What is wrong in a file is refused in one line with file, table and key.
 """
 
 from __future__ import annotations

@@ -1,0 +1,168 @@
+"""The pages of the API reference: one for each task of a user, and one for each module of models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+from inspect import ismodule, isroutine
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import docstrings
+import strainwave as sw
+import theory
+from strainwave import _core
+
+# The title of the page that has the public names of a room of the package.
+PAGES = {
+    "files": "Files and recordings",
+    "identification": "Identification",
+    "simulation": "Simulation",
+    "native": "Simulation",
+    "analysis": "Analysis",
+    "orders": "Analysis",
+    "tuning": "Control and compensation",
+    "diagnose": "Diagnosis",
+    "dataset": "Diagnosis",
+    "_core": "Gear and drive",
+}
+MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export", "drives": "Drives of the documents"}
+
+
+def write(folder: Path) -> None:
+    """Write the page of each group of names, of each module, and the page that lists them."""
+    folder.mkdir(exist_ok=True)
+    groups = {page: [f"strainwave.{name}" for name in names] for page, names in named_apart().items()}
+    modules = {name: member for name in sw.__all__ if ismodule(member := getattr(sw, name))}
+    for title, names in groups.items():
+        text = [heading(title), table(names), *map(entry, names)]
+        (folder / f"{file_name(title)}.rst").write_text("\n\n".join(text) + "\n", encoding="utf-8")
+    for name, module in modules.items():
+        (folder / f"{name}.rst").write_text(module_page(name, module), encoding="utf-8")
+    parts = sorted(modules.keys() - MODULES.keys())
+    index = [
+        heading("Python API"),
+        ".. py:module:: strainwave",
+        "Import the package as ``sw``: ``import strainwave as sw``. Each name below is public.",
+        toctree("Tasks", [*map(file_name, groups), *MODULES]),
+        toctree("Parts of a drive", parts),
+    ]
+    (folder / "index.rst").write_text("\n\n".join(index) + "\n", encoding="utf-8")
+
+
+def public() -> set[str]:
+    """Return the full name of every public function, class, method and property."""
+    names = [f"strainwave.{name}" for name in sw.__all__]
+    for name in sw.__all__:
+        if ismodule(module := getattr(sw, name)):
+            names += [f"strainwave.{name}.{each}" for each in public_names(module)]
+    members = {f"{name}.{each}" for name in names for each in public_members(resolved(name), name)}
+    return {*names, *members}
+
+
+def public_members(documented: Any, name: str) -> list[str]:
+    """Return the names of the methods and properties that a class defines; none of a class by another name."""
+    if not isinstance(documented, type) or documented.__name__ != name.rpartition(".")[2]:
+        return []
+    kinds = (property, cached_property, staticmethod, classmethod)
+    own = {each: member for each, member in vars(documented).items() if not each.startswith("_")}
+    return [each for each, member in own.items() if isinstance(member, kinds) or isroutine(member)]
+
+
+def named_apart() -> dict[str, list[str]]:
+    """Return the public functions and classes of the package, by the title of their page, functions first."""
+    groups: dict[str, list[str]] = {title: [] for title in PAGES.values()}
+    for name in sorted(sw.__all__, key=lambda name: (name[0].isupper(), name)):
+        if not ismodule(member := getattr(sw, name)):
+            groups[PAGES[member.__module__.split(".")[1]]].append(name)
+    return groups
+
+
+def public_names(module: ModuleType) -> list[str]:
+    """Return the public functions and classes of a module: those it lists, or those it defines."""
+    listed: Iterable[str] = getattr(module, "__all__", None) or (
+        name for name in dir(module) if getattr(getattr(module, name), "__module__", None) == module.__name__
+    )
+    return [name for name in listed if not name.startswith("_") and callable(getattr(module, name))]
+
+
+def module_page(name: str, module: ModuleType) -> str:
+    """Return the page of a module of models, or of one with functions."""
+    names = [f"strainwave.{name}.{each}" for each in public_names(module)]
+    models = name in {theory.module_of(model) for family in families() for model in family.values()}
+    about = [f"Equations, parameters and figures: :doc:`/theory/{name}`."] if models else []
+    text = [
+        heading(MODULES.get(name) or f"sw.{name}"),
+        f".. py:module:: strainwave.{name}",
+        docstrings.restructured(module.__doc__ or ""),
+    ]
+    return "\n\n".join([*text, *about, table(names), *map(entry, names)]) + "\n"
+
+
+def families() -> list[dict[str, type[Any]]]:
+    return [*_core.families.values(), *_core.fault_families.values()]
+
+
+def heading(title: str) -> str:
+    return f"{title}\n{'=' * len(title)}"
+
+
+def file_name(title: str) -> str:
+    return title.lower().replace(" ", "-")
+
+
+def toctree(caption: str, pages: Iterable[str]) -> str:
+    return "\n".join([f".. rubric:: {caption}", "", ".. toctree::", "   :maxdepth: 1", "", *(f"   {page}" for page in pages)])
+
+
+def table(names: Iterable[str]) -> str:
+    """Return a table of names, each with the first sentence of its docstring."""
+    rows = (f"   * - :py:obj:`~{name}`\n     - {docstrings.summary(resolved(name))}" for name in names)
+    return "\n".join([".. list-table::", "   :widths: 30 70", "   :class: names", "", *rows])
+
+
+def resolved(name: str) -> Any:
+    found: Any = sw
+    for part in name.split(".")[1:]:
+        found = getattr(found, part)
+    return found
+
+
+def entry(name: str) -> str:
+    """Return the directive of a public name, with those of its members if it is a model."""
+    documented = resolved(name)
+    if docstrings.is_model(documented):
+        return model_entry(name, documented)
+    if not isinstance(documented, type):
+        return f".. autofunction:: {name}"
+    options = [":members:", *([":show-inheritance:"] if documented.__bases__ not in ((object,), (tuple,)) else [])]
+    if fields := getattr(documented, "_fields", None):  # the docstring describes them
+        options.append(f":exclude-members: {', '.join(fields)}")
+    return "\n".join([f".. autoclass:: {name}", *(f"   {option}" for option in options)])
+
+
+def model_entry(name: str, model: type[Any]) -> str:
+    """Return the directive of a compiled model: Sphinx does not know the signatures of what is compiled."""
+    if model.__name__ != name.rpartition(".")[2]:
+        return f".. autoclass:: {name}"  # another name of a model
+    fields = {field["name"] for field in model.fields}
+    members = {each: member for each, member in vars(model).items() if not each.startswith("_") and each not in fields}
+    entries = [member_entry(model, f"{name}.{each}", member) for each, member in members.items()]
+    place = f"{model.__module__}::{model.__qualname__}" if "." in model.__qualname__ else name
+    return "\n\n".join([f".. autoclass:: {place}{docstrings.model_signature(model)}", *filter(None, entries)])
+
+
+def member_entry(model: type[Any], name: str, member: Any) -> str:
+    """Return the directive of a member of a compiled model; nothing for an attribute, or for the state of another model."""
+    if docstrings.is_model(member):
+        text = model_entry(name, member) if member.__qualname__.startswith(f"{model.__qualname__}.") else ""
+    elif isinstance(member, property):
+        text = f".. autoproperty:: {name}"
+    elif isinstance(member, staticmethod):
+        text = f".. automethod:: {name}"
+    elif declared := docstrings.overload(member):
+        text = f".. automethod:: {name}{docstrings.member_arguments(model, declared[0])}"
+    else:
+        text = ""
+    return "\n".join(f"   {line}" if line else "" for line in text.splitlines())

@@ -1,0 +1,74 @@
+"""Every public name of the package has one entry in the reference, every verb of the command one section."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from collections import Counter
+from inspect import isroutine
+from pathlib import Path
+from typing import Any
+
+import pytest
+import strainwave as sw
+from strainwave import _core
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("reference")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(DOCS)
+        importlib.import_module("api").write(folder / "api")
+        importlib.import_module("cli_reference").write(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def entries(written: Path) -> Counter[str]:
+    """The names of all entries, and how often each comes."""
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in (written / "api").glob("*.rst"))
+    names = re.findall(r"^ *\.\. (?:auto\w+|py:module):: ([\w.:]+)", pages, re.MULTILINE)
+    return Counter(name.replace("::", ".") for name in names)
+
+
+def test_every_public_name_has_one_entry(entries: Counter[str]) -> None:
+    names = {f"strainwave.{name}" for name in sw.__all__}
+    models = [model for family in (*_core.families.values(), *_core.fault_families.values()) for model in family.values()]
+    names |= {f"{model.__module__}.{model.__name__}" for model in models}
+    names |= {f"strainwave.{module}.{name}" for module in ("rig", "export") for name in getattr(sw, module).__all__}
+    names |= {
+        f"strainwave.scenario.{name}" for name in ("Scenario", "chirp", "constant", "pulse_train", "ramp", "sine", "step")
+    }
+    assert {name: entries[name] for name in names if entries[name] != 1} == {}
+    assert [name for name, count in entries.items() if count > 1] == []
+
+
+@pytest.mark.parametrize("model", [sw.friction.LuGre, sw.Gear, sw.hysteresis.MaxwellSlip, sw.compensation.Dither])
+def test_the_methods_of_a_compiled_model_have_entries(model: type[Any], entries: Counter[str]) -> None:
+    methods = [name for name in dir(model) if not name.startswith("_") and isroutine(getattr(model, name))]
+    assert methods
+    place = f"strainwave.{model.__module__.removeprefix('strainwave.').removeprefix('_core').lstrip('.')}".rstrip(".")
+    assert [name for name in methods if entries[f"{place}.{model.__name__}.{name}"] != 1] == []
+
+
+def test_a_signature_has_the_defaults_of_the_model(written: Path) -> None:
+    page = (written / "api" / "friction.rst").read_text(encoding="utf-8")
+    default = next(field["default"] for field in sw.friction.LuGre.fields if field["name"] == "viscous")
+    (signature,) = re.findall(r"autoclass:: strainwave\.friction\.LuGre\((.*)\)", page)
+    assert "coulomb: float, breakaway: float, " in signature  # both must be given
+    assert f"viscous: float = {default}" in signature
+
+
+def test_every_verb_has_a_section_with_its_options(written: Path) -> None:
+    page = (written / "command-line.rst").read_text(encoding="utf-8")
+    sections = re.split(r"^\.\. _strainwave-", page, flags=re.MULTILINE)[1:]
+    verbs = {section.partition(":")[0] for section in sections}
+    assert {"identify", "export-fmu", "rig-analyse", "study-misalignment", "cache"} <= verbs
+    assert len(verbs) == len(sections)
+    (simulate,) = (section for section in sections if section.startswith("simulate:"))
+    assert ".. option:: drive <str>" in simulate
+    assert ".. option:: -o, --out <path>" in simulate
+    assert "[default: 0.001]" in simulate
