@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+import sys
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from inspect import ismodule, isroutine
 from pathlib import Path
@@ -28,6 +30,7 @@ PAGES = {
     "_core": "Gear and drive",
 }
 MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export", "drives": "Drives of the documents"}
+VALUES = "Values in results"
 
 
 def write(folder: Path) -> None:
@@ -40,12 +43,14 @@ def write(folder: Path) -> None:
         (folder / f"{file_name(title)}.rst").write_text("\n\n".join(text) + "\n", encoding="utf-8")
     for name, module in modules.items():
         (folder / f"{name}.rst").write_text(module_page(name, module), encoding="utf-8")
+    text = [heading(VALUES), "Classes of attributes of results. Functions make them; they have no shorter name."]
+    (folder / f"{file_name(VALUES)}.rst").write_text("\n\n".join([*text, *map(entry, values())]) + "\n", encoding="utf-8")
     parts = sorted(modules.keys() - MODULES.keys())
     index = [
         heading("Python API"),
         ".. py:module:: strainwave",
         "Import the package as ``sw``: ``import strainwave as sw``. Each name below is public.",
-        toctree("Tasks", [*map(file_name, groups), *MODULES]),
+        toctree("Tasks", [*map(file_name, groups), *MODULES, file_name(VALUES)]),
         toctree("Parts of a drive", parts),
     ]
     (folder / "index.rst").write_text("\n\n".join(index) + "\n", encoding="utf-8")
@@ -68,6 +73,30 @@ def public_members(documented: Any, name: str) -> list[str]:
     kinds = (property, cached_property, staticmethod, classmethod)
     own = {each: member for each, member in vars(documented).items() if not each.startswith("_")}
     return [each for each, member in own.items() if isinstance(member, kinds) or isroutine(member)]
+
+
+def values() -> list[str]:
+    """Return the full names of the classes that public classes have as attributes, but that are not public themselves."""
+    found = {member: None for name in public() if isinstance(member := resolved(name), type)}
+    known, waiting = set(found), list(found)
+    while waiting:
+        new = [each for each in mentioned(waiting.pop()) if each not in found]
+        found |= dict.fromkeys(new)
+        waiting += new
+    return sorted(f"{each.__module__}.{each.__name__}" for each in found if each not in known)
+
+
+def mentioned(documented: type[Any]) -> Iterator[type[Any]]:
+    """Yield the classes of the package in the annotations of the attributes and properties of a class."""
+    for base in documented.__mro__:
+        texts = [str(each) for each in vars(base).get("__annotations__", {}).values()]
+        for member in vars(base).values():
+            function = getattr(member, "fget", getattr(member, "func", None))
+            texts.append(str(getattr(function, "__annotations__", {}).get("return", "")))
+        for name in dict.fromkeys(re.findall(r"\b[A-Z]\w+", " ".join(texts))):
+            member = getattr(sys.modules[base.__module__], name, None)
+            if isinstance(member, type) and member.__module__.startswith("strainwave") and member.__doc__:
+                yield member
 
 
 def named_apart() -> dict[str, list[str]]:
@@ -123,10 +152,10 @@ def table(names: Iterable[str]) -> str:
 
 
 def resolved(name: str) -> Any:
-    found: Any = sw
-    for part in name.split(".")[1:]:
-        found = getattr(found, part)
-    return found
+    module, _, last = name.rpartition(".")
+    if module in sys.modules:
+        return getattr(sys.modules[module], last)
+    return getattr(resolved(module), last) if module else sw
 
 
 def entry(name: str) -> str:

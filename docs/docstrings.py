@@ -17,7 +17,7 @@ SHORTER = {
     r"collections\.abc\.Sequence\[float\] \| numpy\.typing\.NDArray\[numpy\.float64\]": "ArrayLike",
     r"strainwave\.(\w+)\.\w+(?: \| strainwave\.\1\.\w+){4,}": r"sw.\1",
     r"numpy\.typing\.NDArray\[numpy\.(\w+)\]": r"NDArray[\1]",
-    r"ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]": r"NDArray[\1]",
+    r"~?(?:numpy\.)?ndarray\[tuple\[~?(?:typing\.)?Any, \.\.\.\], ~?(?:numpy\.)?dtype\[~?(?:numpy\.)?(\w+)\]\]": r"NDArray[\1]",
     r"\b(?:collections\.abc|typing)\.": "",
     r"<function (?:<\w+>|[^<>])*>|<factory>": "...",
     r"/, \*, .*\)": "/, **parameters)",
@@ -77,7 +77,11 @@ def summary(documented: Any) -> str:
 
 
 def is_model(documented: Any) -> bool:
-    return isinstance(documented, type) and hasattr(documented, "fields") and overload(documented.__init__) is not None
+    return (
+        isinstance(documented, type)
+        and hasattr(documented, "fields")
+        and overload(vars(documented).get("__init__")) is not None
+    )
 
 
 def overload(documented: Any) -> tuple[str, str] | None:

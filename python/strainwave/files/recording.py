@@ -129,12 +129,27 @@ class Recording:
         return f"<Recording{title}: {len(self)} samples{span}; {series}>"
 
     def unit(self, name: str) -> str:
-        """Unit of a column."""
+        """Return the unit of a column.
+
+        Raises:
+            ValueError: there is no such column
+        """
         self[name]  # refuses a name that is not there
         return self.units[name]
 
     def values(self, name: str, unit: str) -> Array:
-        """Values of a column in another unit, shape (n,); `ValueError` where the units do not agree."""
+        """Return the values of a column in another unit, shape (n,).
+
+        Args:
+            name: of the column
+            unit: of the values, as "deg/s"
+
+        Raises:
+            ValueError: there is no such column, or its unit cannot be converted to this one
+
+        >>> Recording({"speed": [0.0, 30.0]}, {"speed": "rpm"}).values("speed", "deg/s")
+        array([  0., 180.])
+        """
         values = self[name]
         try:
             return convert(values, self.unit(name), unit)
@@ -142,12 +157,31 @@ class Recording:
             raise ValueError(f"column {quoted(name)}: {error}") from None
 
     def select(self, names: Sequence[str]) -> Recording:
-        """The named columns only, in the order given."""
+        """Return a recording of the named columns, in the order given.
+
+        Raises:
+            ValueError: there is no such column
+
+        >>> Recording({"time": [0.0], "speed": [1.0], "torque": [2.0]}, {"time": "s", "speed": "rpm", "torque": "N.m"}).select(
+        ...     ["time", "torque"]
+        ... ).names
+        ('time', 'torque')
+        """
         names = arguments.names("names", names)
         return Recording({name: self[name] for name in names}, {name: self.unit(name) for name in names}, self.title)
 
     def between(self, start: float, stop: float) -> Recording:
-        """The samples with start <= time <= stop [s]; `ValueError` where there is none."""
+        """Return a recording of the samples with start <= time <= stop.
+
+        Args:
+            start, stop: ends of the interval [s]; the time of the samples stays as it is
+
+        Raises:
+            ValueError: there is no column `time`, or no sample in the interval
+
+        >>> Recording({"time": [0.0, 0.1, 0.2]}, {"time": "s"}).between(0.05, 0.2).time
+        array([0.1, 0.2])
+        """
         start, stop = (arguments.number(*end, "s", "[]") for end in (("start", start), ("stop", stop)))
         time = self.time
         first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
@@ -157,12 +191,28 @@ class Recording:
         return Recording({name: self[name][first:last] for name in self.names}, self.units, self.title)
 
     def with_column(self, name: str, values: ArrayLike, unit: str) -> Recording:
-        """This recording with a column added, or replaced where one of that name is there."""
+        """Return a recording with a column added, or replaced if there is one of this name.
+
+        Args:
+            name: of the column
+            values: one for each sample, shape (n,)
+            unit: of the values
+
+        Raises:
+            ValueError: the length differs, a value is not finite, or the unit is not known
+
+        >>> recording = Recording({"torque": [2.0, 3.0]}, {"torque": "N.m"})
+        >>> recording.with_column("speed", [10.0, 20.0], "rad/s").units["speed"]
+        'rad/s'
+        """
         arguments.text("the name of a column", name)
         return Recording({**self.columns, name: values}, {**self.units, name: unit}, self.title)
 
     def to_csv(self, path: str | Path) -> None:
         """Write a CSV file, header `name [unit]`, that `from_csv` reads back bit for bit.
+
+        Raises:
+            OSError: the file cannot be written
 
         >>> import tempfile
         >>> recording = Recording({"torque": [0.1, 0.2]}, {"torque": "N.m"})
@@ -197,7 +247,11 @@ class Recording:
         return frame
 
     def to_parquet(self, path: str | Path) -> None:
-        """Write a Parquet file: zstd, byte-stream-split, checksums, the unit in the metadata of each field."""
+        """Write a Parquet file: zstd, byte-stream-split, checksums, the unit in the metadata of each field.
+
+        Raises:
+            OSError: the file cannot be written
+        """
         import pyarrow
         from pyarrow.parquet import write_table
 
@@ -216,7 +270,16 @@ class Recording:
 
     @staticmethod
     def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> Recording:
-        """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
+        """Read a file of any format, by its suffix.
+
+        Args:
+            path: the file: text as `from_csv` reads it, Parquet, MAT, HDF5, NumPy, JSON, MDF, or a bag of ROS
+            columns: for each name wanted, the name in the file; all columns, if not given
+            units: unit of each column, by the name wanted, if the file has none
+
+        Raises:
+            ValueError: the file cannot be read, its suffix is not known, or a number, a unit or the time in it is wrong
+        """
         from strainwave.files.tables import open_table, read_table
 
         return _checked(path, read_table(open_table(path), columns, units))

@@ -110,11 +110,25 @@ class Scenario:
         return float(line + amplitude.sum() + rate + (amplitude * fastest).sum() + (fastest * self.duration + phase).sum())
 
     def value(self, time: ArrayLike) -> Array:
-        """The command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
+        """Return the command at `time` [s], in its shape; at a jump the value after it.
+
+        Raises:
+            ValueError: a time is not in [0, duration]
+
+        >>> step(2.0, duration=1.0, start=0.5).value([0.25, 0.5])
+        array([0., 2.])
+        """
         return self._at(time, before=False)[0]
 
     def rate(self, time: ArrayLike) -> Array:
-        """Derivative of the command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
+        """Return the derivative of the command at `time` [s], in its shape; at a jump the one after it.
+
+        Raises:
+            ValueError: a time is not in [0, duration]
+
+        >>> float(ramp(3.0, duration=1.0).rate(0.5))
+        3.0
+        """
         return self._at(time, before=False)[1]
 
     def value_before(self, time: ArrayLike) -> Array:

@@ -127,7 +127,14 @@ class Fit(ComparedByFields):
         return self._only.residuals
 
     def rms(self, *, held_out: bool = False) -> Array:
-        """Return the root mean square residual of each channel of the only record, as `Part.rms`."""
+        """Return the root mean square residual of each channel of the only record, in its unit, shape (channels,).
+
+        Args:
+            held_out: whether over the samples that took no part in the fit; not a number if there are none
+
+        Raises:
+            ValueError: the fit is to several records; each of its `parts` has its own
+        """
         return self._only.rms(held_out=held_out)
 
     @property
