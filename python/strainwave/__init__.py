@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.native.cache import KernelWarning
     from strainwave.native.compile import Compilation, compile
+    from strainwave.orders.campbell import Campbell, campbell
     from strainwave.orders.order_spectrum import BearingOrders, Orders, bearing_orders, order_amplitudes, order_spectrum
     from strainwave.orders.ripple import Ripple, ripple
     from strainwave.orders.two_encoders import TransmissionError, transmission_error
@@ -102,6 +103,7 @@ _LAZY = {
     "Agreement": "analysis.agreement",
     "BearingOrders": "orders.order_spectrum",
     "Bootstrap": "identification.fitting.bootstrap",
+    "Campbell": "orders.campbell",
     "Compilation": "native.compile",
     "Combination": "identification.fitting.combinations",
     "DetectionLimit": "diagnose.detection_limit",
@@ -141,6 +143,7 @@ _LAZY = {
     "LoopMargins": "tuning.loops",
     "bearing_orders": "orders.order_spectrum",
     "bootstrap": "identification.fitting.bootstrap",
+    "campbell": "orders.campbell",
     "cascade": "tuning.loops",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
@@ -194,6 +197,7 @@ __all__ = [
     "Agreement",
     "BearingOrders",
     "Bootstrap",
+    "Campbell",
     "Combination",
     "Compensated",
     "Compensation",
@@ -239,6 +243,7 @@ __all__ = [
     "TransmissionError",
     "bearing_orders",
     "bootstrap",
+    "campbell",
     "cascade",
     "catalogue",
     "check_ratings",

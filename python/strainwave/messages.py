@@ -63,6 +63,15 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(unquoted(name) for name in names[:MAX_NAMES]) + more
 
 
+def in_a_sentence(names: Sequence[str]) -> str:
+    """Return names as a sentence lists them.
+
+    >>> in_a_sentence(["speed"]), in_a_sentence(["speed", "torque", "angle"])
+    ('speed', 'speed, torque and angle')
+    """
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+
+
 def without_name(reason: str, *names: str) -> str:
     """Return a reason without the name of the file with which it begins, once or more.
 

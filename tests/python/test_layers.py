@@ -12,9 +12,10 @@ import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
 ANALYSES = {"analysis", "orders", "identification", "tuning", "dataset", "diagnose", "export", "rig", "studies"}
-BELOW = {"files", "native", "simulation"}
+BELOW = {"drawing", "files", "native", "simulation"}
 LAYERS = {
-    "files": {"files"},
+    "drawing": {"drawing"},
+    "files": {"drawing", "files"},
     "native": {"files", "native"},
     "simulation": BELOW,
     "analysis": {*BELOW, "analysis"},

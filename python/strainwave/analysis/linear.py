@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import tau
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,14 +19,20 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Drive, Gear, _core, arguments, friction, motor
 from strainwave.analysis.steady import OVERFLOW, SLOWLY, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
+from strainwave.files.units import ratio_of_units
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.memory import room_for
 from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
 from strainwave.simulation.state import Layout, State, start_of
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+MIN_RELATIVE_POLE = 1e-6  # over the largest; a smaller one is 0 but for rounding
+DRAWN_FREQUENCIES = 600  # of a Bode diagram
 HELD = 1e30  # N.m: more than any torque that turns an input
 DAMPINGS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
 INPUTS = ("command", "command_rate", "load_torque", "temperature")
@@ -96,6 +103,33 @@ class Linearisation(ComparedByFields):
         size = self.eigenfrequencies
         ratios: Array = np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0)
         return ratios
+
+    def plot(self, frequency: ArrayLike | None = None, output: str = "output_angle", input: str = "command") -> Figure:
+        """Return the Bode diagram of an output over an input: magnitude [unit of the output / of the input], phase [deg].
+
+        Args:
+            frequency: of the sine [Hz], shape (k,); from a tenth of the slowest to ten times the fastest pole if not given
+            output, input: names, as for `response`
+
+        Raises:
+            ValueError: as `response`; `frequency` is not positive, or not given and no pole differs from 0
+        """
+        from strainwave.analysis.plots import Response, bode_figure
+
+        frequencies = self._frequencies() if frequency is None else np.atleast_1d(arguments.numbers("frequency", frequency))
+        if frequencies.size == 0 or frequencies.min() <= 0.0:
+            raise ValueError("frequency must hold positive numbers [Hz], one at least; the axis is logarithmic")
+        response = self.response(frequencies, output, input)
+        title = f"Linear response of {output.replace('_', ' ')} to {input.replace('_', ' ')}"
+        return bode_figure([Response("", frequencies, response)], ratio_of_units(self.units[output], self.units[input]), title)
+
+    def _frequencies(self) -> Array:
+        """Return the frequencies at which a response is drawn [Hz]."""
+        size = self.eigenfrequencies
+        size = size[size > MIN_RELATIVE_POLE * size.max(initial=0.0)] / tau
+        if not size.size:
+            raise ValueError("frequency must be given: all poles are 0")
+        return np.geomspace(0.1 * size.min(), 10.0 * size.max(), DRAWN_FREQUENCIES)
 
     def response(self, frequency: ArrayLike, output: str = "output_angle", input: str = "command") -> Complex:
         """Amplitude and phase of an output over those of an input that is a sine.

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from math import ceil
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Drive, _core, arguments
 from strainwave.analysis.steady import averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
+from strainwave.files.units import ratio_of_units
 from strainwave.messages import listed, quoted
 from strainwave.native import kernels
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
@@ -20,9 +22,13 @@ from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
 from strainwave.simulation.run import beginning, recording
 from strainwave.simulation.scenario import SHORTEST, constant, sine
-from strainwave.simulation.signals import check_continuous
+from strainwave.simulation.signals import check_continuous, command_unit
 from strainwave.simulation.signals import outputs as outputs_of
+from strainwave.simulation.signals import units as units_of
 from strainwave.simulation.state import State, start_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -48,6 +54,8 @@ class FrequencyResponse(ComparedByFields):
         drifts: of each output, what a period adds to it [unit of the output], shape (k,); angles of a drive that runs, and
             what friction or hysteresis lets creep under a vibration
         periods: how many passed until the motion was periodic, shape (k,)
+        input: what the sine was added to
+        units: unit of the input and of each output
     """
 
     frequency: Array
@@ -56,6 +64,24 @@ class FrequencyResponse(ComparedByFields):
     distortions: dict[str, Array]
     drifts: dict[str, Array]
     periods: NDArray[np.intp]
+    input: str
+    units: dict[str, str]
+
+    def plot(self, output: str = "output_angle") -> Figure:
+        """Return the Bode diagram of an output: magnitude [unit of the output / unit of the input] and phase [deg].
+
+        Raises:
+            ValueError: there is no such output
+            TypeError: the name is no text
+        """
+        from strainwave.analysis.plots import Response, bode_figure
+        from strainwave.typeset import quantity
+
+        response = self[output]
+        size = quantity(self.amplitude, self.units[self.input]).replace(" ", "\N{NO-BREAK SPACE}")
+        title = f"Response of {output.replace('_', ' ')} to a {self.input.replace('_', ' ')} of {size}"
+        unit = ratio_of_units(self.units[output], self.units[self.input])
+        return bode_figure([Response("", self.frequency, response)], unit, title)
 
     def __getitem__(self, output: str) -> Complex:
         if arguments.text("the name of an output", output) not in self.responses:
@@ -138,18 +164,22 @@ def frequency_response(
         levels[input] = levels[input] + sine(amplitude, f, 1.0 / f)
         excitation = Excitation(levels["command"], levels["load_torque"], temperature)
         found.append(sines.periodic(excitation, tolerance, max_periods))
-    return _response(frequencies, amplitude, [period for period, _ in found], [count for _, count in found])
+    known = {"load_torque": "N.m"} | units_of(drive, outputs_of(drive).values()) | {"command": command_unit(drive)}
+    return _response(frequencies, amplitude, [period for period, _ in found], [count for _, count in found], input, known)
 
 
-def _response(frequencies: Array, amplitude: float, found: list[dict[str, Array]], counts: list[int]) -> FrequencyResponse:
-    """From the outputs over one period of each frequency, and its number."""
+def _response(
+    frequencies: Array, amplitude: float, found: list[dict[str, Array]], counts: list[int], input: str, known: dict[str, str]
+) -> FrequencyResponse:
+    """Return the response, from the outputs over one period of each frequency, and its number."""
     responses, distortions, drifts = {}, {}, {}
     for name in found[0]:
         first, higher = np.array([_harmonics(period[name]) for period in found]).T
         responses[name] = first / amplitude
         distortions[name] = higher.real / np.maximum(np.abs(first), np.finfo(float).tiny)
         drifts[name] = np.array([period[name][-1] - period[name][0] for period in found])
-    return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, np.array(counts))
+    units = {name: known[name] for name in dict.fromkeys((input, *responses))}
+    return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, np.array(counts), input, units)
 
 
 def _check(frequencies: Array, signal: str, dt: float) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.scenario import Scenario
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 # Numbers by which there is no derivative, by their path or its last name, and why.
@@ -37,13 +41,52 @@ class Derivatives(ComparedByFields):
     Attributes:
         run: the run itself
         parameters: paths of the parameters, each with its unit
+        numbers: value of each parameter in the drive, by its path
         values: derivatives, shape (parameters, outputs, samples), in the order of `parameters` and of the run's columns without
             time; read-only
     """
 
     run: Recording
     parameters: Mapping[str, str]
+    numbers: Mapping[str, float]
     values: Array
+
+    def effects(self, output: str, relative: float = 0.01) -> dict[str, float]:
+        """Return the root mean square change of an output when each parameter grows by a share of its value.
+
+        Args:
+            output: its name
+            relative: share of the value [1]; the change is linear in it
+
+        Returns:
+            changes [unit of the output], by the path of the parameter; 0 for a parameter that is 0
+
+        >>> import strainwave as sw
+        >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+        >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+        >>> change = found.effects("output_angle")["load.inertia"]
+        >>> heavier = sw.simulate(drive.replace({"load.inertia": 0.0101}), sw.scenario.step(5.0, 0.1), sample=1e-3)
+        >>> actual = np.sqrt(np.mean((heavier["output_angle"] - found.run["output_angle"]) ** 2))
+        >>> bool(abs(change / actual - 1.0) < 0.02)
+        True
+        """
+        relative = arguments.number("relative", relative)
+        return {
+            path: abs(relative * self.numbers[path]) * float(np.sqrt(np.mean(self[output, path] ** 2)))
+            for path in self.parameters
+        }
+
+    def plot(self, output: str = "output_angle") -> Figure:
+        """Return bars of what 1 % of each parameter changes of an output, as `effects`, the largest first.
+
+        Raises:
+            ValueError: there is no such output
+            TypeError: the name is no text
+        """
+        from strainwave.analysis.plots import sensitivity_figure
+
+        effects = self.effects(output)
+        return sensitivity_figure(effects, self.run.unit(output), output.replace("_", " "), 1.0)
 
     def __getitem__(self, which: tuple[str, str]) -> Array:
         """Derivative of an output by a parameter, shape (samples,), in the unit of the one per unit of the other."""
@@ -59,7 +102,7 @@ class Derivatives(ComparedByFields):
         return derivative
 
     def __reduce__(self) -> tuple[type[Derivatives], tuple[object, ...]]:
-        return Derivatives, (self.run, dict(self.parameters), self.values)
+        return Derivatives, (self.run, dict(self.parameters), dict(self.numbers), self.values)
 
     def __repr__(self) -> str:
         return f"<Derivatives of {len(self.run)} samples by {', '.join(self.parameters)}>"
@@ -121,4 +164,5 @@ def derivatives(
     if endless:
         raise FloatingPointError(f"derivatives by {', '.join(endless)} are not finite, though the run is")
     values.setflags(write=False)
-    return Derivatives(run, MappingProxyType({each.path: each.unit for each in places}), values)
+    units, numbers = {each.path: each.unit for each in places}, {each.path: each.value for each in places}
+    return Derivatives(run, MappingProxyType(units), MappingProxyType(numbers), values)

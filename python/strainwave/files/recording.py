@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import cycle
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
@@ -25,16 +24,11 @@ from strainwave.messages import listed, one_line, quoted, shortened
 
 if TYPE_CHECKING:
     import pandas
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from strainwave.files.tables import Table
 
 Array = NDArray[np.float64]
-
-_FLAT = 20.0  # a curve so many times smaller than another one is flat beside it
-_ROUNDING = 1e-9  # a curve so small beside another one is what rounding left of nothing
-_DRAWABLE = 1e300  # the range of an axis, with its margins, must be a number too
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -339,94 +333,40 @@ class Recording:
         return _checked(path, read_table(open_parquet(path), columns, units))
 
     def plot(self, names: Sequence[str] | None = None, against: str = "time") -> Figure:
-        """Draw columns over another one, in panels below each other on one x axis.
+        """Return a figure of columns over another one, in panels below each other on one axis.
 
-        Columns of one unit share a panel, but for those that would be flat beside a curve more than twenty times as large.
+        Columns of one unit share a panel. A curve that is more than twenty times smaller than another one has its own panel.
 
         Args:
-            names: the columns to draw; without it all but `against` that change, by more than a billionth of the largest value
-                of their unit, which would be rounding
+            names: the columns to draw; if not given, all but `against` that change by more than rounding (a billionth of the
+                largest value of their unit)
             against: the column on the x axis
 
         Returns:
-            A matplotlib figure, to be saved with `.savefig`. Of more than 20 000 samples, the extremes of short
-            stretches are drawn, so that every peak stays visible.
+            a matplotlib figure; `.savefig` writes it. Its title is that of the recording, or names the columns. A curve of more
+            than 20 000 samples is drawn by the extremes of short stretches, so that every peak stays visible
 
         Raises:
-            ValueError: a column is not there, nothing is left to draw, or a value lies beyond 1e300.
-            TypeError: a name is no text.
+            ValueError: a column is missing, there is no column to draw, or a value lies beyond 1e300
+            TypeError: a name is no text
         """
-        from matplotlib.figure import Figure
+        from strainwave.files.recording_plot import recording_figure
 
-        arguments.text("against", against)
-        drawn = self._changing(against) if names is None else arguments.names("names", names)
-        if not drawn:
-            raise ValueError(f"nothing to draw against {quoted(against)}; there are {listed(self.names)}")
-        for name in (*drawn, against):
-            _check_drawable(name, self[name])
-        panels = self._panels(drawn)
-        figure = Figure(figsize=(8.0, 0.9 + 1.5 * len(panels)), layout="constrained")
-        figure.suptitle(self.title.replace("$", r"\$"), fontsize="large", wrap=True)
-        axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-        for axis, panel in zip(axes, panels, strict=True):
-            self._draw(axis, panel, against)
-        axes[-1].set_xlabel(self._label(against))
-        figure.align_ylabels()
-        return figure
+        self[arguments.text("against", against)]
+        for name in () if names is None else arguments.names("names", names):
+            self[name]
+        return recording_figure(self.columns, self.units, names, against, self._heading)
 
-    def _changing(self, against: str) -> list[str]:
-        """The columns worth a look; all, where none changes."""
-        names = [name for name in self.names if name != against]
-        largest = dict.fromkeys(self.units.values(), 0.0)
-        for name in names:
-            largest[self.unit(name)] = max(largest[self.unit(name)], float(np.abs(self[name]).max()))
-        half = {name: 0.5 * float(self[name].max()) - 0.5 * float(self[name].min()) for name in names}
-        return [name for name in names if half[name] > _ROUNDING * largest[self.unit(name)]] or names
-
-    def _panels(self, names: Sequence[str]) -> list[list[str]]:
-        """Columns that are drawn together, in the order in which the first of each is named."""
-        sizes = {name: float(np.abs(self[name]).max()) for name in names}
-        panels: dict[str, list[list[str]]] = {}
-        for name in sorted(sizes, key=lambda name: -sizes[name]):
-            of_unit = panels.setdefault(self.unit(name), [])
-            if not of_unit or 0.0 < sizes[name] < sizes[of_unit[-1][0]] / _FLAT:
-                of_unit.append([])
-            of_unit[-1].append(name)
-        ordered = [sorted(panel, key=list(names).index) for of_unit in panels.values() for panel in of_unit]
-        return sorted(ordered, key=lambda panel: list(names).index(panel[0]))
-
-    def _draw(self, axis: Axes, panel: Sequence[str], against: str) -> None:
-        for name, style in zip(panel, cycle(("-", "--", "-.", ":")), strict=False):  # so that equal curves are both seen
-            axis.plot(*envelope(self[against], self[name]), style, linewidth=1.2, label=_in_words(name))
-        axis.set_ylabel(self._label(panel[0]) if len(panel) == 1 else f"[{self.unit(panel[0])}]", fontsize="small")
-        axis.tick_params(labelsize="small")
-        axis.ticklabel_format(axis="y", useOffset=False)
-        if len(panel) > 1:
-            above = (1.0, 0.97)
-            axis.legend(ncols=4, frameon=False, fontsize="small", loc="lower right", bbox_to_anchor=above, borderaxespad=0.0)
-        axis.grid(linewidth=0.5, alpha=0.4)
-        axis.margins(x=0.01)
-        axis.spines[["top", "right"]].set_visible(False)
-
-    def _label(self, name: str) -> str:
-        return f"{_in_words(name)} [{self.unit(name)}]"
+    @property
+    def _heading(self) -> str:
+        """Title of a figure; empty if the names of its columns are the title."""
+        return self.title
 
 
 def check_recording(name: str, value: object) -> None:
     """Refuses what is no recording."""
     if not isinstance(value, Recording):
         raise TypeError(f"{name} must be a Recording, as Recording.read(...) gives one, not {shortened(value)}")
-
-
-def _in_words(name: str) -> str:
-    """A name as a picture has it; a dollar sign would begin mathematics."""
-    return name.replace("_", " ").replace("$", r"\$")
-
-
-def _check_drawable(name: str, values: Array) -> None:
-    largest = np.abs(values).max()
-    if largest > _DRAWABLE:
-        raise ValueError(f"column {quoted(name)} cannot be drawn: it reaches {largest}; at most {_DRAWABLE} can be drawn")
 
 
 class _Fault(NamedTuple):
@@ -524,26 +464,3 @@ def _checked(path: str | Path, table: Table) -> Recording:
         raise ValueError(one_line(f"{path}: {error}")) from None
     where = f"{path} {table.place(fault.row)}, column {quoted(table.labels[fault.column])}"
     raise ValueError(one_line(f"{where}: {fault.reason}"))
-
-
-def envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:
-    """A curve to draw: itself or, if much longer, the extremes of x and y in each of many stretches of it, in order.
-
-    Args:
-        x, y: the samples of the curve, shape (n,)
-        stretches: into how many it is cut; up to four samples for each, nothing is left out
-
-    >>> time = np.arange(100_000.0)
-    >>> drawn, values = envelope(time, np.where(time == 777.0, 1.0, 0.0), stretches=10)
-    >>> len(drawn), float(values.max())
-    (21, 1.0)
-    """
-    if len(x) <= 4 * stretches:
-        return x, y
-    length = -(-len(x) // stretches)
-    whole = len(x) // length * length
-    starts = np.arange(0, whole, length)
-    blocks = [values[:whole].reshape(-1, length) for values in (x, y)]
-    extremes = [starts + pick(block, axis=1) for block in blocks for pick in (np.argmin, np.argmax)]
-    kept = np.unique(np.concatenate([*extremes, np.arange(whole, len(x))]))
-    return x[kept], y[kept]

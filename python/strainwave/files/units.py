@@ -265,6 +265,15 @@ def check(unit: str) -> str:
 
 
 @lru_cache(maxsize=1024)
+def ratio_of_units(unit: str, by: str) -> str:
+    """Return the unit of a quantity over another one.
+
+    >>> ratio_of_units("rad", "N.m"), ratio_of_units("rad", "rad"), ratio_of_units("A", "1")
+    ('rad/(N.m)', '1', 'A')
+    """
+    return check(f"({unit})/({by})")
+
+
 def _spelling(unit: pint.Unit) -> str:
     from pint.util import to_units_container
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, check_line
@@ -31,6 +32,9 @@ from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Mapped = Callable[[Path], FileMapping] | FileMapping | None
 
@@ -73,6 +77,19 @@ class Identified(ComparedByFields):
     def states(self) -> tuple[ParameterState, ...]:
         """The state of every number of the gear."""
         return tuple(states_of(self.start, self.gear_set, self.parameters, self.files))
+
+    def plot(self) -> Figure:
+        """Return a figure of the identified numbers of the gear over those of the start set, each with its interval of 95 %.
+
+        A grey bar is the spread of individual gears that the start set states. Each file has a `plot` of its own, measured
+        against modelled: `identified.files[0].plot()`.
+
+        Raises:
+            ValueError: no identified number has a value in the start set
+        """
+        from strainwave.identification.results.comparison_plot import over_start_figure
+
+        return over_start_figure(self.states, self.start, self.gear_set.name)
 
 
 def identify(

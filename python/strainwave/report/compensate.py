@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from strainwave import typeset
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, RUNS, WIDTH
 from strainwave.files import gear_file
-from strainwave.report import figures, typeset
+from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
@@ -225,7 +228,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "remarks": found.remarks,
             "members": found.members,
             "picture_shows": f"Error of the {'torque' if found.goal.name == 'torque' else 'output'}",
-            "picture": figures.inline(lambda canvas: _errors(canvas, found), (figures.WIDTH, 3.0), "errors", _title(found)),
+            "picture": figures.inline(lambda canvas: _errors(canvas, found), (WIDTH, 3.0), "errors", _title(found)),
         },
         provenance,
     )
@@ -241,11 +244,11 @@ def _errors(canvas: Figure, found: Compensated) -> None:
     command = found.goal.command
     name, unit = ("error of the torque", "N.m") if found.goal.name == "torque" else ("error of the output", "rad")
     runs = {"cascade": found.baseline} | ({"compensated": found.chosen} if found.is_compensated else {})
-    for (label, judged), (colour, line, width) in zip(runs.items(), (figures.RUNS[1], figures.RUNS[0]), strict=False):
+    for (label, judged), (colour, line, width) in zip(runs.items(), (RUNS[1], RUNS[0]), strict=False):
         control: Any = judged.candidate.drive.control
         sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
         run = simulate(judged.candidate.drive, command, sample=sample)
         error = found.goal.per_angle * np.asarray(command.value(run.time) - run["output_angle"])
-        figures.curve(axes, run.time, error, color=figures.LIGHT[colour], linestyle=line, linewidth=width, label=label)
-    figures.label_axes(axes, name, unit, "time", "s")
-    figures.legend(canvas, axes)
+        marks.curve(axes, run.time, error, color=LIGHT[colour], linestyle=line, linewidth=width, label=label)
+    marks.label_axes(axes, name, unit, "time", "s")
+    marks.legend(canvas, axes)

@@ -9,8 +9,9 @@ import numpy as np
 
 from strainwave.diagnose.baseline import Comparison
 from strainwave.diagnose.diagnosis import Diagnosis, WaveRipple
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT, WIDTH
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,9 +36,9 @@ def changes_figure(comparison: Comparison, unit: str, name: str) -> str:
             axes.plot(x, [each.baseline for each in own], "_", color=LIGHT["ink"], markersize=9)
             axes.plot(x, [each.amplitude for each in own], mark, color=LIGHT[colour], label=f"recording, {direction}")
         axes.set_ylim(bottom=0.0)
-        figures.label_axes(axes, "amplitude", unit, "order per revolution of the shaft", "1")
+        marks.label_axes(axes, "amplitude", unit, "order per revolution of the shaft", "1")
         axes.set_xticks(range(len(orders)), [f"{order:.5g}" for order in orders], rotation=60)
-        figures.legend(figure, axes)
+        marks.legend(figure, axes)
 
     return figures.inline(draw, (WIDTH, 3.0), name, "Amplitudes of the recording and what the baseline allows")
 
@@ -57,8 +58,8 @@ def load_figure(wave: WaveRipple, unit: str, name: str) -> str:
                 axes.errorbar(x, y, yerr=sigma, fmt=mark, color=LIGHT[colour], capsize=3.0, label=direction)
         axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)
-        figures.label_axes(axes, "amplitude", unit, "size of the load", unit)
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "amplitude", unit, "size of the load", unit)
+        marks.legend(figure, axes)
 
     return figures.inline(draw, (WIDTH, 2.6), name, "Ripple of the wave generator over the load")
 
@@ -82,7 +83,7 @@ def condition_figure(found: Diagnosis, hours: Sequence[float], name: str) -> str
             line = np.array([float(x.min()), end])
             axes.plot(line, level + found.trend.slope * (line - float(x.mean())), color=LIGHT["model"], label="trend")
         axes.set_ylim(bottom=0.0)
-        figures.label_axes(axes, "indicator", "1", "hours of operation" if timed else "recording", "h" if timed else "1")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "indicator", "1", "hours of operation" if timed else "recording", "h" if timed else "1")
+        marks.legend(figure, axes)
 
     return figures.inline(draw, (WIDTH, 2.6), name, "Health indicator")

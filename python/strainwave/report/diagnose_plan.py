@@ -12,7 +12,7 @@ from strainwave.diagnose.steady_run import ARCMINUTE
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
-from strainwave.report.typeset import number, quantity
+from strainwave.typeset import number, quantity
 
 MAX_LINE_LETTERS = 110  # on a terminal
 

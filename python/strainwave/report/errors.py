@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.report.typeset import number, quantity
+from strainwave.typeset import number, quantity
 
 THIS_MODEL, LEAST_SQUARES, ZERO_MODEL = "this model", "plain least squares", "predicting the mean"
 Row = tuple[str, str, str]  # name of the model, its error, and its error over that of predicting the mean

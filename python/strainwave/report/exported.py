@@ -8,9 +8,9 @@ from math import isfinite
 
 import numpy as np
 
+from strainwave import typeset
 from strainwave.export.exported import Exported
 from strainwave.files.recording import Recording
-from strainwave.report import typeset
 from strainwave.report.rig_files import results_json
 from strainwave.tuning.loss import Loss
 

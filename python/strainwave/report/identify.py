@@ -23,6 +23,7 @@ from strainwave.identification.results.combined_parameter import (
 )
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.parameter_state import UNDETERMINED
+from strainwave.identification.results.picture_plot import NINETY_FIVE, residual_of
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows, percent
@@ -30,7 +31,7 @@ from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render
 from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import fixed, interval, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
+from strainwave.typeset import fixed, interval, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 MIN_WIDENED = 1.05  # factor of the standard deviation of a mean, from which on it is stated
 DIGITS_BESIDE_SPREAD = 4  # of a number beside the scatter of individual gears
@@ -163,7 +164,7 @@ def _card(result: FileResult, anchor: str) -> dict[str, Any]:
 
 def _caption(result: FileResult, picture: Picture) -> str:
     curves = picture.curves
-    error, of = float(np.sqrt(np.mean(plots.residual_of(curves) ** 2))), curves.unit(curves.names[1])
+    error, of = float(np.sqrt(np.mean(residual_of(curves) ** 2))), curves.unit(curves.names[1])
     words = [f"Model: {picture.model or result.model}. Root mean square of what is left: {quantity(error, of)}."]
     if "residual" in curves:
         words.append("The slow part above is what load and lost motion add; it is taken out below, too.")
@@ -186,7 +187,7 @@ def _by_effect(found: Identified) -> Iterator[tuple[str, list[dict[str, Any]]]]:
 def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
     taken, same_as = each.estimate, {file.name: file.same_as for file in found.files}
     files = [each.source, *each.others] if len(each.mean_of) > 1 else list(each.others)
-    half = plots.NINETY_FIVE * taken.sigma
+    half = NINETY_FIVE * taken.sigma
     return {
         "path": taken.path,
         "name": name_of(taken),

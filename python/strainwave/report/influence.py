@@ -14,10 +14,10 @@ from strainwave.report.influence_trends import bent_words, chance, change_of, to
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import fixed, number, quantity
 from strainwave.rig.influence.influence import OWN, SPECIMEN, Influence, Sweep
 from strainwave.rig.influence.series import FACTORS, QUANTITIES
 from strainwave.rig.influence.trend import SHUFFLES, Trend
+from strainwave.typeset import fixed, number, quantity
 
 LINE = 110  # letters of a line on a terminal
 

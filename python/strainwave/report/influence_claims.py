@@ -28,9 +28,9 @@ from strainwave.report.influence_trends import (
     percent,
     told_of,
 )
-from strainwave.report.typeset import fixed, number, quantity
 from strainwave.rig.influence import influence as study
 from strainwave.rig.influence.influence import OWN, SPECIMEN, CatalogueRow, Influence, Sweep, power
+from strainwave.typeset import fixed, number, quantity
 
 Array = NDArray[np.float64]
 

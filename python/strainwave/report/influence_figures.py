@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT
 from strainwave.report.influence_claims import by_size
-from strainwave.report.typeset import quantity
-from strainwave.report.typeset import unit as typeset_unit
 from strainwave.rig.influence.cycle import Cycle
 from strainwave.rig.influence.influence import CatalogueRow, Sweep
 from strainwave.rig.influence.series import FACTORS, QUANTITIES, Series
 from strainwave.rig.influence.trend import Trend
+from strainwave.typeset import quantity
+from strainwave.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,10 +43,10 @@ def loops_figure(loops: Sequence[Cycle], name: str) -> str:
             label = quantity(loop.peak, "N.m", 3)
             axes.plot(angle * loop.angle, loop.torque, color=LIGHT["model"], alpha=float(shade), label=label)
         where = "output" if loops[0].side == "output" else "input"
-        figures.label_axes(axes, f"torque on the {where}", "N.m", f"angle of the {where} [{unit}]", "1")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, f"torque on the {where}", "N.m", f"angle of the {where} [{unit}]", "1")
+        marks.legend(figure, axes)
 
-    return figures.inline(draw, (figures.WIDTH, 3.4), name, "Torsion loops of several torques")
+    return figures.inline(draw, (WIDTH, 3.4), name, "Torsion loops of several torques")
 
 
 def _angles(largest: float) -> tuple[float, str]:
@@ -75,12 +76,12 @@ def amplitude_figure(sweep: Sweep, name: str) -> str:
         area.minorticks_off()
         slopes.set_xscale("log")
         slopes.minorticks_off()
-        figures.label_axes(area, "area", "J")
-        figures.label_axes(width, f"width at equal torque [{unit}]", "1")
-        figures.label_axes(slopes, "stiffness", "N.m/rad", "largest torque", "N.m")
-        figures.legend(figure, slopes)
+        marks.label_axes(area, "area", "J")
+        marks.label_axes(width, f"width at equal torque [{unit}]", "1")
+        marks.label_axes(slopes, "stiffness", "N.m/rad", "largest torque", "N.m")
+        marks.legend(figure, slopes)
 
-    return figures.inline(draw, (figures.WIDTH, 5.4), name, "Area, width and stiffness of loops over their largest torque")
+    return figures.inline(draw, (WIDTH, 5.4), name, "Area, width and stiffness of loops over their largest torque")
 
 
 def ratio_figure(rows: tuple[CatalogueRow, ...]) -> str:
@@ -97,12 +98,12 @@ def ratio_figure(rows: tuple[CatalogueRow, ...]) -> str:
         for axes in (output, input_):
             axes.set_xticks([30, 50, 80, 100, 160], ["30", "50", "80", "100", "160"])
             axes.minorticks_off()
-        figures.label_axes(output, "K₁ at the output", "N.m/rad")
-        figures.label_axes(input_, "K₁/i², as the input sees it", "N.m/rad")
+        marks.label_axes(output, "K₁ at the output", "N.m/rad")
+        marks.label_axes(input_, "K₁/i², as the input sees it", "N.m/rad")
         input_.set_xlabel("ratio")
-        figures.legend(figure, output)
+        marks.legend(figure, output)
 
-    return figures.inline(draw, (figures.WIDTH, 4.4), "ratio", "First stiffness of catalogue gears over the ratio, by size")
+    return figures.inline(draw, (WIDTH, 4.4), "ratio", "First stiffness of catalogue gears over the ratio, by size")
 
 
 def preload_figure(sweep: Sweep, peak: float, friction: float) -> str:
@@ -113,13 +114,13 @@ def preload_figure(sweep: Sweep, peak: float, friction: float) -> str:
         area, width = figure.subplots(2, 1, sharex=True)
         area.plot(sweep.levels, sweep["area"], color=LIGHT["model"], marker="o")
         width.plot(sweep.levels, angle * sweep["width"], color=LIGHT["model"], marker="o")
-        figures.label_axes(area, "area", "J")
-        figures.label_axes(width, f"width at equal torque [{unit}]", "1")
+        marks.label_axes(area, "area", "J")
+        marks.label_axes(width, f"width at equal torque [{unit}]", "1")
         width.set_xlabel(f"friction at the input over {quantity(friction, 'N.m')}; the torque is {quantity(peak, 'N.m')}")
         for axes in (area, width):
             axes.set_ylim(bottom=0.0)
 
-    return figures.inline(draw, (figures.WIDTH, 3.6), "preload", "Area and width of the loop over the friction at the input")
+    return figures.inline(draw, (WIDTH, 3.6), "preload", "Area and width of the loop over the friction at the input")
 
 
 def temperature_figure(sweep: Sweep) -> str:
@@ -131,14 +132,14 @@ def temperature_figure(sweep: Sweep) -> str:
         area.plot(celsius, sweep["area"], color=LIGHT["model"], marker="o")
         slopes.plot(celsius, sweep["high_stiffness"], color=LIGHT["measured"], marker="^", label="unloading")
         slopes.plot(celsius, sweep["low_stiffness"], color=LIGHT["held-out"], marker="v", label="loading")
-        figures.label_axes(area, "area", "J")
-        figures.label_axes(slopes, "slope", "N.m/rad")
+        marks.label_axes(area, "area", "J")
+        marks.label_axes(slopes, "slope", "N.m/rad")
         slopes.set_xlabel("temperature [°C]")
         for axes in (area, slopes):
             axes.set_ylim(bottom=0.0)
-        figures.legend(figure, slopes)
+        marks.legend(figure, slopes)
 
-    return figures.inline(draw, (figures.WIDTH, 3.8), "temperature", "Area and slopes of the loop over the temperature")
+    return figures.inline(draw, (WIDTH, 3.8), "temperature", "Area and slopes of the loop over the temperature")
 
 
 def series_figure(series: Series, trends: Sequence[Trend], factor: str) -> str:
@@ -155,12 +156,12 @@ def series_figure(series: Series, trends: Sequence[Trend], factor: str) -> str:
                 label = unit or "measured"
                 axes.plot(shown[chosen], values[chosen], color=LIGHT[colour], marker=mark, linestyle="", label=label)
             _line(axes, _trend(trends, factor, name), x, shown, values)
-            figures.label_axes(axes, QUANTITIES[name][0], QUANTITIES[name][1] or "1")
+            marks.label_axes(axes, QUANTITIES[name][0], QUANTITIES[name][1] or "1")
         unit = "degC" if factor == "temperature" else FACTORS[factor].unit
         panels[-1].set_xlabel(f"{FACTORS[factor].words} {_in_brackets(unit)}".strip())
-        figures.legend(figure, panels[0])
+        marks.legend(figure, panels[0])
 
-    size = (figures.WIDTH, 1.0 + 1.5 * len(quantities))
+    size = (WIDTH, 1.0 + 1.5 * len(quantities))
     return figures.inline(draw, size, f"series-{factor}", f"Measured quantities over {FACTORS[factor].words}")
 
 

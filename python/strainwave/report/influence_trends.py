@@ -6,10 +6,10 @@ from math import exp
 
 import numpy as np
 
-from strainwave.report.typeset import number, quantity
 from strainwave.rig.influence.influence import Influence
 from strainwave.rig.influence.series import FACTORS, QUANTITIES
 from strainwave.rig.influence.trend import Trend
+from strainwave.typeset import number, quantity
 
 CONFIRMED, IN_PART, CONTRADICTED, UNDECIDABLE = "confirmed", "confirmed in part", "contradicted", "undecidable"
 HIGH, LOW, HYSTERESIS = "High-stiffness regime", "Low-stiffness (reversal) regime", "Hysteresis"

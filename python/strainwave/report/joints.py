@@ -17,7 +17,7 @@ from strainwave.report.identify_files import failed_lines
 from strainwave.report.page import render
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import uncertain, unit
+from strainwave.typeset import uncertain, unit
 
 COLUMNS = ("joint", "path", "law", "unit", "value", "sigma", "file")
 

@@ -17,9 +17,9 @@ from strainwave.report.misalignment_claims import ARCMIN, Claim, arcmin, claims,
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import fixed, number, quantity, uncertain
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import Levels, MisalignmentStudy, Recovery
+from strainwave.typeset import fixed, number, quantity, uncertain
 
 LINE = 110  # letters of a line on a terminal
 LEAST = 1e-3  # of a table, in its units

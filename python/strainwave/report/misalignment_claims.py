@@ -9,9 +9,9 @@ import numpy as np
 
 from strainwave.diagnose.actuator_ramp import INPUT, OUTPUT
 from strainwave.files.recording import Recording
-from strainwave.report.typeset import fixed, number, quantity, uncertain
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
+from strainwave.typeset import fixed, number, quantity, uncertain
 
 ARCMIN = 180.0 * 60.0 / np.pi
 CONFIRMED, IN_PART, CORRECTED = "confirmed", "confirmed in part", "corrected"

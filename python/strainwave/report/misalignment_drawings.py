@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
         _frame(axes, (-1.7, 1.7), (-1.4, 1.5))
 
     title = "A misaligned wave generator in the circular spline, seen along the shaft"
-    return figures.inline(draw, (figures.WIDTH, 3.8), "wave-generator", title)
+    return figures.inline(draw, (WIDTH, 3.8), "wave-generator", title)
 
 
 def scales(major_radius: float, minor_radius: float, eccentricity: float) -> tuple[float, float]:
@@ -97,7 +97,7 @@ def angles() -> str:
         _side(figure.add_subplot(above[1, 0]), "X", "β₂", "α₂")
         _side(figure.add_subplot(above[1, 1]), "Y", "β₃", "α₃")
 
-    return figures.inline(draw, (figures.WIDTH, 5.4), "angles", "Eccentricities and angular deviations of the wave generator")
+    return figures.inline(draw, (WIDTH, 5.4), "angles", "Eccentricities and angular deviations of the wave generator")
 
 
 def _plan(axes: Axes) -> None:

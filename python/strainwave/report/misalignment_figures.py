@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.diagnose.actuator_ramp import INPUT, LOOPS, OUTPUT
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.files.recording import Recording
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT
-from strainwave.report.typeset import number
-from strainwave.report.typeset import unit as typeset_unit
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
 from strainwave.studies.pure_error import PureError
+from strainwave.typeset import number
+from strainwave.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
@@ -64,12 +65,12 @@ def pure_figure(pure: PureError) -> str:
             error.plot(turn, ARCMIN * pure.fits[kind].curve, label=f"fitted, {WORDS[kind]}", **line)
             rest.plot(turn, ARCMIN * (pure.curve - pure.fits[kind].curve), **line)
         rest.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
-        figures.label_axes(error, "pure kinematic error [arcmin]", "1")
-        figures.label_axes(rest, "curve − fitted [arcmin]", "1", "input angle [°]", "1")
+        marks.label_axes(error, "pure kinematic error [arcmin]", "1")
+        marks.label_axes(rest, "curve − fitted [arcmin]", "1", "input angle [°]", "1")
         rest.set_xticks(np.arange(0.0, 361.0, 60.0) + turn[0])
-        figures.legend(figure, error)
+        marks.legend(figure, error)
 
-    return figures.inline(draw, (figures.WIDTH, 4.0), "pure-error", "Pure kinematic error over a turn of the input")
+    return figures.inline(draw, (WIDTH, 4.0), "pure-error", "Pure kinematic error over a turn of the input")
 
 
 def ramp_figure(found: MisalignmentStudy) -> str:
@@ -82,15 +83,15 @@ def ramp_figure(found: MisalignmentStudy) -> str:
         for tilt, style in ((largest, {"color": LIGHT["model"], "linewidth": 0.9}), (0.0, STRAIGHT)):
             run = runs[tilt]
             label = f"tilt {tilt_words(tilt)}" if tilt else "straight"
-            figures.curve(axes[0], run.time, run["torque"], label=label, **style)
-            figures.curve(axes[1], run.time, run["current"], label=label, **style)
-            figures.curve(axes[2], run.time, run["output_angle"] - run["command"], label=label, **style)
-        figures.label_axes(axes[0], "torque at the output", "N.m")
-        figures.label_axes(axes[1], "motor current", "A")
-        figures.label_axes(axes[2], "output angle − command", "rad", "time", "s")
-        figures.legend(figure, axes[0])
+            marks.curve(axes[0], run.time, run["torque"], label=label, **style)
+            marks.curve(axes[1], run.time, run["current"], label=label, **style)
+            marks.curve(axes[2], run.time, run["output_angle"] - run["command"], label=label, **style)
+        marks.label_axes(axes[0], "torque at the output", "N.m")
+        marks.label_axes(axes[1], "motor current", "A")
+        marks.label_axes(axes[2], "output angle − command", "rad", "time", "s")
+        marks.legend(figure, axes[0])
 
-    return figures.inline(draw, (figures.WIDTH, 5.0), "ramp", "Torque, current and error of the output over the ramp")
+    return figures.inline(draw, (WIDTH, 5.0), "ramp", "Torque, current and error of the output over the ramp")
 
 
 def difference_figure(found: MisalignmentStudy) -> str:
@@ -102,21 +103,21 @@ def difference_figure(found: MisalignmentStudy) -> str:
         whole, torque, error = figure.subplots(3, 1, height_ratios=(1.2, 1.2, 1.2))
         for tilt, style in reversed(list(zip(study.SHOWN_TILTS, TILTED, strict=True))):
             there = differences[tilt]
-            figures.curve(whole, there.time, there["torque"], **{**style, "linestyle": "-", "linewidth": 0.8})
+            marks.curve(whole, there.time, there["torque"], **{**style, "linestyle": "-", "linewidth": 0.8})
         for tilt, style in zip(study.SHOWN_TILTS, TILTED, strict=True):
             there, run = differences[tilt], ramp.settled(runs[tilt])
             turns = run["input_angle"] / (2.0 * np.pi)
             last = _detail(turns)
             torque.plot(turns[last], there["torque"][last], label=f"tilt {tilt_words(tilt)}", **style)
             error.plot(turns[last], ARCMIN * run["kinematic_error"][last], **style)
-        figures.label_axes(whole, "difference of the torque, whole ramp", "N.m", "time", "s")
-        figures.label_axes(torque, "difference of the torque, last two turns", "N.m")
-        figures.label_axes(error, "pure kinematic error [arcmin], same turns", "1", "turns of the input", "1")
+        marks.label_axes(whole, "difference of the torque, whole ramp", "N.m", "time", "s")
+        marks.label_axes(torque, "difference of the torque, last two turns", "N.m")
+        marks.label_axes(error, "pure kinematic error [arcmin], same turns", "1", "turns of the input", "1")
         error.sharex(torque)
-        figures.legend(figure, torque)
+        marks.legend(figure, torque)
 
     title = "Differences of the torque and kinematic error, for three tilts of the input shaft"
-    return figures.inline(draw, (figures.WIDTH, 5.6), "differences", title)
+    return figures.inline(draw, (WIDTH, 5.6), "differences", title)
 
 
 def _detail(turns: Array) -> NDArray[np.bool_]:
@@ -142,12 +143,12 @@ def level_figure(found: MisalignmentStudy) -> str:
             axes.set_xscale("log")
             axes.set_yscale("log")
             name = "half swing of torque" if unit == "N.m" else "half swing of current"
-            figures.label_axes(axes, f"{name} [{unit.replace('.', '·')}]", "1", "|m| [µm]", "1")
+            marks.label_axes(axes, f"{name} [{unit.replace('.', '·')}]", "1", "|m| [µm]", "1")
             _plain(axes.xaxis)
             _decades(axes.yaxis)
-        figures.legend(figure, panels[0])
+        marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (figures.WIDTH, 3.3), "levels", "Swing of torque and current over the misalignment")
+    return figures.inline(draw, (WIDTH, 3.3), "levels", "Swing of torque and current over the misalignment")
 
 
 def _plain(axis: Axis) -> None:
@@ -193,12 +194,12 @@ def spectrum_figure(found: MisalignmentStudy) -> str:
             axes.set_ylim(1e-5 * top, 2.0 * top)
             last = axes is panels[-1]
             text, of = ("order, per turn of the input", "1") if last else ("", "1")
-            figures.label_axes(axes, f"amplitude, {words} [{typeset_unit(unit)}]", "1", text, of)
+            marks.label_axes(axes, f"amplitude, {words} [{typeset_unit(unit)}]", "1", text, of)
             _decades(axes.yaxis)
             axes.set_xticks(range(int(study.HIGHEST) + 1))
-        figures.legend(figure, panels[0])
+        marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (figures.WIDTH, 5.2), "spectra", "Order spectra of torque, current and output angle")
+    return figures.inline(draw, (WIDTH, 5.2), "spectra", "Order spectra of torque, current and output angle")
 
 
 def flap_figure(found: MisalignmentStudy) -> str:
@@ -219,10 +220,10 @@ def flap_figure(found: MisalignmentStudy) -> str:
             end = _detail(turned)
             style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "label": f"loop on the {LOOPS[side]}"}
             axes.plot(turned[end], moved[end] - moved[end].mean(), **style)
-        figures.label_axes(axes, "output angle, difference [arcmin]", "1", "turns of the input", "1")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "output angle, difference [arcmin]", "1", "turns of the input", "1")
+        marks.legend(figure, axes)
 
-    return figures.inline(draw, (figures.WIDTH, 2.9), "flap", "Output angle with a tilt less that without, by loop")
+    return figures.inline(draw, (WIDTH, 2.9), "flap", "Output angle with a tilt less that without, by loop")
 
 
 def passing_figure(found: MisalignmentStudy) -> str:
@@ -241,7 +242,7 @@ def passing_figure(found: MisalignmentStudy) -> str:
                     frequency, share = table["frequency"][chosen], 100.0 * table["share"][chosen]
                     place = np.argsort(frequency)
                     axes.plot(frequency[place], share[place], label=label, markersize=4.0, **style)
-            figures.label_axes(axes, f"share [%], loop on the {LOOPS[side]}", "1")
+            marks.label_axes(axes, f"share [%], loop on the {LOOPS[side]}", "1")
         swept = np.geomspace(table["frequency"].min(), table["frequency"].max(), 100)
         ideal = 100.0 * study.share_by_ideal_loop(swept, found.ramp.gain)
         label = f"ideal loop of {number(found.ramp.gain / (2.0 * np.pi), 2)} Hz, rigid gear"
@@ -250,9 +251,9 @@ def passing_figure(found: MisalignmentStudy) -> str:
         panels[1].set_ylim(0.0, None)
         panels[1].set_xlabel("frequency of the order [Hz]")
         _plain(panels[1].xaxis)
-        figures.legend(figure, panels[0])
+        marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (figures.WIDTH, 4.6), "passing", "Share of the kinematic error that reaches the output")
+    return figures.inline(draw, (WIDTH, 4.6), "passing", "Share of the kinematic error that reaches the output")
 
 
 def recovery_figure(recoveries: Mapping[str, Recovery]) -> str:
@@ -270,11 +271,11 @@ def recovery_figure(recoveries: Mapping[str, Recovery]) -> str:
             true_x, true_y = np.array(recovery.m) / study.MICRON
             axes.plot(true_x, true_y, "+", color=LIGHT["model"], markersize=9.0, markeredgewidth=1.5, label="put in")
             axes.set_aspect("equal", adjustable="datalim")
-            figures.label_axes(axes, f"{SEEN[column]}: m in y [µm]", "1", "m in x [µm]", "1")
+            marks.label_axes(axes, f"{SEEN[column]}: m in y [µm]", "1", "m in x [µm]", "1")
             axes.locator_params(nbins=4)
-        figures.legend(figure, panels[0])
+        marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (figures.WIDTH, 3.2), "recovery", "Misalignment recovered from records of a ramp")
+    return figures.inline(draw, (WIDTH, 3.2), "recovery", "Misalignment recovered from records of a ramp")
 
 
 def _ellipse(recovery: Recovery, sign: float) -> Array:
@@ -300,13 +301,13 @@ def measured_figure(found: MisalignmentStudy, measured: Recording) -> str:
         panels = figure.subplots(len(there), 1, sharex=True, squeeze=False)[:, 0]
         for axes, name in zip(panels, there, strict=True):
             style: dict[str, Any] = {"color": LIGHT["measured"], "linewidth": 2.2, "alpha": 0.6, "label": "measured"}
-            figures.curve(axes, measured.time, measured[name], **style)
+            marks.curve(axes, measured.time, measured[name], **style)
             tilted = found.shown[OUTPUT][study.SHOWN_TILT]
             label = f"simulated, tilt {tilt_words(study.SHOWN_TILT)}"
-            figures.curve(axes, tilted.time, tilted[name], color=LIGHT["model"], linewidth=0.9, label=label)
-            figures.curve(axes, found.straight.time, found.straight[name], label="simulated, straight", **STRAIGHT)
+            marks.curve(axes, tilted.time, tilted[name], color=LIGHT["model"], linewidth=0.9, label=label)
+            marks.curve(axes, found.straight.time, found.straight[name], label="simulated, straight", **STRAIGHT)
             last = name == there[-1]
-            figures.label_axes(axes, *names[name], *(("time", "s") if last else ()))
-        figures.legend(figure, panels[0])
+            marks.label_axes(axes, *names[name], *(("time", "s") if last else ()))
+        marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (figures.WIDTH, 1.0 + 1.5 * len(there)), "measured-ramp", "Measured and simulated ramp")
+    return figures.inline(draw, (WIDTH, 1.0 + 1.5 * len(there)), "measured-ramp", "Measured and simulated ramp")

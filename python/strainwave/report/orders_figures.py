@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.orders.ripple import Ripple
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT, WIDTH
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,17 +32,17 @@ def spectrum_figure(ripple: Ripple, name: str) -> str:
         axes = figure.subplots()
         spectrum = ripple.spectrum
         order = spectrum["order"]
-        figures.curve(axes, order, spectrum["amplitude"], color=LIGHT["measured"], linewidth=0.9, label="spectrum")
-        figures.curve(axes, order, spectrum["floor"], color=LIGHT["muted"], linewidth=0.9, label="noise")
-        figures.curve(axes, order, spectrum["threshold"], color=LIGHT["earlier"], linestyle="--", label="needed for a line")
+        marks.curve(axes, order, spectrum["amplitude"], color=LIGHT["measured"], linewidth=0.9, label="spectrum")
+        marks.curve(axes, order, spectrum["floor"], color=LIGHT["muted"], linewidth=0.9, label="noise")
+        marks.curve(axes, order, spectrum["threshold"], color=LIGHT["earlier"], linestyle="--", label="needed for a line")
         for kind, colour, mark in (("order", "model", "o"), ("time", "held-out", "x"), ("either", "earlier", "s")):
             lines = [line for line in ripple.lines if line.kind == kind and line.order <= ripple.highest]
             if lines:
                 where = [line.order for line in lines], [line.amplitude for line in lines]
                 axes.plot(*where, mark, color=LIGHT[colour], label={"either": "order or time"}.get(kind, f"{kind} line"))
         axes.set_ylim(bottom=0.0)
-        figures.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
+        marks.legend(figure, axes)
 
     return figures.inline(draw, (WIDTH, 3.0), name, "Amplitude of ripple over its order")
 
@@ -74,10 +75,10 @@ def map_figure(ripple: Ripple, name: str) -> str:
         for low, high in zip(SHADE_LIMITS, (*SHADE_LIMITS[1:], 1.1), strict=True):
             row, column = np.nonzero((share >= low) & (share < high))
             axes.plot(middle[row], order[column], "s", color=LIGHT["measured"], alpha=low, markersize=2.6, markeredgewidth=0.0)
-        figures.curve(below, curves["time"], curves["speed"], color=LIGHT["ink"], linewidth=0.8)
+        marks.curve(below, curves["time"], curves["speed"], color=LIGHT["ink"], linewidth=0.8)
         axes.set_ylim(ripple.lowest, highest)
-        figures.label_axes(axes, f"order per revolution of the {ripple.side}", "1")
-        figures.label_axes(below, "speed", "rad/s", "time", "s")
+        marks.label_axes(axes, f"order per revolution of the {ripple.side}", "1")
+        marks.label_axes(below, "speed", "rad/s", "time", "s")
 
     return figures.inline(draw, (WIDTH, 3.6), name, "Amplitude of ripple over order and time")
 
@@ -90,17 +91,15 @@ def error_figure(error: TransmissionError, name: str) -> str:
 
     def draw(figure: Figure) -> None:
         whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-        figures.curve(
-            whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error"
-        )
-        figures.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
-        figures.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
+        marks.curve(whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error")
+        marks.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
+        marks.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
         residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
-        figures.label_axes(whole, "at the output", "rad")
-        figures.label_axes(
+        marks.label_axes(whole, "at the output", "rad")
+        marks.label_axes(
             residual, "left by orders and loads", "rad", "time" if timed else "revolutions of the input", "s" if timed else "1"
         )
-        figures.legend(figure, whole)
+        marks.legend(figure, whole)
 
     return figures.inline(draw, (WIDTH, 3.6), name, "Transmission error, kinematic error and residual")
 
@@ -119,7 +118,7 @@ def turn_figure(error: TransmissionError, name: str) -> str:
         axes = figure.subplots()
         axes.plot(middle, measured, "o", color=LIGHT["measured"], markersize=2.8, label="mean of the samples")
         axes.plot(turn, law.error(tau * turn), color=LIGHT["model"], label="significant orders")
-        figures.label_axes(axes, "kinematic error", "rad", "revolution of the input", "1")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "kinematic error", "rad", "revolution of the input", "1")
+        marks.legend(figure, axes)
 
     return figures.inline(draw, (WIDTH, 2.8), name, "Kinematic error over a revolution of the input")

@@ -8,10 +8,12 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from strainwave import typeset
+from strainwave.drawing.style import DARK, LIGHT
 from strainwave.files import writing
 from strainwave.files.recording import Recording
 from strainwave.messages import printable
-from strainwave.report import figures, typeset
+from strainwave.report import figures
 from strainwave.report.provenance import Provenance
 
 if TYPE_CHECKING:
@@ -32,8 +34,8 @@ def render(template: str, content: Mapping[str, Any], provenance: Provenance | N
     of_every_page = {
         "provenance": provenance or Provenance(),
         "version": metadata.version("strainwave"),
-        "light": figures.variables(figures.LIGHT),
-        "dark": figures.variables(figures.DARK),
+        "light": figures.variables(LIGHT),
+        "dark": figures.variables(DARK),
     }
     return printable(_environment().get_template(template).render(of_every_page | dict(content)))
 

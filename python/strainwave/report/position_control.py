@@ -11,17 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import number, quantity, unit
 from strainwave.studies import position_control as study
 from strainwave.studies.position_control import FULL, SIMPLIFIED, Experiment, Measured, PositionControl
+from strainwave.typeset import number, quantity, unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -309,25 +310,25 @@ def experiment_figure(experiment: Experiment) -> str:
 
     def draw(figure: Figure) -> None:
         response, error, apart, current = figure.subplots(4, 1, sharex=True, height_ratios=(1.7, 1.1, 0.9, 1.1))
-        figures.curve(response, first.time, first["command"], color=LIGHT["ink"], linewidth=0.9, label="command")
+        marks.curve(response, first.time, first["command"], color=LIGHT["ink"], linewidth=0.9, label="command")
         for model, run in runs.items():
             _draw_run(response, run, run["output_angle"], model)
             _draw_run(error, run, run["output_angle"] - run["command"], model)
             _draw_run(current, run, run["current"], model)
         difference = first["output_angle"] - runs[SIMPLIFIED]["output_angle"]
-        figures.curve(apart, first.time, difference, color=LIGHT["ink"], linewidth=1.0)
-        figures.label_axes(response, "output angle", "rad")
-        figures.label_axes(error, "response − command", "rad")
-        figures.label_axes(apart, "full − simplified, output angle", "rad")
-        figures.label_axes(current, "current", "A", "time", "s")
-        figures.legend(figure, response)
+        marks.curve(apart, first.time, difference, color=LIGHT["ink"], linewidth=1.0)
+        marks.label_axes(response, "output angle", "rad")
+        marks.label_axes(error, "response − command", "rad")
+        marks.label_axes(apart, "full − simplified, output angle", "rad")
+        marks.label_axes(current, "current", "A", "time", "s")
+        marks.legend(figure, response)
 
     title = f"{experiment.title}: output angle, its difference from the command, that of the models, and current over time"
-    return figures.inline(draw, (figures.WIDTH, 6.2), experiment.name, title)
+    return figures.inline(draw, (WIDTH, 6.2), experiment.name, title)
 
 
 def _draw_run(axes: Axes, run: Recording, values: Array, model: str) -> None:
-    figures.curve(axes, run.time, values, label=f"{model} friction", **MODELS[model])
+    marks.curve(axes, run.time, values, label=f"{model} friction", **MODELS[model])
 
 
 def measured_figure(measured: Measured) -> str:
@@ -336,18 +337,18 @@ def measured_figure(measured: Measured) -> str:
 
     def draw(figure: Figure) -> None:
         response, error = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1.1))
-        figures.curve(response, recording.time, recording["command"], color=LIGHT["ink"], linewidth=0.9, label="command")
+        marks.curve(response, recording.time, recording["command"], color=LIGHT["ink"], linewidth=0.9, label="command")
         style: dict[str, Any] = {"color": LIGHT["measured"], "linewidth": 2.6, "alpha": 0.6, "label": "measured"}
-        figures.curve(response, recording.time, recording["output_angle"], **style)
+        marks.curve(response, recording.time, recording["output_angle"], **style)
         for model, run in measured.runs.items():
             _draw_run(response, run, run["output_angle"], model)
             simulated = np.interp(recording.time, run.time, run["output_angle"])
-            figures.curve(error, recording.time, simulated - recording["output_angle"], **MODELS[model])
-        figures.label_axes(response, "output angle", "rad")
-        figures.label_axes(error, "simulated − measured", "rad", "time", "s")
-        figures.legend(figure, response)
+            marks.curve(error, recording.time, simulated - recording["output_angle"], **MODELS[model])
+        marks.label_axes(response, "output angle", "rad")
+        marks.label_axes(error, "simulated − measured", "rad", "time", "s")
+        marks.legend(figure, response)
 
-    return figures.inline(draw, (figures.WIDTH, 4.0), "measured", "Output angle measured and simulated, over time")
+    return figures.inline(draw, (WIDTH, 4.0), "measured", "Output angle measured and simulated, over time")
 
 
 def friction_figure(found: PositionControl) -> str:
@@ -367,10 +368,10 @@ def friction_figure(found: PositionControl) -> str:
         label = "simplified friction ± error of the fit"
         axes.axhline(simplified.coulomb, label=label, **MODELS[SIMPLIFIED])
         _mark(axes, found.law_suffices_to)
-        figures.label_axes(axes, "Coulomb friction of the motor", "N.m", "motor angle", "rad")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "Coulomb friction of the motor", "N.m", "motor angle", "rad")
+        marks.legend(figure, axes)
 
-    return figures.inline(draw, (figures.WIDTH, 3.2), "friction", "Coulomb friction over the motor angle")
+    return figures.inline(draw, (WIDTH, 3.2), "friction", "Coulomb friction over the motor angle")
 
 
 def pulse_figure(found: PositionControl) -> str:
@@ -390,10 +391,10 @@ def pulse_figure(found: PositionControl) -> str:
         axes.plot(stroke, share("averaged"), color=LIGHT["earlier"], linestyle=":", label="constant averaged over the stroke")
         _over_strokes(axes)
         _mark(axes, found.pulse_suffices_to[study.USUAL_VOLTAGE])
-        figures.label_axes(axes, "stroke beyond that of the simplified model", "%", "stroke of the motor", "rad")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "stroke beyond that of the simplified model", "%", "stroke of the motor", "rad")
+        marks.legend(figure, axes)
 
-    return figures.inline(draw, (figures.WIDTH, 3.6), "pulses", "Stroke of a pulse in open loop, by model")
+    return figures.inline(draw, (WIDTH, 3.6), "pulses", "Stroke of a pulse in open loop, by model")
 
 
 def control_figure(found: PositionControl) -> str:
@@ -412,12 +413,10 @@ def control_figure(found: PositionControl) -> str:
         axes.axhline(LEAST_OF_TABLE_4, color=LIGHT["measured"], linewidth=1.2, label="least error of document P's Table 4")
         axes.set_yscale("log")
         _over_strokes(axes)
-        figures.label_axes(axes, "rms difference of the output angle", "rad", "stroke of the motor", "rad")
-        figures.legend(figure, axes)
+        marks.label_axes(axes, "rms difference of the output angle", "rad", "stroke of the motor", "rad")
+        marks.legend(figure, axes)
 
-    return figures.inline(
-        draw, (figures.WIDTH, 3.8), "control", "Difference of the models under the controller, over the stroke"
-    )
+    return figures.inline(draw, (WIDTH, 3.8), "control", "Difference of the models under the controller, over the stroke")
 
 
 def _over_strokes(axes: Axes) -> None:

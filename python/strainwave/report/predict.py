@@ -9,9 +9,8 @@ from math import isfinite
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
-from strainwave.files.recording import Recording
 from strainwave.identification.results.changes import Change
-from strainwave.identification.results.file_result import FileResult, Picture
+from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.prediction import Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
 from strainwave.report.identify_figures import file_figure
@@ -19,7 +18,7 @@ from strainwave.report.orders import line_numbers, line_words
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
-from strainwave.report.typeset import number, quantity, uncertain, uncertain_quantity
+from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 
 MAX_LINES = 4  # of the spectrum of a residual, on a terminal
 MAX_REMARKS = 5  # of a file on a terminal; the page has all
@@ -122,7 +121,7 @@ def _section(found: Prediction, anchor: str) -> dict[str, Any]:
         "refused": bool(found.refused),
         "failed": [check for check in found.checks if check.failed],
         "errors": [] if found.refused else _errors(found),
-        "figure": "" if found.curves is None else _figure(found, found.curves, anchor),
+        "figure": "" if (drawn := found.picture) is None else file_figure(FileResult(found.name), drawn, f"{anchor}-figure"),
         "changes": [
             (each.name, change_in_words(each), number(each.significance, 2), each.significant) for each in found.changes
         ],
@@ -133,14 +132,6 @@ def _section(found: Prediction, anchor: str) -> dict[str, Any]:
         ],
         "remarks": found.remarks,
     }  # fmt: skip
-
-
-def _figure(found: Prediction, curves: Recording, anchor: str) -> str:
-    over, channel = curves.names[:2]
-    columns = {over: curves[over], channel: curves[channel], "modelled": curves["predicted"]}
-    units = {over: curves.unit(over), channel: found.unit, "modelled": found.unit}
-    picture = Picture(Recording(columns, units), "table" if over == "speed" else "series")
-    return file_figure(FileResult(found.name), picture, f"{anchor}-figure")
 
 
 def predict_files(found: Sequence[Prediction], gear_set: GearSet, provenance: Provenance | None = None) -> dict[str, str]:

@@ -25,12 +25,12 @@ from strainwave.report.rig_tables import (
     source_rows,
     stiffness_table,
 )
-from strainwave.report.typeset import fixed, number
 from strainwave.rig.analysis.analysis import table
 from strainwave.rig.analysis.lost_motion import LOST_MOTION
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.soft_spot import MULTIPLE
 from strainwave.rig.reading.evaluation import Evaluation
+from strainwave.typeset import fixed, number
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:

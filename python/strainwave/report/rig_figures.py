@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, WIDTH
 from strainwave.report import figures
-from strainwave.report.figures import LIGHT
-from strainwave.report.typeset import number
+from strainwave.typeset import number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,13 +88,13 @@ def loop_figure(
             _branch(axes, branch)
         for place, width in enumerate(widths):
             _dimension(axes, width, (0.5, 0.62, 0.38)[place % 3])
-        figures.label_axes(axes, names[1], "1", names[0], "1")
+        marks.label_axes(axes, names[1], "1", names[0], "1")
         if output_arcmin is not None:
             second = axes.secondary_xaxis("top", functions=_times(output_arcmin))
             second.set_xlabel("divided by the ratio: at the output [arcmin]", color=LIGHT["muted"])
-        figures.legend(figure, axes)
+        marks.legend(figure, axes)
 
-    return figures.inline(draw, (figures.WIDTH, 4.9 if output_arcmin is not None else 4.2), name, title)
+    return figures.inline(draw, (WIDTH, 4.9 if output_arcmin is not None else 4.2), name, title)
 
 
 def _times(factor: float) -> tuple[Callable[[ArrayLike], ArrayLike], Callable[[ArrayLike], ArrayLike]]:
@@ -103,7 +104,7 @@ def _times(factor: float) -> tuple[Callable[[ArrayLike], ArrayLike], Callable[[A
 
 def _branch(axes: Axes, branch: Branch) -> None:
     colour = LIGHT[COLOURS.get(branch.name, "ink")]
-    few = len(branch.angle) <= figures.MARKED
+    few = len(branch.angle) <= marks.MAX_POINTS
     axes.plot(
         branch.angle, branch.torque, color=colour, linewidth=1.3, marker="o" if few else "", markersize=2.6, label=branch.name
     )
@@ -180,11 +181,11 @@ def stiffness_figure(curves: Sequence[StiffnessCurve], name: str, title: str) ->
             for curve in panel:
                 _stiffness(axes, curve)
             _stiffness_axis(axes, panel)
-            figures.label_axes(axes, "local stiffness [N·m/rad]", "1")
+            marks.label_axes(axes, "local stiffness [N·m/rad]", "1")
         every[-1].set_xlabel("torque [N·m]")
         _common_legend(figure, every)
 
-    return figures.inline(draw, (figures.WIDTH, 1.2 + 1.75 * len(panels)), name, title)
+    return figures.inline(draw, (WIDTH, 1.2 + 1.75 * len(panels)), name, title)
 
 
 def _stiffness(axes: Axes, curve: StiffnessCurve) -> None:
@@ -260,11 +261,11 @@ def quality_figure(pictures: Pictures, name: str, title: str) -> str:
             sigma.axvline(each, color=LIGHT["ink"], linewidth=0.9, linestyle=":")
         for axes, values in ((sigma, pictures.sigma), (residual, pictures.residual)):
             axes.set_ylim(0.0, 1.15 * float(np.nanmax(values, initial=1e-9)))
-        figures.label_axes(sigma, "standard deviation of the angle [arcsec]", "1")
-        figures.label_axes(residual, "rms distance of the edge from its fit [px]", "1", "image, in the order taken", "1")
-        figures.legend(figure, residual)
+        marks.label_axes(sigma, "standard deviation of the angle [arcsec]", "1")
+        marks.label_axes(residual, "rms distance of the edge from its fit [px]", "1", "image, in the order taken", "1")
+        marks.legend(figure, residual)
 
-    return figures.inline(draw, (figures.WIDTH, 3.4), name, title)
+    return figures.inline(draw, (WIDTH, 3.4), name, title)
 
 
 @dataclass(frozen=True)
@@ -303,12 +304,12 @@ def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str
             )
             axes.margins(y=0.25)
             axes.axhline(float(np.mean(row.values)), color=LIGHT["muted"], linewidth=0.8, linestyle="--", label="mean")
-            figures.label_axes(axes, row.name, "1")
+            marks.label_axes(axes, row.name, "1")
         every[-1].set_xticks(place, labels)
         every[-1].set_xlim(-0.5, len(labels) - 0.5)
         every[-1].set_xlabel(what)
 
-    return figures.inline(draw, (figures.WIDTH, 0.6 + 0.95 * len(rows)), name, title)
+    return figures.inline(draw, (WIDTH, 0.6 + 0.95 * len(rows)), name, title)
 
 
 def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, str], name: str, title: str) -> str:
@@ -320,8 +321,8 @@ def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, s
         axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
         for place, (label, (angle, torque)) in enumerate(loops.items()):
             colour, line = colours[place % len(colours)], lines[place // len(colours) % len(lines)]
-            figures.curve(axes, angle, torque, color=LIGHT[colour], linestyle=line, linewidth=1.1, label=label)
-        figures.label_axes(axes, names[1], "1", names[0], "1")
-        figures.legend(figure, axes)
+            marks.curve(axes, angle, torque, color=LIGHT[colour], linestyle=line, linewidth=1.1, label=label)
+        marks.label_axes(axes, names[1], "1", names[0], "1")
+        marks.legend(figure, axes)
 
-    return figures.inline(draw, (figures.WIDTH, 3.6), name, title)
+    return figures.inline(draw, (WIDTH, 3.6), name, title)

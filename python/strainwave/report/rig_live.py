@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from strainwave.report.terminal_plot import loop_lines
-from strainwave.report.typeset import number
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.running.guide import HELP, Look
+from strainwave.typeset import number
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -6,8 +6,8 @@ import re
 from math import floor, isfinite, log10
 from typing import NamedTuple
 
-from strainwave.report.typeset import fixed, number
 from strainwave.rig.analysis.result import Result
+from strainwave.typeset import fixed, number
 
 DIGITS = 4  # of a value whose uncertainty is not known
 FINEST = 6  # digits of a value, however well it is known

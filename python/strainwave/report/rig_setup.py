@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from strainwave.report.rig_figures import Pictures
-from strainwave.report.typeset import fixed, number, uncertain
 from strainwave.rig.bench.setup import Camera, Rig, Value
 from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.rig.vision.angle import Angles, Frame
+from strainwave.typeset import fixed, number, uncertain
 
 ARCSEC = 3600.0
 CELSIUS = 273.15  # K

@@ -10,7 +10,6 @@ import numpy as np
 
 from strainwave.report import rig_plates
 from strainwave.report.rig_numbers import Stated, sentence, stated
-from strainwave.report.typeset import fixed, number
 from strainwave.rig.analysis.analysis import DEFINITIONS, Definition, LoopAnalysis, table
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck
 from strainwave.rig.analysis.comparison import Compared, Comparison
@@ -21,6 +20,7 @@ from strainwave.rig.analysis.stiffness import closure_of_secants, soft_parts
 from strainwave.rig.reading.evaluation import Evaluation, budgets
 from strainwave.rig.torque.budget import Budget
 from strainwave.rig.virtual.printed import PEAK, TABLE_2
+from strainwave.typeset import fixed, number
 
 ARCMIN = 60.0
 OF_REGIMES = tuple(name.replace("_", " ") for name in NAMES)  # how remarks on one regime begin

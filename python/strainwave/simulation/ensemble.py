@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,6 +39,9 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
 from strainwave.simulation.threads import available_threads
 from strainwave.simulation.time_grid import TimeGrid
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 WHOLE = {
@@ -103,6 +106,36 @@ class Ensemble(ComparedByFields):
             raise ValueError(f"member {number} has no result: {self.failures[number]}")
         series = {name: values[number] for name, values in self.columns.items()}
         return Recording({"time": self.time} | series, {"time": "s"} | dict(self.units), title=f"member {number}")
+
+    def plot(self, names: Sequence[str] | None = None) -> Figure:
+        """Return a figure of outputs over time: the median of all members, and the bands of 50 % and 90 % of them.
+
+        Args:
+            names: the outputs to draw; all that were recorded if not given
+
+        Returns:
+            a matplotlib figure with a panel for each output; members without a result are left out
+
+        Raises:
+            ValueError: an output was not recorded, or no member has a result
+            TypeError: a name is no text
+
+        >>> import strainwave as sw
+        >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+        >>> runs = sw.simulate_many(drive, sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}, sample=1e-3)
+        >>> runs.plot(["torque"]).get_suptitle()
+        'Torque of 2 members'
+        """
+        from strainwave.simulation.ensemble_plot import ensemble_figure
+
+        drawn = list(self.columns) if names is None else list(arguments.names("names", names))
+        for name in drawn:
+            self[name]
+        if not drawn:
+            raise ValueError(f"names is empty; there are {listed(self.columns)}")
+        if len(self.failures) == len(self):
+            raise ValueError(f"none of the {len(self)} members has a result; the first failed: {self.failures[0]}")
+        return ensemble_figure(self.time, self.columns, self.units, drawn, len(self.failures))
 
     @staticmethod
     def read(folder: str | Path) -> Ensemble:

@@ -72,6 +72,10 @@ class Run(Recording):
     def __reduce__(self) -> tuple[Any, ...]:
         return Run, (dict(self.columns), dict(self.units), self.end, self.method)
 
+    @property
+    def _heading(self) -> str:
+        return ""  # the names of the columns say more than the method of steps
+
     def _came_about(self, end: State, method: str) -> None:
         object.__setattr__(self, "end", end)
         object.__setattr__(self, "method", method)

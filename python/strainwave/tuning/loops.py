@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,9 @@ from strainwave import Compensation, Drive, arguments, compensation, control
 from strainwave.files.gear_set import GearSet
 from strainwave.tuning.cascade import Plant, Setting, observer_of, tuned_law
 from strainwave.tuning.linear_plant import HeldPlant, LinearPlant
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -36,12 +39,20 @@ class Margins:
         phase: lag that may be added where the gain is 1 [rad]; infinite if the gain is below 1 everywhere
         modulus: least distance of the loop from -1, the inverse of the peak of its sensitivity; 0 if the loop is not stable
         crossover: highest frequency at which the gain is 1 [rad/s]; 0 if there is none
+        gain_at: frequency at which the gain may rise by `gain` [rad/s]; not a number if it may rise by any factor
+        phase_at: frequency at which `phase` may be added [rad/s]; not a number if any may
+        frequency: of `loop` [rad/s], shape (k,)
+        loop: frequency response of the open loop, shape (k,)
     """
 
     gain: float
     phase: float
     modulus: float
     crossover: float
+    gain_at: float = field(repr=False)
+    phase_at: float = field(repr=False)
+    frequency: Array = field(repr=False, compare=False)
+    loop: Complex = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -60,6 +71,19 @@ class LoopMargins:
     def modulus(self) -> float:
         """Smaller modulus margin of both."""
         return min(self.speed.modulus, self.position.modulus)
+
+    def plot(self) -> Figure:
+        """Return the Bode diagram of both open loops, with their gain and phase margins marked.
+
+        >>> import strainwave as sw
+        >>> law = sw.cascade("robot-joint", period=1e-3)
+        >>> drive = sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3))
+        >>> [axes.get_title() for axes in sw.loop_margins(drive).plot().axes]
+        ['magnitude', 'phase [°]']
+        """
+        from strainwave.tuning.loops_plot import margins_figure
+
+        return margins_figure({"speed loop": self.speed, "position loop": self.position})
 
 
 def loop_margins(drive: Drive) -> LoopMargins:
@@ -256,18 +280,24 @@ def _free(held: HeldPlant, speed: Array, momentum: float, passed: float) -> Arra
 
 def _margins(at: Array, loop: Complex, closed: Array) -> Margins:
     if not np.abs(np.linalg.eigvals(closed)).max() <= MAX_POLE_RADIUS:
-        return Margins(1.0, 0.0, 0.0, 0.0)
+        return Margins(1.0, 0.0, 0.0, 0.0, np.nan, np.nan, at, loop)
     size = np.log(np.abs(loop))
     angle = np.unwrap(np.angle(loop))
     half_turns = (angle / np.pi - 1.0) / 2.0  # whole where the loop is real and negative
-    behind = np.exp(_at_crossings(half_turns - np.round(half_turns), size))
-    lags = _at_crossings(size, angle)
+    negative = half_turns - np.round(half_turns)
+    behind, behind_at = np.exp(_at_crossings(negative, size)), np.exp(_at_crossings(negative, np.log(at)))
+    behind_at, behind = behind_at[behind < 1.0], behind[behind < 1.0]
+    lags = np.abs(np.angle(-np.exp(1j * _at_crossings(size, angle))))
     crossovers = np.exp(_at_crossings(size, np.log(at)))
     return Margins(
-        gain=float(1.0 / behind[behind < 1.0].max(initial=0.0)) if (behind < 1.0).any() else np.inf,
-        phase=float(np.abs(np.angle(-np.exp(1j * lags))).min(initial=np.inf)),
+        gain=float(1.0 / behind.max()) if behind.size else np.inf,
+        phase=float(lags.min(initial=np.inf)),
         modulus=float(np.abs(1.0 + loop).min()),
         crossover=float(crossovers.max(initial=0.0)),
+        gain_at=float(behind_at[behind.argmax()]) if behind.size else np.nan,
+        phase_at=float(crossovers[lags.argmin()]) if lags.size else np.nan,
+        frequency=at,
+        loop=loop,
     )
 
 

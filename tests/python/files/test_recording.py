@@ -18,6 +18,7 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from matplotlib.text import Text
 from strainwave.files.recording import Recording
 
 DATA = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3].parent / "shared" / "data"))
@@ -372,7 +373,7 @@ def test_a_write_that_fails_leaves_the_old_file(
 def test_a_plot_has_one_subplot_for_each_unit() -> None:
     run = RUN.with_column("load", [0.0, 0.0, 1.0, 1.0], "N.m")
     speed, torque = run.plot().axes
-    assert (speed.get_ylabel(), torque.get_ylabel()) == ("speed [rpm]", "[N.m]")
+    assert (speed.get_title(loc="left"), torque.get_title(loc="left")) == ("speed [rpm]", "[N·m]")
     assert torque.get_xlabel() == "time [s]"
     assert torque.get_legend_handles_labels()[1] == ["torque", "load"]
     assert torque.get_legend() is not None
@@ -386,28 +387,39 @@ def test_a_curve_that_would_be_flat_beside_a_larger_one_has_a_panel_of_its_own()
     figure = Recording(columns, dict.fromkeys(sizes, "rad") | {"time": "s"}).plot()
     panels = [[str(line.get_label()) for line in axis.lines] for axis in figure.axes]
     assert panels == [["command"], ["input angle", "output angle"], ["twist"]]
-    assert [axis.get_ylabel() for axis in figure.axes] == ["command [rad]", "[rad]", "twist [rad]"]
+    assert [axis.get_title(loc="left") for axis in figure.axes] == ["command [rad]", "[rad]", "twist [mrad]"]
 
 
 def test_what_a_picture_says_of_names_is_no_mathematics() -> None:
     recording = Recording({"time": [0.0, 1.0], "a$b$": [0.0, 1.0]}, {"time": "s", "a$b$": "1"}, title="$x^2$")
     figure = recording.plot()
     figure.savefig(BytesIO(), format="svg")
-    assert (figure.get_suptitle(), figure.axes[0].get_ylabel()) == (r"\$x^2\$", r"a\$b\$ [1]")
+    assert (figure.get_suptitle(), figure.axes[0].get_title(loc="left")) == ("$x^2$", "a$b$")
+    assert not any(text.get_parse_math() for text in figure.findobj(Text) if isinstance(text, Text) and "$" in text.get_text())
 
 
 def test_a_plot_leaves_out_what_does_not_change_but_for_rounding() -> None:
     columns = {"time": [0.0, 1.0], "torque": [0.0, 5.0], "rounding": [0.0, 1e-9], "constant": [3.0, 3.0], "power": [0.0, 1e-9]}
     units = {"time": "s", "torque": "N.m", "rounding": "N.m", "constant": "N.m", "power": "W"}
-    assert [axis.get_ylabel() for axis in Recording(columns, units).plot().axes] == ["torque [N.m]", "power [W]"]
+    assert [axis.get_title(loc="left") for axis in Recording(columns, units).plot().axes] == ["torque [N·m]", "power [nW]"]
     still = Recording({"time": [0.0, 1.0], "constant": [3.0, 3.0]}, {"time": "s", "constant": "N.m"})
-    assert [axis.get_ylabel() for axis in still.plot().axes] == ["constant [N.m]"]
+    assert [axis.get_title(loc="left") for axis in still.plot().axes] == ["constant [N·m]"]
 
 
 def test_a_plot_against_another_column() -> None:
     (axis,) = RUN.plot(["torque"], against="speed").axes
     assert axis.get_xlabel() == "speed [rpm]"
     assert np.array_equal(axis.lines[0].get_xdata(), RUN["speed"])
+
+
+def test_the_title_of_a_plot_is_that_of_the_recording_or_names_its_columns() -> None:
+    columns = {"time": [0.0, 1.0], "output_angle": [0.0, 1.0], "torque": [0.0, 1.0]}
+    units = {"time": "s", "output_angle": "rad", "torque": "N.m"}
+    assert Recording(columns, units, title="joint 3").plot().get_suptitle() == "joint 3"
+    assert Recording(columns, units).plot().get_suptitle() == "Output angle and torque over time"
+    many = {"time": [0.0, 1.0], **{f"column_{k}": [0.0, 1.0] for k in range(6)}}
+    title = Recording(many, dict.fromkeys(many, "s")).plot().get_suptitle()
+    assert " ".join(title.split()) == "Column 0, column 1, column 2 and 3 more columns over time"
 
 
 @untimed

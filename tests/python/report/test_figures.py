@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from strainwave.demo import position_drive, torsion_rig
+from strainwave.drawing.style import DARK, LIGHT
 from strainwave.identification.identify import Identified
-from strainwave.report import figures
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.identify import identify_report
 from strainwave.report.identify_figures import file_figure, overview
@@ -87,10 +87,10 @@ def test_residuals_are_drawn_over_their_samples(from_torsion: Identified) -> Non
     assert np.corrcoef(upright, residual[sample])[0, 1] == pytest.approx(-1.0, abs=1e-4)
 
 
-@pytest.mark.parametrize("scheme", [figures.LIGHT, figures.DARK])
+@pytest.mark.parametrize("scheme", [LIGHT, DARK])
 def test_every_colour_can_be_told_from_the_paper(scheme: dict[str, str], from_friction: Identified) -> None:
     """Contrast by WCAG 2.2: 4.5 for text, 3 for graphics; the rules of the grid are meant to be faint."""
-    paper = re.findall(r"--paper: (#\w{6})", identify_report(from_friction))[scheme is figures.DARK]
+    paper = re.findall(r"--paper: (#\w{6})", identify_report(from_friction))[scheme is DARK]
     for name, colour in scheme.items():
         assert contrast(colour, paper) > {"ink": 7.0, "rule": 1.2}.get(name, 4.5)
 
@@ -121,5 +121,5 @@ def test_the_overview_stands_by_itself() -> None:
     root = ElementTree.fromstring(picture)
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
     style = root[0].text or ""
-    for colours in (figures.LIGHT, figures.DARK):
+    for colours in (LIGHT, DARK):
         assert all(f"--{name}: {colour};" in style for name, colour in colours.items())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,11 @@ from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, plan
-from strainwave.messages import listed, quoted, shortened
+from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 EXACT_TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps on small residuals end far below it
@@ -176,6 +179,44 @@ class Fit(ComparedByFields):
                         "lacks something, or the fit ended at the wrong minimum; look at the residuals, and try sw.minima(fit)"
                     )
 
+    def plot(self, record: str | None = None) -> Figure:
+        """Return a figure of each channel of a record: measured and predicted, and the residual below.
+
+        Samples that were held out are shaded. Dashed lines contain 95 % of the residuals; the band is the interval of 95 % of
+        the prediction by the covariance of the estimates.
+
+        Args:
+            record: its name, as in `parts`; the first one if not given
+
+        Raises:
+            ValueError: no record has that name
+            TypeError: the name is no text
+        """
+        from strainwave.identification.results.curves import part_named, pictures_of
+        from strainwave.identification.results.picture_plot import pictures_figure
+
+        part = part_named(self, record)
+        return pictures_figure(pictures_of(self, record), f"Measured and predicted {_channels_of(part, len(self.parts) > 1)}")
+
+    def plot_residual_spectrum(self, record: str | None = None) -> Figure:
+        """Return a figure of the amplitude spectra of a log: of each channel measured, and of its residual.
+
+        A line of the residual at a frequency shows what the model lacks there: a vibration, an order of the gear, mains. Uneven
+        time is put on an even clock by interpolation.
+
+        Args:
+            record: its name, as in `parts`; the first one if not given
+
+        Raises:
+            ValueError: no record has that name, or the record has no time
+            TypeError: the name is no text
+        """
+        from strainwave.identification.results.curves import part_named
+        from strainwave.identification.results.residual_spectrum import spectrum_figure
+
+        part = part_named(self, record)
+        return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")
+
     def summary(self) -> str:
         """Return a table of the estimates, the residuals and the doubts, to print."""
         lines = [f"{'parameter':44} {'start':>12} {'value':>14} {'sigma':>10}  unit"]
@@ -191,6 +232,12 @@ class Fit(ComparedByFields):
                 lines.append(f"residual of {name}{of}: {trained:.4g} {unit} rms{held_out}")
         lines += [f"doubt: {doubt}" for doubt in self.doubts]
         return "\n".join(lines)
+
+
+def _channels_of(part: Part, named: bool) -> str:
+    """Return the channels of a record in words, with its name if there are several records."""
+    channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
+    return f"{channels}, {part.name}" if named else channels
 
 
 Measured = Recording | Experiment

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.file_result import Picture
+from strainwave.identification.fitting.fit import Fit, Part
+from strainwave.identification.results.file_result import Look, Picture
+from strainwave.messages import listed, quoted
 from strainwave.orders.two_encoders import TransmissionError
 
 Array = NDArray[np.float64]
@@ -30,15 +31,44 @@ def curves_of(fit: Fit) -> Recording:
     The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of the
     prediction and C the covariance of the estimates (JCGM 100:2008, eq. 13).
     """
-    part = fit.parts[0]
-    experiment, channel = part.experiment, part.experiment.channels[0]
+    return _curves(fit.parts[0], 0, _sigmas(fit)[0])
+
+
+def pictures_of(fit: Fit, record: str | None = None) -> tuple[Picture, ...]:
+    """Return a picture of each channel of a record, the first one if no name is given; curves as `curves_of` returns them.
+
+    The standard deviation of the prediction is drawn if the fit is to one record.
+    """
+    part = part_named(fit, record)
+    sigmas = _sigmas(fit) if len(fit.parts) == 1 else np.full(part.predicted.shape, np.inf)
+    look: Look = {"speed": "table", "twist": "loop"}.get(_abscissa(part.experiment)[0], "series")  # type: ignore[assignment]
+    return tuple(Picture(_curves(part, place, sigma), look) for place, sigma in enumerate(sigmas))
+
+
+def part_named(fit: Fit, record: str | None) -> Part:
+    """Return the part of a fit by the name of its record, the first one if no name is given.
+
+    Raises:
+        ValueError: no record has that name
+        TypeError: the name is no text
+    """
+    if record is None:
+        return fit.parts[0]
+    names = [part.name for part in fit.parts]
+    if arguments.text("record", record) not in names:
+        raise ValueError(f"no record {quoted(record)}; there are {listed(names)}")
+    return fit.parts[names.index(record)]
+
+
+def _curves(part: Part, place: int, sigma: Array) -> Recording:
+    """Return the curves of one channel; `sigma` is left out if it is not finite."""
+    experiment, channel = part.experiment, part.experiment.channels[place]
     over, unit, x = _abscissa(experiment)
-    columns = {over: x, channel: experiment.measured[0], "modelled": part.predicted[0]}
-    units = {over: unit, channel: experiment.units[0], "modelled": experiment.units[0], "held_out": "1"}
+    columns = {over: x, channel: experiment.measured[place], "modelled": part.predicted[place]}
+    units = {over: unit, channel: experiment.units[place], "modelled": experiment.units[place], "held_out": "1"}
     columns["held_out"] = (~part.training).astype(float)
-    sigma = _sigma(fit)
     if np.isfinite(sigma).all():
-        columns["sigma"], units["sigma"] = sigma, experiment.units[0]
+        columns["sigma"], units["sigma"] = sigma, experiment.units[place]
     return Recording(columns, units)
 
 
@@ -105,8 +135,8 @@ def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:
     return "time", "s", log.time
 
 
-def _sigma(fit: Fit) -> Array:
-    """Return the standard deviation of the prediction of the first channel, shape (n,)."""
+def _sigmas(fit: Fit) -> Array:
+    """Return the standard deviation of the prediction of the first record, shape (channels, n)."""
     part, own = fit.parts[0], {each.path: place for place, each in enumerate(fit.estimates)}
     zeros = [each.name for each in part.experiment.nuisances]
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
@@ -114,7 +144,7 @@ def _sigma(fit: Fit) -> Array:
     nuisances = np.array([fit.estimates[own[name]].value for name in zeros])
     _, slopes = part.experiment.predict(part.model, [numbers[path] for path in known], nuisances)
     places = [own[path] for path in (*known, *zeros)]
-    jacobian, covariance = slopes[:, 0], fit.covariance[np.ix_(places, places)]
+    covariance = fit.covariance[np.ix_(places, places)]
     with np.errstate(invalid="ignore"):  # infinite where the data do not determine an estimate
-        variance: Array = np.einsum("in,ij,jn->n", jacobian, covariance, jacobian, optimize=True)
+        variance: Array = np.einsum("icn,ij,jcn->cn", slopes, covariance, slopes, optimize=True)
     return np.sqrt(np.clip(variance, 0.0, None))

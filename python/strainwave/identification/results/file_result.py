@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
 Look = Literal["table", "loop", "series", "means"]
@@ -176,6 +179,21 @@ class FileResult(ComparedByFields):
         if self.fit is None:
             return self.model
         return f"{self.fit.gear.friction_input.name}, {self.fit.gear.friction_mesh.name}"
+
+    def plot(self) -> Figure:
+        """Return a figure of the file: measured and modelled, and the residual below, for each of its pictures.
+
+        Samples that were held out are shaded. Dashed lines contain 95 % of the residuals; a band is the interval of 95 % of the
+        model.
+
+        Raises:
+            ValueError: the file was refused, or is a point of a table of several files
+        """
+        from strainwave.identification.results.picture_plot import pictures_figure
+
+        if not self.pictures:
+            raise ValueError(f"{self.name} has nothing to draw: {self.refused or f'a part of the {self.part_of}'}")
+        return pictures_figure(self.pictures, f"Measured and modelled: {self.name}")
 
     @property
     def failed(self) -> tuple[Check, ...]:

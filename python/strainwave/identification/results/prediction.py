@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +13,11 @@ from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
 from strainwave.identification.results.changes import DRY, FRICTION, GRAVITY, INERTIA, SIGNIFICANCE_SIGMA, Change
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.file_result import Picture
 from strainwave.orders.lines import Line
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
@@ -65,6 +70,28 @@ class Prediction(ComparedByFields):
     def relative(self) -> float:
         """Error over that of a model that predicts nothing [1]."""
         return self.error / self.varies if self.varies > 0.0 else np.inf
+
+    @property
+    def picture(self) -> Picture | None:
+        """Measured against predicted, to be drawn; None if the recording could not be read."""
+        if self.curves is None:
+            return None
+        over, channel = self.curves.names[:2]
+        columns = {over: self.curves[over], channel: self.curves[channel], "modelled": self.curves["predicted"]}
+        units = {over: self.curves.unit(over), channel: self.unit, "modelled": self.unit}
+        return Picture(Recording(columns, units), "table" if over == "speed" else "series")
+
+    def plot(self) -> Figure:
+        """Return a figure of the recording: measured and predicted by the saved gear, and the residual below.
+
+        Raises:
+            ValueError: the recording cannot be predicted
+        """
+        from strainwave.identification.results.picture_plot import pictures_figure
+
+        if self.picture is None:
+            raise ValueError(f"{self.name} cannot be drawn: {self.refused}")
+        return pictures_figure([self.picture], f"{self.name}, predicted by {self.gear}")
 
     @property
     def contradicts(self) -> bool:

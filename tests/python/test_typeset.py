@@ -7,7 +7,7 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave.report import typeset
+from strainwave import typeset
 
 NUMBERS = st.floats(-1e12, 1e12).filter(lambda x: x == 0.0 or abs(x) > 1e-12)
 SIGMAS = st.floats(-12.0, 12.0).map(lambda power: 10.0**power)

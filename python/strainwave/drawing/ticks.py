@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from matplotlib.axis import Axis
 from matplotlib.ticker import Formatter
 
-from strainwave.report import typeset
+from strainwave import typeset
 
 
 class Ticks(Formatter):
@@ -23,7 +23,7 @@ class Ticks(Formatter):
         """All at once, since how many digits one has depends on the others."""
         numbers = [float(value) / 10.0**self.power for value in values]
         texts = [typeset.number(number, 4) for number in numbers]
-        if self.of.get_scale() != "linear":
+        if self.of.get_scale() != "linear" or any("×" in text for text in texts):
             return texts
         places = max((len(text.partition(".")[2]) for text in texts), default=0)
         return [typeset.fixed(number, places) for number in numbers]

@@ -1,0 +1,116 @@
+"""Drawings of linear and periodic responses, and of sensitivities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+BODE_HEIGHT = 4.2  # inches
+PHASE_STEPS = (1.0, 5.0, 15.0, 45.0, 90.0, 180.0, 360.0)  # degrees between two ticks
+MAX_PHASE_TICKS = 6
+MAX_FEW_DECADES = 150.0  # ratio of the ends of an axis up to which ticks stand at 1, 2 and 5 of a decade
+FEW_DECADES_SUBS = (1.0, 2.0, 5.0)
+MAX_POINTS = 40  # frequencies of a response, each of which is drawn as a point
+BAR_HEIGHT, MARGIN_HEIGHT = 0.24, 1.15  # inches
+MAX_BARS = 12  # parameters that are drawn, the strongest
+
+
+class Response(NamedTuple):
+    """A response over the frequency, to be drawn.
+
+    Attributes:
+        label: in the legend; none if empty
+        frequency: [Hz], shape (k,)
+        response: shape (k,)
+    """
+
+    label: str
+    frequency: Array
+    response: NDArray[np.complex128]
+
+
+def bode_figure(responses: Sequence[Response], unit: str, title: str) -> Figure:
+    """Return a Bode diagram: magnitude with its unit, and phase, over the frequency.
+
+    Args:
+        responses: one or several
+        unit: of the magnitude
+        title: of the figure
+    """
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    with marks.new_figure(BODE_HEIGHT, title) as figure:
+        magnitude, phase = figure.subplots(2, 1, sharex=True)
+        for place, (label, frequency, response) in enumerate(responses):
+            points = "o" if len(frequency) <= MAX_POINTS else ""
+            style = {**marks.line_style(place), "marker": points, "label": label}
+            magnitude.plot(frequency, np.abs(response), **style)
+            phase.plot(frequency, phase_in_degrees(response), **style)
+        magnitude.set_yscale("log")
+        magnitude.set_xscale("log")
+        set_phase_ticks(phase)
+        for axis in (magnitude.xaxis, magnitude.yaxis):
+            low, high = axis.get_view_interval()
+            subs = FEW_DECADES_SUBS if high / low < MAX_FEW_DECADES else (1.0,)
+            axis.set_major_locator(LogLocator(subs=subs))
+            axis.set_minor_formatter(NullFormatter())
+        marks.label_axes(magnitude, "magnitude", unit)
+        marks.label_axes(phase, "phase", "deg", "frequency", "Hz")
+        if responses[0].label:
+            marks.legend(figure, magnitude, below=True)
+    return figure
+
+
+def set_phase_ticks(axes: Axes) -> None:
+    """Set the ticks of an axis in degrees to a whole part of a turn."""
+    from matplotlib.ticker import MultipleLocator
+
+    span = float(np.ptp(axes.get_ylim()))
+    step = next((step for step in PHASE_STEPS if span / step <= MAX_PHASE_TICKS), PHASE_STEPS[-1])
+    axes.yaxis.set_major_locator(MultipleLocator(step))
+
+
+def phase_in_degrees(response: NDArray[np.complex128]) -> Array:
+    """Return the phase without jumps [deg], from between -360 and 0 on."""
+    phase = np.degrees(np.unwrap(np.angle(response)))
+    shift = 360.0 * np.ceil((phase[0] - 1.0) / 360.0)  # a phase of rounding about 0 stays there
+    unwrapped: Array = phase - shift
+    return unwrapped
+
+
+def sensitivity_figure(effects: Mapping[str, float], unit: str, output: str, percent: float) -> Figure:
+    """Return bars of the effects of parameters on an output, the largest first.
+
+    Args:
+        effects: root mean square change of the output, by the path of each parameter
+        unit: of the output
+        output: its name in words
+        percent: change of each parameter [%]
+    """
+    strongest = sorted(effects, key=lambda path: -effects[path])[:MAX_BARS]
+    which = f"the {MAX_BARS} strongest of {len(effects)} parameters" if len(effects) > MAX_BARS else "parameters"
+    with marks.new_figure(MARGIN_HEIGHT + BAR_HEIGHT * len(strongest), f"Sensitivity of {output} to {which}") as figure:
+        axes = figure.subplots()
+        _bars(axes, strongest, [effects[path] for path in strongest])
+        marks.label_abscissa(axes, f"root mean square change by + {percent:g} %", unit)
+    return figure
+
+
+def _bars(axes: Axes, names: Sequence[str], values: Sequence[float]) -> None:
+    """Draw horizontal bars, the first one on top."""
+    axes.barh(range(len(names)), values, height=0.7, color=LIGHT["measured"])
+    axes.set_yticks(range(len(names)), names, fontsize="small")
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.grid(visible=False, axis="y")
+    axes.tick_params(axis="y", length=0.0)
