@@ -32,7 +32,8 @@ def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Seq
     top = _top(diagram.frequency, highest, orders, eigenfrequencies)
     shown = diagram.frequency <= top
     column = diagram.column.replace("_", " ")
-    with marks.new_figure(HEIGHT, f"Campbell diagram of the {column}") as figure:
+    dashed = f"; dashed: {'eigenfrequency' if len(eigenfrequencies) == 1 else 'eigenfrequencies'}" if eigenfrequencies else ""
+    with marks.new_figure(HEIGHT, f"Campbell diagram of the {column}{dashed}") as figure:
         axes = figure.subplots()
         largest = float(diagram.amplitude.max())
         colours = axes.pcolormesh(
@@ -45,8 +46,8 @@ def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Seq
         bar.set_label(f"amplitude [{typeset.unit(diagram.unit)}]" if diagram.unit != "1" else "amplitude")
         for frequency in eigenfrequencies:
             axes.axhline(frequency, color="white", linestyle="--", linewidth=1.0)
-            label = f"eigenfrequency {typeset.quantity(frequency, 'Hz')} "
-            axes.text(highest, frequency, label, color="white", ha="right", va="bottom", fontsize="small")
+            label = f" {typeset.quantity(frequency, 'Hz')}"
+            axes.text(1.0, frequency, label, transform=axes.get_yaxis_transform(), va="center", fontsize="small")
         for order in orders:
             end = min(highest, LABEL_SHARE * top * tau / order)
             axes.plot([lowest, end], [order * lowest / tau, order * end / tau], color="white", linestyle=":", linewidth=0.9)

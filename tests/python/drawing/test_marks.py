@@ -22,7 +22,7 @@ def test_a_figure_has_the_style_of_the_package_whatever_the_caller_prefers() -> 
     assert figure.get_size_inches().tolist() == [WIDTH, 2.0]
     assert (figure.get_suptitle(), axes.get_title(loc="left"), axes.get_xlabel()) == ("cost in $", "twist [mrad]", "time [s]")
     assert axes.xaxis.label.get_size() == 9.0
-    assert [text.get_text() for text in axes.get_yticklabels()][-2] == "2.0"
+    assert "2" in {text.get_text() for text in axes.get_yticklabels()}  # mrad
 
 
 def test_a_title_is_broken_to_the_width_of_the_figure() -> None:
@@ -61,7 +61,7 @@ def test_a_legend_lies_outside_all_axes_and_the_title(below: bool) -> None:
     figure.savefig(BytesIO(), format="png")
     box = figure.legends[0].get_window_extent()
     assert not box.overlaps(axes.get_window_extent())
-    assert (box.y1 < axes.get_window_extent().y0) is below
+    assert bool(box.y1 < axes.get_window_extent().y0) is below
 
 
 def test_the_envelope_of_a_curve_keeps_its_extremes() -> None:
