@@ -141,11 +141,11 @@ truth = {
     "load.gravity_torque": 11.0,
     "load.gravity_phase": 0.0,
 }
-estimates = [each.estimate for each in found.parameters]
 print(f"{'':30} {'identified':>10} {'truth':>9}  standard deviations apart")
-for each in estimates:
-    distance = (each.value - truth[each.path]) / each.sigma
-    print(f"{each.path:30} {each.value:10.4g} {truth[each.path]:9.4g} {distance:10.1f}")
+for parameter in found.parameters:
+    estimate = parameter.estimate
+    distance = (estimate.value - truth[estimate.path]) / estimate.sigma
+    print(f"{estimate.path:30} {estimate.value:10.4g} {truth[estimate.path]:9.4g} {distance:10.1f}")
 
 # %% [markdown]
 # Four numbers of five are within two standard deviations. **Viscous friction is 5 % too low**, 2.3 standard deviations. The
@@ -160,6 +160,7 @@ for each in estimates:
 # | columns without units | `--unit q=deg`, if the command asks, or if a remark names a unit that was assumed |
 # | the torque of the joint in place of a current | nothing: `tau` or `effort` are found; the torque constant is not needed |
 # | all joints of the robot in one file | `--joint 2`, or `--joint all` for every joint |
+# | no header at all | `--column current=NAME`, with the name that the message proposes |
 # | rows without time | `--constant rate=500`: samples per second |
 # | another ratio than the catalogue set | `--constant ratio=101` |
 # | the motor's angle | `--column input_angle=NAME` |

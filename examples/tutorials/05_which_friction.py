@@ -21,9 +21,9 @@
 # | `residuals together` | how many neighbouring rows are wrong in the same sense; if more than 1, the law lacks something |
 # | `cost` | time of the law in a simulation, for each evaluation |
 #
-# The law to take is in the first line. It is not always the one with the least error, but the **simplest that chance alone
-# could make as good as the best**. Here the laws without a fall at low speed have an error several times as large, and the
-# laws with more numbers than the first gain nothing.
+# The law to take is in the first line: the **simplest law whose error exceeds the smallest by no more than chance explains**.
+# Here the laws without a fall at low speed have an error about four times as large. The laws with more numbers than the first
+# gain nothing.
 #
 # ## 2. Look at the laws
 #
@@ -66,7 +66,7 @@ _ = panels[0].legend(fontsize="small")
 
 # %% [markdown]
 # On the left, all laws look alike. The logarithm on the right shows the difference: below 5 rad/s (50 1/min) the friction
-# rises toward rest, and two laws cannot follow. They pay for it at medium speeds.
+# rises toward rest, and two laws cannot follow. In return, they are too high at 5 to 50 rad/s.
 
 # %%
 print(fits["with a fall at low speed"].summary())
@@ -125,7 +125,8 @@ print(f"largest difference in a table: {np.abs(lugre.steady(grid) - stribeck.ste
 # * **Bristles that bend at reversals** are in all of the best lines: the joint turns round often, and friction does not jump
 #   there.
 # * **Another friction at low speed** is no better than without, though the joint has one. A log passes quickly through low
-#   speeds, and the bristles explain the same samples. The table above showed the fall with 13 speeds.
+#   speeds, and the bristles explain the same samples. The table above shows the fall, and so does a log of the same joint at
+#   500 Hz.
 # * **A loss under load** changes nothing: the joint has none.
 #
 # A log shows what matters for *its* motion. It does not show that an effect is absent.
@@ -137,10 +138,10 @@ stated = sw.FileMapping(constants={"torque_constant": 0.0755})
 both = sw.identify("hfuc-20-80", ["friction.csv", "robot_log.csv"], mapping=stated)
 truth = {"coulomb": 0.047, "breakaway": 0.062, "stribeck_speed": 3.0, "viscous": 2.9e-4}
 for parameter in both.parameters:
-    each = parameter.estimate
-    name = each.path.rpartition(".")[2]
+    estimate = parameter.estimate
+    name = estimate.path.rpartition(".")[2]
     known = f"truth {truth[name]:<8.4g}" if name in truth else ""
-    print(f"{each.path:30} {each.value:9.4g} ± {each.sigma:<8.2g} {known:14} {parameter.source}")
+    print(f"{estimate.path:34} {estimate.value:9.4g} ± {estimate.sigma:<8.2g} {known:14} {parameter.source}")
 
 # %% [markdown]
 # The law of the table is taken, and the log gives the load. **Both files are simulated**: the log by a program that shares
