@@ -9,7 +9,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
+
+from tests import tutorial_joint
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "examples" / "tutorials"
@@ -53,6 +56,18 @@ def test_the_files_of_tutorials_are_small_text_and_each_is_used(tutorials: Modul
         if path.suffix != ".py":
             assert len(path.read_text(encoding="utf-8").encode()) <= MAX_BYTES, path.name
             assert any(tutorials.is_named(path.name, text) for text in texts), path.name
+
+
+@pytest.mark.skipif(not (tutorial_joint.RIG / "joint.c").is_file(), reason="the joint of another program was not found")
+def test_the_supplied_files_are_those_of_the_joint(tmp_path: Path) -> None:
+    """A change of a file, or of the joint, would make the truths of the tutorials wrong."""
+    tutorial_joint.main(tmp_path)
+    made = sorted(tmp_path.glob("*.csv"))
+    assert len(made) == 6
+    for path in made:
+        supplied, anew = (np.loadtxt(file, delimiter=",", skiprows=1) for file in (FOLDER / path.name, path))
+        # the last digits depend on the rounding of the compiler's arithmetic
+        np.testing.assert_allclose(supplied, anew, rtol=1e-3, atol=2e-3, err_msg=path.name)
 
 
 def test_the_page_of_tutorials_lists_each() -> None:
