@@ -1,5 +1,5 @@
 # %% [markdown]
-# # What a gear does to a joint
+# # Simulate a joint and read what the gear does to it
 #
 # At the end you know the four effects of a strain wave gear by sight: kinematic error, wind-up, hysteresis and friction. You have
 # the share of each in the error of a joint, and the speed at which the gear makes the joint vibrate.
@@ -94,7 +94,9 @@ axes.legend()
 at_zero = np.flatnonzero(np.diff(np.sign(run["torque"])))
 print(f"torque from {run['torque'].min():.1f} to {run['torque'].max():.1f} N.m")
 print(f"twist from {1e6 * run['twist'].min():.0f} to {1e6 * run['twist'].max():.0f} µrad")
-print(f"twist where the torque passes zero: {1e6 * run['twist'][at_zero].min():.0f} and {1e6 * run['twist'][at_zero].max():.0f} µrad")
+print(
+    f"twist where the torque passes zero: {1e6 * run['twist'][at_zero].min():.0f} and {1e6 * run['twist'][at_zero].max():.0f} µrad"
+)
 
 figure, axes = plt.subplots(figsize=(6.0, 5.0), layout="constrained")
 axes.plot(1e6 * run["twist"], run["torque"], label="with hysteresis")
