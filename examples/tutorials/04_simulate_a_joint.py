@@ -1,16 +1,16 @@
 # %% [markdown]
 # # Simulate a joint and read what the gear does to it
 #
-# At the end you know the four effects of a strain wave gear by sight: kinematic error, wind-up, hysteresis and friction. You have
-# the share of each in the error of a joint, and the speed at which the gear makes the joint vibrate.
+# At the end you know the four effects of a strain wave gear by sight: kinematic error, wind-up, hysteresis and friction. You
+# have the share of each in the error of a joint, and the speed at which the gear makes the joint vibrate.
 #
 # **Time:** 15 minutes. **You need:** strainwave and matplotlib; no measurement, no compiler.
 
 # %% [markdown]
 # ## A joint
 #
-# A catalogue set has the gear: ratio, stiffness, hysteresis, friction, kinematic error. You add motor, controller and arm. The
-# numbers here are those of a shoulder with an arm of 3 kg·m². All units are SI: rad, N·m, s, A.
+# A catalogue set has the gear: ratio, stiffness, hysteresis, friction, kinematic error. You add motor, controller and arm.
+# The numbers here are those of a shoulder with an arm of 3 kg·m². All units are SI: rad, N·m, s, A.
 
 # %%
 import matplotlib.pyplot as plt
@@ -31,16 +31,16 @@ print("stiffness", gear.stiffness)
 print("friction", gear.friction_input)
 
 # %% [markdown]
-# The ratio is negative: in this gear the circular spline is fixed, and the output turns against the motor. Friction is that of the
-# input; at the output it counts with the ratio, 0.09 N·m as 9 N·m.
+# The ratio is negative: in this gear the circular spline is fixed, and the output turns against the motor. Friction is that
+# of the input; at the output it counts with the ratio, 0.09 N·m as 9 N·m.
 #
-# The controller sees the encoder of the motor only, as in most joints. So it keeps the *motor* at its place. What the gear does
-# behind it, no loop corrects.
+# The controller sees the encoder of the motor only, as in most joints. So it keeps the *motor* at its place. What the gear
+# does behind it, no loop corrects.
 #
 # ## A move
 #
-# The arm swings slowly to and fro by 0.5 rad. The command is the angle of the output. `initial` starts the arm where the command
-# begins, wound up by its weight; else the joint starts at zero and jumps to the command.
+# The arm swings slowly to and fro by 0.5 rad. The command is the angle of the output. `initial` starts the arm where the
+# command begins, wound up by its weight; else the joint starts at zero and jumps to the command.
 
 # %%
 move = sw.scenario.sine(amplitude=0.5, frequency=0.1, duration=15.0, phase=-np.pi / 2)
@@ -56,13 +56,13 @@ lower.plot(run.time, 1e6 * error)
 lower.set(xlabel="time [s]", ylabel="command - output [µrad]")
 
 # %% [markdown]
-# The first five seconds are left out (`between`), so that the loop has settled. The error looks confused because four effects are
-# in it. The next sections take them one by one.
+# The first five seconds are left out (`between`), so that the loop has settled. The error looks confused because four effects
+# are in it. The next sections take them one by one.
 #
 # ## Kinematic error: a ripple with the angle of the motor
 #
-# With an encoder on each shaft you can measure the *transmission error*: input angle over ratio, less output angle. It is the sum of
-# the kinematic error and the twist of the gear. A recording has all three columns.
+# With an encoder on each shaft you can measure the *transmission error*: input angle over ratio, less output angle. It is the
+# sum of the kinematic error and the twist of the gear. A recording has all three columns.
 
 # %%
 total = run["input_angle"] / gear.kinematics.ratio - run["output_angle"]
@@ -82,13 +82,14 @@ axes.set_title("The kinematic error repeats twice in a turn of the motor")
 axes.legend()
 
 # %% [markdown]
-# *Order 2* means: twice in each turn of the motor, because the wave generator has two lobes. The amplitude in the transmission error
-# is larger than that of the gear file, because the ripple shakes the arm a little and so twists the gear. Near a resonance it does
-# this much more, as you will see.
+# *Order 2* means: twice in each turn of the motor, because the wave generator has two lobes. The amplitude in the
+# transmission error is larger than that of the gear file, because the ripple shakes the arm a little and so twists the gear.
+# Near a resonance it does this much more, as you will see.
 #
 # ## Wind-up and hysteresis: the twist under load
 #
-# The weight of the arm twists the gear. Over the torque, the twist is a loop: on the way back the gear keeps a part of its twist.
+# The weight of the arm twists the gear. Over the torque, the twist is a loop: on the way back the gear keeps a part of its
+# twist.
 
 # %%
 at_zero = np.flatnonzero(np.diff(np.sign(run["torque"])))
@@ -106,13 +107,13 @@ axes.set(xlabel="twist [µrad]", ylabel="torque [N.m]", title="Wind-up, and the 
 axes.legend()
 
 # %% [markdown]
-# The width at zero torque is the lost motion that hysteresis makes. The small teeth inside the loop come from order 2: the ripple
-# reverses the twist for a moment, and each reversal has its own small loop.
+# The width at zero torque is the lost motion that hysteresis makes. The small teeth inside the loop come from order 2: the
+# ripple reverses the twist for a moment, and each reversal has its own small loop.
 #
 # ## Friction: the reversal
 #
-# Where the arm turns round, the friction of the input changes its sign. Until the controller has built up the torque, the motor
-# stands, and so does the arm.
+# Where the arm turns round, the friction of the input changes its sign. Until the controller has built up the torque, the
+# motor stands, and so does the arm.
 
 # %%
 around = run.between(9.6, 10.4)
@@ -131,9 +132,9 @@ panels[2].set(xlabel="time [s]", ylabel="error [µrad]")
 # %% [markdown]
 # ## Resonance: where the ripple meets the arm
 #
-# Spring and arm vibrate at an eigenfrequency. Order 2 meets it when the motor turns at half of it. `sw.modes` computes it, and a
-# run-up shows it: the speed of the motor grows steadily. The arm turns in a horizontal plane, so that its weight does not load the
-# spring.
+# Spring and arm vibrate at an eigenfrequency. Order 2 meets it when the motor turns at half of it. `sw.modes` computes it,
+# and a run-up shows it: the speed of the motor grows steadily. The arm turns in a horizontal plane, so that its weight does
+# not load the spring.
 
 # %%
 flat = joint.replace({"load.gravity_torque": 0.0})  # the arm turns in a horizontal plane
@@ -162,14 +163,14 @@ axes.set(xlabel="speed of the motor [rad/s]", ylabel="order 2 of the torque [N.m
 axes.legend()
 
 # %% [markdown]
-# The peak lies between the two lines. In small motion the elements of the hysteresis stick and add their stiffness to that of the
-# spring; `sw.modes` computes this case. In larger motion they slide, and the gear is softer. So the resonance of a gear moves with
-# the amplitude, and a linear model has no right value for it.
+# The peak lies between the two lines. In small motion the elements of the hysteresis stick and add their stiffness to that of
+# the spring; `sw.modes` computes this case. In larger motion they slide, and the gear is softer. So the resonance of a gear
+# moves with the amplitude, and a linear model has no right value for it.
 #
 # ## The share of each effect
 #
-# Now each effect is switched off, one at a time, and then each is left as the only one. `replace` makes a changed copy of the drive;
-# paths name the part.
+# Now each effect is switched off, one at a time, and then each is left as the only one. `replace` makes a changed copy of the
+# drive; paths name the part.
 
 # %%
 switched_off = {
@@ -210,8 +211,9 @@ axes.set(xlabel="error of the output [µrad rms]", title="What each effect does 
 figure.legend(loc="outside lower center", ncols=3)
 
 # %% [markdown]
-# Here the weight of the arm makes most of the error, by wind-up. The shares do not add up. The elements of the hysteresis carry a
-# part of the load, so the twist is larger without them. Friction acts at the reversal only, and there the loop reacts to it.
+# Here the weight of the arm makes most of the error, by wind-up. The shares do not add up. The elements of the hysteresis
+# carry a part of the load, so the twist is larger without them. Friction acts at the reversal only, and there the loop reacts
+# to it.
 #
 # ## What can go wrong
 #

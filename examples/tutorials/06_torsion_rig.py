@@ -1,17 +1,17 @@
 # %% [markdown]
 # # Torsion rig: from photographs to a report
 #
-# At the end you have the stiffness, the hysteresis and the lost motion of a gear with their uncertainties, a report, and a gear file
-# for simulations. The test needs masses, cords and a camera.
+# At the end you have the stiffness, the hysteresis and the lost motion of a gear with their uncertainties, a report, and a
+# gear file for simulations. The test needs masses, cords and a camera.
 #
-# **Time:** 20 minutes. **You need:** strainwave with matplotlib. A rig is not needed: a virtual one makes the photographs here. The two
-# sections that begin with *With your own rig* say what changes for real ones.
+# **Time:** 20 minutes. **You need:** strainwave with matplotlib. A rig is not needed: a virtual one makes the photographs
+# here. The two sections that begin with *With your own rig* say what changes for real ones.
 
 # %% [markdown]
 # ## The rig file
 #
-# The output of the gear is held. A disk sits on the shaft of the wave generator. Masses on cords turn the disk, and a camera sees two
-# round markers on it. A TOML file states the numbers of the rig, each with its unit, its uncertainty and its source:
+# The output of the gear is held. A disk sits on the shaft of the wave generator. Masses on cords turn the disk, and a camera
+# sees two round markers on it. A TOML file states the numbers of the rig, each with its unit, its uncertainty and its source:
 
 # %%
 from pathlib import Path
@@ -24,25 +24,27 @@ print(Path("06_torsion_rig_bench.toml").read_text())
 
 # %% [markdown]
 # **With your own rig:** copy this file and write your numbers into it. `disk_radius` and the masses are needed. Measure
-# `pulley_torque` and `compliance` too: what is left out counts as zero, and widens or softens the gear in the result.
-# [The torsion rig](../how-to/torsion-rig.md) describes what to build and how to measure each of these numbers.
+# `pulley_torque` and `compliance` too: what is left out counts as zero, and widens or softens the gear in the result. [The
+# torsion rig](../how-to/torsion-rig.md) describes what to build and how to measure each of these numbers.
 #
 # ## The plan
 #
-# The torque goes to the positive peak, through zero to the negative peak, and back. `strainwave rig plan` prints what to lay on the
-# pans at each step. Choose a peak that the gear may carry: 0.9 N·m at the input are 90 N·m at the output of this gear of ratio 100.
+# The torque goes to the positive peak, through zero to the negative peak, and back. `strainwave rig plan` prints what to lay
+# on the pans at each step. Choose a peak that the gear may carry: 0.9 N·m at the input are 90 N·m at the output of this gear
+# of ratio 100.
 
 # %% [console]
 # $ strainwave rig plan --rig 06_torsion_rig_bench.toml --torque 0.9 --positions 0 --out plan.csv | sed -n '1,12p;$p'
 
 # %% [markdown]
-# The first line states what the masses cannot do: 0.9 N·m is no whole number of masses, so the plan takes the nearest torque. The table
-# is for the bench; `plan.csv` has the same steps for a program.
+# The first line states what the masses cannot do: 0.9 N·m is no whole number of masses, so the plan takes the nearest torque.
+# The table is for the bench; `plan.csv` has the same steps for a program.
 #
 # ## The test
 #
-# Here the test is a virtual one. The gear on the rig is one of the catalogue, but with another hysteresis and friction; the analysis does not
-# get these numbers. The folder `torsion-test` then has what a real test leaves: a photograph of each step, `steps.csv`, `rig.toml`.
+# Here the test is a virtual one. The gear on the rig is one of the catalogue, but with another hysteresis and friction; the
+# analysis does not get these numbers. The folder `torsion-test` then has what a real test leaves: a photograph of each step,
+# `steps.csv`, `rig.toml`.
 
 # %%
 on_the_rig = sw.load("csg-25-100").replace(
@@ -70,15 +72,17 @@ for axes, number in zip(panels, (1, 19), strict=True):
 #
 # 1. `rig.toml`: your rig file.
 # 2. The photographs, with any names, as PNG or JPEG. Both markers must be sharp and not over-exposed.
-# 3. `steps.csv` with a row for each step: `number`, the *total* mass on the two positive pans and on the two negative pans, and
-#    `image`. The header states the units: `mass_positive [g]` is allowed too. Positive turns against the clock in the picture.
+# 3. `steps.csv` with a row for each step: `number`, the *total* mass on the two positive pans and on the two negative pans,
+#    and `image`. The header states the units: `mass_positive [g]` is allowed too. Positive turns against the clock in the
+#    picture.
 #
-# `strainwave rig measure` does this with you, step by step, and goes on after a break. All that follows is the same for real photographs.
+# `strainwave rig measure` does this with you, step by step, and goes on after a break. All that follows is the same for real
+# photographs.
 #
 # ## From photographs to a loop
 #
-# `read_test` finds the markers in each photograph, computes angle and torque, and takes out the friction of the pulleys and the
-# compliance of the rig. (Do not print `test` itself: it contains every marker of every photograph.)
+# `read_test` finds the markers in each photograph, computes angle and torque, and takes out the friction of the pulleys and
+# the compliance of the rig. (Do not print `test` itself: it contains every marker of every photograph.)
 
 # %%
 test = sw.rig.read_test("torsion-test")
@@ -89,13 +93,14 @@ print(sw.rig.torque_budget(bench, test.steps[0]))
 print("remarks:", (*test.remarks, *loop.remarks) or "none")
 
 # %% [markdown]
-# The budget lists what limits the torque, the largest first. Improve its first line, not its last. An empty list of remarks is good: it
-# would name a blurred photograph, a skipped step, or a camera that looks askew.
+# The budget lists what limits the torque, the largest first. Improve its first line, not its last. An empty list of remarks
+# is good: it would name a blurred photograph, a skipped step, or a camera that looks askew.
 #
 # ## A friction table
 #
-# The loop of the input contains the friction of the wave generator. To separate it, measure the friction apart: turn the free gear at a few
-# constant speeds, and write down the torque. A motor with a known torque constant does it. Here it is a table of the virtual gear.
+# The loop of the input contains the friction of the wave generator. To separate it, measure the friction apart: turn the free
+# gear at a few constant speeds, and write down the torque. A motor with a known torque constant does it. Here it is a table
+# of the virtual gear.
 
 # %%
 speed = np.geomspace(1.0, 300.0, 12)
@@ -107,14 +112,15 @@ print(*Path("friction.csv").read_text().splitlines()[:4], sep="\n")
 # %% [markdown]
 # ## The report
 #
-# `strainwave rig analyse` computes stiffness, hysteresis and lost motion by stated definitions, each with an interval of 95 %.
+# `strainwave rig analyse` computes stiffness, hysteresis and lost motion by stated definitions, each with an interval of 95
+# %.
 
 # %% [console]
 # $ strainwave rig analyse torsion-test --gear csg-25-100 --friction friction.csv --out analysis
 
 # %% [markdown]
-# `analysis/report.html` has the figures, the definitions and the budget. `results.json` has every number. The same in Python, for the loop
-# with and without the friction of the wave generator:
+# `analysis/report.html` has the figures, the definitions and the budget. `results.json` has every number. The same in Python,
+# for the loop with and without the friction of the wave generator:
 
 # %%
 clean = sw.rig.without_friction(loop, sw.rig.friction_at_rest(friction, sw.load("csg-25-100")))
@@ -129,13 +135,13 @@ axes.set(xlabel="angle of the input [deg]", ylabel="torque at the input [N.m]", 
 axes.legend()
 
 # %% [markdown]
-# The loop as measured is wider, because it contains the friction of the wave generator. Without a friction table you would take all
-# of the width for hysteresis of the flexspline.
+# The loop as measured is wider, because it contains the friction of the wave generator. Without a friction table you would
+# take all of the width for hysteresis of the flexspline.
 #
 # ## The gear
 #
-# `sw.identify` takes friction table and loop together and gives a gear. The first argument is the catalogue set to begin with. On the
-# command line: `strainwave identify csg-25-100 friction.csv analysis/loop-0deg.csv`.
+# `sw.identify` takes friction table and loop together and gives a gear. The first argument is the catalogue set to begin
+# with. On the command line: `strainwave identify csg-25-100 friction.csv analysis/loop-0deg.csv`.
 
 # %%
 result = sw.identify("csg-25-100", {"friction": friction, "torsion": loop.recording()})
