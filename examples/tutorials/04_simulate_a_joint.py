@@ -13,6 +13,8 @@
 # The numbers here are those of a shoulder with an arm of 3 kg·m². All units are SI: rad, N·m, s, A.
 
 # %%
+from itertools import pairwise
+
 import matplotlib.pyplot as plt
 import numpy as np
 import strainwave as sw
@@ -95,9 +97,8 @@ axes.legend()
 at_zero = np.flatnonzero(np.diff(np.sign(run["torque"])))
 print(f"torque from {run['torque'].min():.1f} to {run['torque'].max():.1f} N.m")
 print(f"twist from {1e6 * run['twist'].min():.0f} to {1e6 * run['twist'].max():.0f} µrad")
-print(
-    f"twist where the torque passes zero: {1e6 * run['twist'][at_zero].min():.0f} and {1e6 * run['twist'][at_zero].max():.0f} µrad"
-)
+lost = run["twist"][at_zero]
+print(f"twist where the torque passes zero: {1e6 * lost.min():.0f} and {1e6 * lost.max():.0f} µrad")
 
 figure, axes = plt.subplots(figsize=(6.0, 5.0), layout="constrained")
 axes.plot(1e6 * run["twist"], run["torque"], label="with hysteresis")
@@ -150,7 +151,7 @@ turning = {"output_angle": 0.0, "output_speed": slow / abs(gear.kinematics.ratio
 run_up = sw.simulate(flat, sw.scenario.table(time, angle), sample=1e-3, initial=turning)
 
 ends = np.searchsorted(np.abs(run_up["input_angle"]) / (2.0 * np.pi), np.arange(5.0, 130.0, 3.0))
-stretches = [run_up.between(run_up.time[a], run_up.time[b]) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+stretches = [run_up.between(run_up.time[a], run_up.time[b]) for a, b in pairwise(ends)]
 speed = np.array([np.abs(each["input_speed"]).mean() for each in stretches])
 ripple = np.array([sw.order_amplitudes(each, "torque", [2.0]).amplitude[0] for each in stretches])
 print(f"largest ripple of the torque: {ripple.max():.1f} N.m, at {speed[ripple.argmax()]:.0f} rad/s")
@@ -219,10 +220,10 @@ figure.legend(loc="outside lower center", ncols=3)
 #
 # | message or effect | cause, and what to do |
 # |---|---|
-# | `dt = … s is too coarse …` | Something is very stiff or very light. Give the step in the message, or look for a wrong unit. |
+# | `dt = … s is too coarse …` | A part is very stiff or very light. Give the step of the message, or look for a wrong unit. |
 # | the joint jumps at the start | The command does not begin at 0: give `initial={"output_angle": …}`. |
 # | a twist of the wrong sign | The output turns against the motor if the circular spline is fixed: the ratio is negative. |
-# | a ripple without a fault | Check `kinematic_error` of the set: catalogue sets have an assumed one, marked in the gear file. |
+# | a ripple without a fault | Catalogue sets have an assumed `kinematic_error`; the gear file marks it. |
 #
 # ## Where to go on
 #

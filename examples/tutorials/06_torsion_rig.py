@@ -166,11 +166,11 @@ print(f"friction {mine.friction_input.coulomb:.4f} N.m found, {on_the_rig.fricti
 #
 # | message or effect | cause, and what to do |
 # |---|---|
-# | `some steps exchange masses` (in the plan) | There are too few small masses. Use masses of one size, or a longer step by `--step`. |
-# | a remark names a photograph | It is blurred, over-exposed, or lacks a marker. Its step is left out; the other steps remain. |
-# | the sign of the torque is wrong | Positive pans turn the disk against the clock *in the picture*. Exchange the two columns. |
+# | `some steps exchange masses` (in the plan) | There are too few small masses. Use masses of one size, or a larger `--step`. |
+# | a remark names a photograph | It is blurred, over-exposed, or lacks a marker. The other steps remain. |
+# | the sign of the torque is wrong | Positive pans turn the disk against the clock *in the picture*: exchange the columns. |
 # | `the loop does not close`, no area | The last step is not the first torque again. Measure to the positive peak again. |
-# | lost motion far above the catalogue | The friction table is missing, or the mount yields: measure `compliance` with a rigid dummy. |
+# | lost motion far above the catalogue | The friction table is missing, or the mount yields: measure `compliance`. |
 #
 # ## Where to go on
 #
