@@ -165,10 +165,12 @@ def entry(name: str) -> str:
         return model_entry(name, documented)
     if not isinstance(documented, type):
         return f".. autofunction:: {name}"
-    options = [":members:", *([":show-inheritance:"] if documented.__bases__ not in ((object,), (tuple,)) else [])]
-    if fields := getattr(documented, "_fields", None):  # the docstring describes them
-        options.append(f":exclude-members: {', '.join(fields)}")
-    return "\n".join([f".. autoclass:: {name}", *(f"   {option}" for option in options)])
+    fields = getattr(documented, "_fields", ())  # of a named tuple, which its docstring describes
+    options = [":members:", f":exclude-members: {', '.join(fields)}" if fields else ""]
+    if documented.__bases__ not in ((object,), (tuple,)):
+        options.append(":show-inheritance:")
+    arguments = f"({', '.join(fields)})" if fields else ""
+    return "\n".join([f".. autoclass:: {name}{arguments}", *(f"   {option}" for option in options if option)])
 
 
 def model_entry(name: str, model: type[Any]) -> str:
