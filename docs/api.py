@@ -34,24 +34,21 @@ VALUES = "Values in results"
 
 
 def write(folder: Path) -> None:
-    """Write the page of each group of names, of each module, and the page that lists them."""
+    """Write a page for each task, each module and the values in results, and the page that lists them."""
     folder.mkdir(exist_ok=True)
-    groups = {page: [f"strainwave.{name}" for name in names] for page, names in named_apart().items()}
-    modules = {name: member for name in sw.__all__ if ismodule(member := getattr(sw, name))}
-    for title, names in groups.items():
-        text = [heading(title), table(names), *map(entry, names)]
-        (folder / f"{file_name(title)}.rst").write_text("\n\n".join(text) + "\n", encoding="utf-8")
-    for name, module in modules.items():
-        (folder / f"{name}.rst").write_text(module_page(name, module), encoding="utf-8")
-    text = [heading(VALUES), "Classes of attributes of results. Functions make them; they have no shorter name."]
-    (folder / f"{file_name(VALUES)}.rst").write_text("\n\n".join([*text, *map(entry, values())]) + "\n", encoding="utf-8")
-    parts = sorted(modules.keys() - MODULES.keys())
+    modules = sorted((name for name in sw.__all__ if ismodule(getattr(sw, name))), key=lambda name: (name not in MODULES, name))
+    pages = {file_name(title): ([heading(title)], names) for title, names in tasks().items()}
+    pages |= {name: introduced(name, getattr(sw, name)) for name in modules}
+    pages[file_name(VALUES)] = ([heading(VALUES), "Classes of attributes of results. Functions make them."], values())
+    for page, (head, names) in pages.items():
+        text = [*head, table(names), *map(entry, names)]
+        (folder / f"{page}.rst").write_text("\n\n".join(text) + "\n", encoding="utf-8")
     index = [
         heading("Python API"),
         ".. py:module:: strainwave",
-        "Import the package as ``sw``: ``import strainwave as sw``. Each name below is public.",
-        toctree("Tasks", [*map(file_name, groups), *MODULES, file_name(VALUES)]),
-        toctree("Parts of a drive", parts),
+        "All names are public: ``import strainwave as sw``, then for example ``sw.load``.",
+        *(f"* :doc:`{page}`: {', '.join(f':py:obj:`~{name}`' for name in names)}" for page, (_, names) in pages.items()),
+        "\n".join([".. toctree::", "   :hidden:", "", *(f"   {page}" for page in pages)]),
     ]
     (folder / "index.rst").write_text("\n\n".join(index) + "\n", encoding="utf-8")
 
@@ -99,12 +96,12 @@ def mentioned(documented: type[Any]) -> Iterator[type[Any]]:
                 yield member
 
 
-def named_apart() -> dict[str, list[str]]:
-    """Return the public functions and classes of the package, by the title of their page, functions first."""
+def tasks() -> dict[str, list[str]]:
+    """Return the full names of the functions and classes of the package, by the title of their page, functions first."""
     groups: dict[str, list[str]] = {title: [] for title in PAGES.values()}
     for name in sorted(sw.__all__, key=lambda name: (name[0].isupper(), name)):
         if not ismodule(member := getattr(sw, name)):
-            groups[PAGES[member.__module__.split(".")[1]]].append(name)
+            groups[PAGES[member.__module__.split(".")[1]]].append(f"strainwave.{name}")
     return groups
 
 
@@ -116,17 +113,14 @@ def public_names(module: ModuleType) -> list[str]:
     return [name for name in listed if not name.startswith("_") and callable(getattr(module, name))]
 
 
-def module_page(name: str, module: ModuleType) -> str:
-    """Return the page of a module of models, or of one with functions."""
-    names = [f"strainwave.{name}.{each}" for each in public_names(module)]
-    models = name in {theory.module_of(model) for family in families() for model in family.values()}
-    about = [f"Equations, parameters and figures: :doc:`/theory/{name}`."] if models else []
-    text = [
-        heading(MODULES.get(name) or f"sw.{name}"),
-        f".. py:module:: strainwave.{name}",
-        docstrings.restructured(module.__doc__ or ""),
-    ]
-    return "\n\n".join([*text, *about, table(names), *map(entry, names)]) + "\n"
+def introduced(name: str, module: ModuleType) -> tuple[list[str], list[str]]:
+    """Return the head of the page of a module, and the full names on it."""
+    models = {theory.module_of(model) for family in families() for model in family.values()}
+    head = [heading(MODULES.get(name) or f"sw.{name}"), f".. py:module:: strainwave.{name}"]
+    head.append(docstrings.restructured(module.__doc__ or ""))
+    if name in models:
+        head.append(f"Equations, parameters and figures: :doc:`/theory/{name}`.")
+    return head, [f"strainwave.{name}.{each}" for each in public_names(module)]
 
 
 def families() -> list[dict[str, type[Any]]]:
@@ -138,11 +132,7 @@ def heading(title: str) -> str:
 
 
 def file_name(title: str) -> str:
-    return title.lower().replace(" ", "-")
-
-
-def toctree(caption: str, pages: Iterable[str]) -> str:
-    return "\n".join([f".. rubric:: {caption}", "", ".. toctree::", "   :maxdepth: 1", "", *(f"   {page}" for page in pages)])
+    return title.lower().replace(" ", "_")
 
 
 def table(names: Iterable[str]) -> str:

@@ -41,7 +41,8 @@ def write(folder: Path) -> None:
     for name, (about, models) in pages().items():
         title = name.replace("_", " ").capitalize()
         sections = [saved_section(folder, model) for model in models]
-        text = "\n\n".join([f"# {title}", escaped(about), *failure_modes(models), *sections])
+        names = f"Signatures and methods: [reference](../reference/api/{name}.rst)."
+        text = "\n\n".join([f"# {title}", escaped(about), names, *failure_modes(models), *sections])
         (folder / f"{name}.md").write_text(titled(text) + "\n", encoding="utf-8")
 
 
