@@ -5,15 +5,14 @@ python docs/build.py FOLDER
 
 from __future__ import annotations
 
-import os
-import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import api
 import cli_reference
+import drawn
+import gallery
 import theory
 import tutorials
 from sphinx.cmd.build import main as sphinx
@@ -23,7 +22,6 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 SOURCE = ROOT / "build" / "docs"
 TOOLS = ("__pycache__", "*.py")
-SHOWN = re.compile(r"\]\((?:\.\./)?drawn/(\d\d_\w+)/\w+\.png\)")  # a picture that an example draws
 
 
 def gather() -> None:
@@ -38,17 +36,8 @@ def gather() -> None:
     tutorials.write(SOURCE / "tutorials")
     api.write(SOURCE / "reference" / "api")
     cli_reference.write(SOURCE / "reference")
-    draw()
-
-
-def draw() -> None:
-    """Run each example whose picture a page shows, in the folder `drawn/` and its name."""
-    pages = [page.read_text(encoding="utf-8") for page in SOURCE.rglob("*.md")]
-    for name in sorted({name for page in pages for name in SHOWN.findall(page)}):
-        folder = SOURCE / "drawn" / name
-        folder.mkdir(parents=True)
-        example = [sys.executable, str(ROOT / "examples" / f"{name}.py")]
-        subprocess.run(example, cwd=folder, env=os.environ | {"MPLBACKEND": "agg"}, stdout=subprocess.DEVNULL, check=True)
+    gallery.write(SOURCE)
+    drawn.draw(SOURCE)
 
 
 def main(out: str) -> int:

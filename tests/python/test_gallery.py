@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import os
 import runpy
+import shutil
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -53,10 +55,20 @@ def test_an_example_says_what_it_shows_and_draws_it(
     assert [path.stat().st_size > 10_000 for path in folder.glob("*.png")] == [True]
 
 
-def test_examples_are_numbered_and_listed() -> None:
+def test_examples_are_numbered_and_have_a_picture_and_a_page_each(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     assert [script.stem[:2] for script in SCRIPTS] == [f"{number:02}" for number in range(1, len(SCRIPTS) + 1)]
-    page = (ROOT.parent / "docs" / "gallery.md").read_text(encoding="utf-8")
-    assert [script.name for script in SCRIPTS if f"`{script.name}`" not in page] == []
+    docs = ROOT.parent / "docs"
+    monkeypatch.syspath_prepend(str(docs))
+    pages = importlib.import_module("gallery")
+    shutil.copy(docs / "gallery.md", tmp_path)
+    pages.write(tmp_path)
+    text = (tmp_path / "gallery.md").read_text(encoding="utf-8")
+    for script in SCRIPTS:
+        assert text.count(f"drawn/{script.stem}/") == 1
+        page = (tmp_path / "gallery" / f"{script.stem}.md").read_text(encoding="utf-8")
+        assert pages.example_of(script).code in page
+    assert set(pages.PAGES) <= {script.stem[:2] for script in SCRIPTS}
+    assert all((docs / path.partition("#")[0]).is_file() for paths in pages.PAGES.values() for path in paths)
 
 
 def lines_of_code(text: str) -> int:
@@ -453,8 +465,8 @@ def test_friction_by_the_measured_motion_creeps_where_others_stick(gallery: Call
 
 
 def table_of(page: str, columns: int) -> list[list[str]]:
-    """Return the rows of all tables of a page that have so many columns."""
-    text = (ROOT.parent / "docs" / page).read_text(encoding="utf-8")
+    """Return the rows of all tables of a page of validation that have so many columns."""
+    text = (ROOT.parent / "docs" / "validation" / page).read_text(encoding="utf-8")
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
     return [row for row in rows if len(row) == columns]
 

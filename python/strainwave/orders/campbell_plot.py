@@ -33,7 +33,7 @@ def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Seq
     shown = diagram.frequency <= top
     column = diagram.column.replace("_", " ")
     dashed = f"; dashed: {'eigenfrequency' if len(eigenfrequencies) == 1 else 'eigenfrequencies'}" if eigenfrequencies else ""
-    with marks.new_figure(HEIGHT, f"Campbell diagram of the {column}{dashed}") as figure:
+    with marks.new_figure(HEIGHT, f"Campbell diagram of {column}{dashed}") as figure:
         axes = figure.subplots()
         largest = float(diagram.amplitude.max())
         colours = axes.pcolormesh(

@@ -47,7 +47,7 @@ def test_lines_of_orders_and_eigenfrequencies_stand_where_they_belong() -> None:
         assert np.asarray(line.get_ydata()) == pytest.approx(order * np.asarray(line.get_xdata()) / tau)
     assert (axes.get_title(loc="left"), axes.get_xlabel()) == ("frequency [Hz]", "input speed [rad/s]")
     assert bar.get_xlabel() == "amplitude [N·m]"
-    assert figure.get_suptitle() == "Campbell diagram of the torque; dashed: eigenfrequency"
+    assert figure.get_suptitle() == "Campbell diagram of torque; dashed: eigenfrequency"
     assert [text.get_text().strip() for text in axes.texts] == ["80 Hz", "1", "2"]
     assert axes.get_ylim() == (0.0, 120.0)
 

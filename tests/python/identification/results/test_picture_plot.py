@@ -39,7 +39,7 @@ def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_
     angle, angle_left, current, current_left = figure.axes
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles[0] == "output angle [mrad]"
-    assert titles[2:] == ["current [A]", "measured − modelled [A]"]
+    assert titles[2:] == ["current [A]", "measured − modelled [mA]"]
     measured, predicted = current.lines[:2]
     assert np.asarray(measured.get_ydata()) == pytest.approx(log_fit.experiment.measured[1])
     assert np.asarray(predicted.get_ydata()) == pytest.approx(log_fit.predicted[1])
