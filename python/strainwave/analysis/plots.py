@@ -19,8 +19,6 @@ Array = NDArray[np.float64]
 BODE_HEIGHT = 4.2  # inches
 PHASE_STEPS = (1.0, 5.0, 15.0, 45.0, 90.0, 180.0, 360.0)  # degrees between two ticks
 MAX_PHASE_TICKS = 6
-MAX_FEW_DECADES = 150.0  # ratio of the ends of an axis up to which ticks stand at 1, 2 and 5 of a decade
-FEW_DECADES_SUBS = (1.0, 2.0, 5.0)
 MAX_POINTS = 40  # frequencies of a response, each of which is drawn as a point
 BAR_HEIGHT, MARGIN_HEIGHT = 0.24, 1.15  # inches
 MAX_BARS = 12  # parameters that are drawn, the strongest
@@ -48,8 +46,6 @@ def bode_figure(responses: Sequence[Response], unit: str, title: str) -> Figure:
         unit: of the magnitude
         title: of the figure
     """
-    from matplotlib.ticker import LogLocator, NullFormatter
-
     with marks.new_figure(BODE_HEIGHT, title) as figure:
         magnitude, phase = figure.subplots(2, 1, sharex=True)
         for place, (label, frequency, response) in enumerate(responses):
@@ -61,10 +57,7 @@ def bode_figure(responses: Sequence[Response], unit: str, title: str) -> Figure:
         magnitude.set_xscale("log")
         set_phase_ticks(phase)
         for axis in (magnitude.xaxis, magnitude.yaxis):
-            low, high = axis.get_view_interval()
-            subs = FEW_DECADES_SUBS if high / low < MAX_FEW_DECADES else (1.0,)
-            axis.set_major_locator(LogLocator(subs=subs))
-            axis.set_minor_formatter(NullFormatter())
+            marks.set_log_ticks(axis)
         marks.label_axes(magnitude, "magnitude", unit)
         marks.label_axes(phase, "phase", "deg", "frequency", "Hz")
         if responses[0].label:
@@ -103,7 +96,7 @@ def sensitivity_figure(effects: Mapping[str, float], unit: str, output: str, per
     with marks.new_figure(MARGIN_HEIGHT + BAR_HEIGHT * len(strongest), f"Sensitivity of {output} to {which}") as figure:
         axes = figure.subplots()
         _bars(axes, strongest, [effects[path] for path in strongest])
-        marks.label_abscissa(axes, f"root mean square change by + {percent:g} %", unit)
+        marks.label_abscissa(axes, f"rms change by + {percent:g} %", unit)
     return figure
 
 

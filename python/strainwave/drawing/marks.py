@@ -23,6 +23,7 @@ Mask = NDArray[np.bool_]
 MAX_STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
 MAX_POINTS = 150  # samples up to which each is drawn as a point
 UNIT_LETTERS = 8  # of the unit that stands to the left of a legend
+MAX_SHORT_LOG_AXIS = 150.0  # ratio of the ends of a logarithmic axis up to which 2 and 5 have numbers, too
 MAX_LINEAR_RATIO = 100.0  # ratio of speeds beyond which their axis is logarithmic
 
 
@@ -96,6 +97,15 @@ def label_axes(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") 
 def label_abscissa(axes: Axes, x: str, x_unit: str) -> None:
     """Name the quantity of the horizontal axis, with the unit prefix that suits its size."""
     axes.set_xlabel(f"{x}{scaled(axes.xaxis, x_unit)}")
+
+
+def set_log_ticks(axis: Axis) -> None:
+    """Set the numbers of a logarithmic axis: at powers of ten, and at 2 and 5 times these if the axis is short."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < MAX_SHORT_LOG_AXIS * low else (1.0,)))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def line_style(place: int) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def test_bars_are_the_changes_by_one_percent_the_largest_first() -> None:
     widths = [bar.get_width() for bar in axes.patches]  # type: ignore[attr-defined]
     assert widths == sorted(effects.values(), reverse=True)
     assert [effects[name] for name in names] == widths
-    assert axes.get_xlabel() == "root mean square change by + 1 % [µrad]"
+    assert axes.get_xlabel() == "rms change by + 1 % [µrad]"
     inertia = found["output_angle", "load.inertia"] * 0.1 * 0.01
     assert effects["load.inertia"] == pytest.approx(np.sqrt(np.mean(inertia**2)))
 

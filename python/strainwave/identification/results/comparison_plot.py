@@ -51,6 +51,8 @@ def over_start_figure(states: Sequence[ParameterState], start: GearSet, name: st
         axes.errorbar(
             ratio, places, xerr=half, fmt="o", color=LIGHT["measured"], capsize=3.0, label="identified, interval of 95 %"
         )
+        if axes.get_xscale() == "log":
+            marks.set_log_ticks(axes.xaxis)
         axes.set_yticks(places, [each.path.removeprefix("gear.") for each in rows], fontsize="small")
         axes.set_ylim(len(rows) - 0.5, -0.5)
         axes.grid(visible=False, axis="y")
