@@ -17,8 +17,8 @@ from measure import shortest
 from numpy.typing import NDArray
 from report import Column, installed, print_table, save, three_digits
 from rich.console import Console
-from strainwave.identification.candidates.torsion.beside import Elements
 from strainwave.identification.candidates.torsion.candidate import starts
+from strainwave.identification.candidates.torsion.dissipation import Elements
 from strainwave.identification.candidates.torsion.springs import THREE_SEGMENT
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 

@@ -23,7 +23,7 @@ to use them.
 
    * - 0
      - The verb has done its work.
-   * - {cli.REFUSED}
+   * - {cli.EXIT_REFUSED}
      - The input cannot be used. One line states what is wrong, where, and what to do. Nothing is written.
    * - 3
      - A check fails, a recording contradicts the saved gear, or a recording differs from the baseline: see the verb.

@@ -17,10 +17,10 @@ from strainwave.native.static_type import instance, parameters, static_type
 from tests.strategies import made
 
 ROOT = Path(__file__).parents[1]
-INCLUDE = ROOT / "include"
+INCLUDE_FOLDER = ROOT / "include"
 HEADERS = "#include <strainwave/drive.hpp>\n#include <strainwave/integrate.hpp>\n#include <strainwave/models.hpp>\n"
 # A pack is passed in a register or in memory as the machine has it; no ABI of ours crosses a library border.
-STRICT = ("-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-psabi", f"-I{INCLUDE}")
+STRICT = ("-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-psabi", f"-I{INCLUDE_FOLDER}")
 
 ZIG = (sys.executable, "-m", "ziglang", "c++")
 

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from scipy import fft
 from strainwave.diagnose.detection import threshold_of
 from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
-from strainwave.diagnose.motion import Motion, motion_of
+from strainwave.diagnose.motion import SampledMotion, motion_of
 from strainwave.diagnose.regression import regressions
 from strainwave.diagnose.steady_run import COLUMN, RecordedOrder, SteadyRun
 
@@ -144,7 +144,7 @@ def noises(colour: str, count: int, draws: int, step: float, random: np.random.G
 
 
 @cache
-def healthy_motions(units: int, seed: int = 3) -> tuple[Motion, ...]:
+def healthy_motions(units: int, seed: int = 3) -> tuple[SampledMotion, ...]:
     """Motions of healthy units whose friction, inertia, load and speed differ, simulated once for all colours of noise."""
     random, motions = np.random.default_rng(seed), []
     for _ in range(units):

@@ -13,7 +13,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.export.firmware import FLAGS, Firmware
 from strainwave.native.static_type import Scalar
-from strainwave.simulation.controller import Seen
+from strainwave.simulation.controller import Observation
 
 from tests.cplusplus import compiler
 
@@ -70,7 +70,7 @@ class Loaded:
     def start(self) -> None:
         self._start(self.memory)
 
-    def __call__(self, seen: Seen) -> float:
+    def __call__(self, seen: Observation) -> float:
         """Return the output of a controller."""
         out = self._step(self.memory, (self.number * len(self.firmware.inputs))(*seen[1:]))
         return float(getattr(out, self.firmware.outputs[0]))

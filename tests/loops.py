@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.identification.candidates.torsion.beside import Beside, Elements
 from strainwave.identification.candidates.torsion.candidate import candidate
+from strainwave.identification.candidates.torsion.dissipation import Dissipation, Elements
 from strainwave.identification.candidates.torsion.memories import (
     BoucWen,
     FadingMemory,
@@ -29,7 +29,7 @@ from strainwave.identification.candidates.torsion.memories import (
     Regimes,
     Without,
 )
-from strainwave.identification.candidates.torsion.springs import PLAIN, Backlash, Kind, Negligible
+from strainwave.identification.candidates.torsion.springs import PLAIN, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 from strainwave.parameters import every
@@ -48,7 +48,7 @@ def path() -> Array:
     return np.interp(np.linspace(0.0, travelled[-1], SAMPLES), travelled, ends)
 
 
-KINDS: tuple[Kind, ...] = (*PLAIN, *(Backlash(kind) for kind in PLAIN))
+KINDS: tuple[SpringKind, ...] = (*PLAIN, *(Backlash(kind) for kind in PLAIN))
 
 
 def spring(words: str, draw: Draw) -> Any:
@@ -129,7 +129,7 @@ def windup(draw: Draw) -> object:
     return sw.hysteresis.FrictionalWindup(springs=compliance(draw), friction=TORQUE * draw.uniform(0.05, 0.15))
 
 
-BESIDE: list[tuple[Beside, Callable[[Draw], object]]] = [
+BESIDE: list[tuple[Dissipation, Callable[[Draw], object]]] = [
     (Without(), lambda draw: sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[])),
     (Elements(), elements),
     (FadingMemory(1), fading(1)),
@@ -137,10 +137,10 @@ BESIDE: list[tuple[Beside, Callable[[Draw], object]]] = [
     (BoucWen(), bouc_wen),
     (Preisach(), preisach),
 ]
-WHOLE: list[tuple[Beside, Callable[[Draw], object]]] = [(Regimes(), regimes), (FrictionalWindup(), windup)]
+WHOLE: list[tuple[Dissipation, Callable[[Draw], object]]] = [(Regimes(), regimes), (FrictionalWindup(), windup)]
 
 
-def distances(kind: Kind, beside: Beside, law: Callable[[Draw], object], draw: Draw) -> dict[str, float] | None:
+def distances(kind: SpringKind, beside: Dissipation, law: Callable[[Draw], object], draw: Draw) -> dict[str, float] | None:
     """How many standard deviations each number of a fit lies off the truth; none where the fit is of fewer numbers."""
     elastic = sw.stiffness.Linear(k=1e-3) if isinstance(kind, Negligible) else spring(kind.words, draw)
     truth = sw.Gear(stiffness=elastic, hysteresis=law(draw))  # type: ignore[arg-type]
@@ -176,7 +176,7 @@ def curve_distances(found: Fit, truth: sw.Gear) -> dict[str, float]:
     return {f"torque at {twist:.2g} rad": float(value) for twist, value in zip(twists, off, strict=True)}
 
 
-def true_of(truth: sw.Gear, kind: Kind, beside: Beside) -> list[str]:
+def true_of(truth: sw.Gear, kind: SpringKind, beside: Dissipation) -> list[str]:
     """Paths of the numbers that a fit of these kinds frees."""
     names = [*kind.free(truth), *beside.free(truth)]
     return [path for path in every(truth) if any(path == name or path.startswith(f"{name}[") for name in names)]

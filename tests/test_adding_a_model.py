@@ -12,13 +12,13 @@ from typing import Any
 import pytest
 from strainwave import _core
 
-from tests.cplusplus import INCLUDE, ROOT, STRICT, compilation, compiler
+from tests.cplusplus import INCLUDE_FOLDER, ROOT, STRICT, compilation, compiler
 
-HEADERS = INCLUDE / "strainwave"
+HEADERS = INCLUDE_FOLDER / "strainwave"
 SOURCE = ROOT / "src"
 SOURCES = [
     path
-    for folder in (INCLUDE, SOURCE, ROOT / "python" / "strainwave")
+    for folder in (INCLUDE_FOLDER, SOURCE, ROOT / "python" / "strainwave")
     for path in sorted(folder.rglob("*"))
     if path.suffix in {".hpp", ".cpp", ".py"}
 ]
@@ -375,7 +375,7 @@ int main() {
 def with_one_more(folder: Path) -> Path:
     """The headers, and among them a model that nobody has thought of: its file, its include, its name in the list."""
     include = folder / "include"
-    shutil.copytree(INCLUDE, include)
+    shutil.copytree(INCLUDE_FOLDER, include)
     (include / "strainwave/friction/quadratic.hpp").write_text(QUADRATIC)
     models = include / "strainwave/friction/models.hpp"
     before = models.read_text()
@@ -392,7 +392,7 @@ def with_one_more(folder: Path) -> Path:
 
 def options(include: Path) -> list[str]:
     """Those of a source that includes headers of this folder and of the host."""
-    own = [f"-I{include}" if option == f"-I{INCLUDE}" else option for option in STRICT]
+    own = [f"-I{include}" if option == f"-I{INCLUDE_FOLDER}" else option for option in STRICT]
     return [*own, f"-I{SOURCE}", "-Wno-missing-field-initializers"]
 
 

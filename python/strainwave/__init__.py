@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     from strainwave.orders.ripple import Ripple, ripple
     from strainwave.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.simulation import scenario
-    from strainwave.simulation.controller import Seen, simulate_controlled
+    from strainwave.simulation.controller import Observation, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
     from strainwave.simulation.run import Run, simulate, simulate_adaptively
     from strainwave.simulation.scenario_file import ScenarioFile
@@ -138,7 +138,7 @@ _LAZY = {
     "Ripple": "orders.ripple",
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
-    "Seen": "simulation.controller",
+    "Observation": "simulation.controller",
     "TransmissionError": "orders.two_encoders",
     "LoopMargins": "tuning.loops",
     "bearing_orders": "orders.order_spectrum",
@@ -221,6 +221,7 @@ __all__ = [
     "LoopMargins",
     "LostMotion",
     "Minima",
+    "Observation",
     "OrderLine",
     "Orders",
     "PassivityWarning",
@@ -238,7 +239,6 @@ __all__ = [
     "Ripple",
     "Run",
     "ScenarioFile",
-    "Seen",
     "Sensors",
     "TransmissionError",
     "bearing_orders",

@@ -7,7 +7,7 @@ import signal
 import sys
 from pathlib import Path
 
-INTERRUPTED = 128 + signal.SIGINT  # exit code, as shells give it, and typer
+EXIT_INTERRUPTED = 128 + signal.SIGINT  # exit code, as shells give it, and typer
 
 
 def main() -> None:
@@ -24,11 +24,11 @@ def main() -> None:
         written = writing.written
         cli.main()
     except (KeyboardInterrupt, SystemExit) as end:
-        if isinstance(end, SystemExit) and end.code != INTERRUPTED:
+        if isinstance(end, SystemExit) and end.code != EXIT_INTERRUPTED:
             raise
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         print(f"strainwave: interrupted; {', '.join(map(str, written)) or 'nothing'} written", file=sys.stderr)
-        sys.exit(INTERRUPTED)
+        sys.exit(EXIT_INTERRUPTED)
 
 
 if __name__ == "__main__":

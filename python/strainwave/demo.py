@@ -22,7 +22,7 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.studies.position_control import TABLE_4
 
 if TYPE_CHECKING:
-    from strainwave.identification.candidates.position import Reading
+    from strainwave.identification.candidates.position import TableReading
 
 PUBLISHED = Path(__file__).with_name("published")
 
@@ -76,8 +76,8 @@ def experiments(found: Identified) -> list[SimulatedExperiment]:
     return [_experiment(name, command, drives, published, remark) for (name, command), published in pairs]
 
 
-def table_2(found: Identified) -> tuple[Reading, ...]:
-    """Return the three readings of document P's Table 2 beside document P's average friction."""
+def table_2(found: Identified) -> tuple[TableReading, ...]:
+    """Return the three readings of document P's Table 2, compared with document P's average friction."""
     from strainwave.identification.candidates.position import readings
     from strainwave.identification.experiments.friction_table import FrictionTable
 
@@ -88,7 +88,7 @@ def table_2(found: Identified) -> tuple[Reading, ...]:
     return readings(table, law, reduction=abs(float(found.start.drive.gear.kinematics.ratio)))
 
 
-def _law(way: Reading, printed: Any) -> Coulomb:
+def _law(way: TableReading, printed: Any) -> Coulomb:
     """Return the friction law of a reading; the excess of the static friction is document P's."""
     dry = way.coulomb.value + (printed.coulomb if way.part else 0.0)
     return Coulomb(coulomb=dry, breakaway=dry * printed.breakaway / printed.coulomb, viscous=way.viscous.value)

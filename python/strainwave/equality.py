@@ -20,9 +20,9 @@ class ComparedByFields:
 
 
 def equal(one: object, other: object) -> bool:
-    """Whether two values do not differ: arrays in type, shape and every number, mappings also in their order.
+    """True if two values are equal: arrays in type, shape and every number, mappings also in their order.
 
-    What is not a number equals what is not a number.
+    Not-a-number equals not-a-number.
 
     >>> equal({"a": np.array([1.0, np.nan])}, {"a": np.array([1.0, np.nan])})
     True

@@ -33,7 +33,7 @@ def every(model: Gear | Drive) -> dict[str, Parameter]:
 
 
 def unknown(path: str, known: Iterable[str]) -> ValueError:
-    """Says of a path that the model does not have it, and what is near."""
+    """Return the error for a path that the model does not have; it names similar ones."""
     near = get_close_matches(path, list(known), n=3, cutoff=0.0)
     return ValueError(f"the model has no parameter {quoted(path)}; near it are {', '.join(near)}")
 

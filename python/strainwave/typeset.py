@@ -9,6 +9,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+ARCMIN_PER_RADIAN = 180.0 * 60.0 / math.pi
+ARCMIN_PER_DEGREE = 60.0
+ARCSEC_PER_DEGREE = 3600.0
+ZERO_CELSIUS = 273.15  # K
+
 _INDEXED = re.compile(r"\b([^\W\d_])_(\w+)\b")  # a letter with an index, as F_c
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _GREEK = {
@@ -17,7 +22,7 @@ _GREEK = {
 }  # fmt: skip
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _PLAIN = range(-4, 6)  # decades of numbers written without a power of ten
-_FINEST = 8  # digits; a standard deviation below the last of them is written by itself
+_MAX_DIGITS = 8  # a standard deviation below the last of them is written by itself
 
 
 def number(value: float, digits: int = 6) -> str:
@@ -48,7 +53,7 @@ def uncertain(value: float, sigma: float) -> str:
     """
     if math.isnan(sigma):
         return number(value)
-    if not math.isfinite(sigma) or sigma <= abs(value) * 10.0**-_FINEST:
+    if not math.isfinite(sigma) or sigma <= abs(value) * 10.0**-_MAX_DIGITS:
         return f"{number(value)} ± {number(sigma, 2)}"
     return _to_digits_of(sigma, (value, sigma), " ± ")
 
@@ -59,7 +64,7 @@ def interval(low: float, high: float, sigma: float) -> str:
     >>> interval(0.945, 1.0117, 0.017), interval(7.83e-6, 17.0e-6, 2.3e-6), interval(1.0, 1.0, 0.0)
     ('0.945 to 1.012', '(7.8 to 17.0) × 10⁻⁶', '1 to 1')
     """
-    if not math.isfinite(sigma) or sigma <= max(abs(low), abs(high)) * 10.0**-_FINEST:
+    if not math.isfinite(sigma) or sigma <= max(abs(low), abs(high)) * 10.0**-_MAX_DIGITS:
         return f"{number(low)} to {number(high)}"
     return _to_digits_of(sigma, (low, high), " to ")
 

@@ -12,7 +12,7 @@ import pytest
 import strainwave as sw
 from strainwave.native import kernel, kernels
 
-from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, checker, compilation, compiled_before, compiler, drives, zig
+from tests.cplusplus import HEADERS, INCLUDE_FOLDER, ROOT, STRICT, checker, compilation, compiled_before, compiler, drives, zig
 
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 
@@ -40,7 +40,7 @@ def stepped(scalar: str, drive: str) -> str:
 
 def included(header: str) -> set[str]:
     """The headers of the package that a header includes, itself or through others."""
-    named = set(re.findall(r"#include <(strainwave/\S+)>", (INCLUDE / header).read_text()))
+    named = set(re.findall(r"#include <(strainwave/\S+)>", (INCLUDE_FOLDER / header).read_text()))
     return named.union(*map(included, named))
 
 
@@ -50,7 +50,7 @@ def test_every_header_stands_on_its_own(name: str, tmp_path: Path) -> None:
 
     Nothing escapes by that: a header that forgets what it needs fails by itself, or what it includes does.
     """
-    headers = {header.relative_to(INCLUDE).as_posix() for header in INCLUDE.rglob("*.hpp")}
+    headers = {header.relative_to(INCLUDE_FOLDER).as_posix() for header in INCLUDE_FOLDER.rglob("*.hpp")}
     assert len(headers) > 25
     by_math = {header for header in headers if MATH in included(header)}
     assert 0 < len(by_math) < len(headers)
@@ -75,7 +75,7 @@ def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) 
 def test_a_kernel_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
     """Users see none of its warnings."""
     source = {"kernel.cpp": kernels.source(sw.Drive(), kernels.JOBS)}
-    assert compilation(checker(name), tmp_path, source, f"-I{kernel.INCLUDE}", "-Wno-unknown-pragmas") == (0, "")
+    assert compilation(checker(name), tmp_path, source, f"-I{kernel.INCLUDE_FOLDER}", "-Wno-unknown-pragmas") == (0, "")
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ void bind(nanobind::module_& scope) {{ strainwave::host::bind<Pair<double>>(scop
     ids=["every member", "one forgotten", "one described twice in its stead"],
 )
 def test_a_model_compiles_just_if_every_member_is_described(described: str, complete: bool, tmp_path: Path) -> None:
-    folders = (INCLUDE, ROOT / "src", nanobind.include_dir(), sysconfig.get_path("include"))
+    folders = (INCLUDE_FOLDER, ROOT / "src", nanobind.include_dir(), sysconfig.get_path("include"))
     options = ("-std=c++20", "-fsyntax-only", *(f"-I{folder}" for folder in folders))
     status, said = compilation(compiler("g++"), tmp_path, {"pair.cpp": PAIR.format(described=described)}, *options)
     assert (status == 0) == complete, said

@@ -24,7 +24,7 @@ extern "C" __global__ void run_{number}(const {drive}* drive, {drive}::State* st
 }}
 """
 pytestmark = pytest.mark.skipif(not nvrtc.is_installed(), reason="the package nvidia-cuda-nvrtc is not installed")
-OPTIONS = ("--gpu-architecture=compute_90", f"--include-path={device.INCLUDE}")
+OPTIONS = ("--gpu-architecture=compute_90", f"--include-path={device.INCLUDE_FOLDER}")
 # As much is checked as on the way to PTX, which takes a second a drive even if nothing is optimised, and minutes if all is.
 INTERMEDIATE = ("-dlto", "--relocatable-device-code=true")
 NOT_OPTIMISED = ("--device-debug",)

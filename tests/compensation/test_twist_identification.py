@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.compensation import ModelFeedforward, TwistIdentification
 
 from tests.compensation.ideal import DAMPING, KINEMATICS, PERIOD, RATIO, STIFFNESS, state
-from tests.cplusplus import INCLUDE, compiler
+from tests.cplusplus import INCLUDE_FOLDER, compiler
 
 Array = NDArray[np.float64]
 
@@ -287,7 +287,7 @@ def million(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str, st
     """By motion, numbers adapted and precision: largest value, least and largest deviation over the priors; the numbers."""
     folder = tmp_path_factory.mktemp("million")
     (folder / "million.cpp").write_text(PROGRAM)
-    command = [*compiler("g++"), "-std=c++20", "-O2", "-Wno-psabi", f"-I{INCLUDE}", "million.cpp", "-o", "million"]
+    command = [*compiler("g++"), "-std=c++20", "-O2", "-Wno-psabi", f"-I{INCLUDE_FOLDER}", "million.cpp", "-o", "million"]
     subprocess.run(command, cwd=folder, check=True)
     printed = subprocess.run([folder / "million"], capture_output=True, text=True, check=True).stdout
     keys = [("drawn", "all", memory) for memory in ("long", "short")]

@@ -54,7 +54,7 @@ RESULTS = (
     "RatingCheck",
     "Ripple",
     "Run",
-    "Seen",
+    "Observation",
     "TransmissionError",
 )
 NOT_CALLED = {

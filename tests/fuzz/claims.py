@@ -21,7 +21,7 @@ import pyarrow
 import pyarrow.parquet
 from numpy.random import Generator
 from numpy.typing import NDArray
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.tables import FORMATS, OpenTable, open_table
 from strainwave.identification.reading.source import measurement_files
 
@@ -61,7 +61,11 @@ def _read(path: Path) -> list[tuple[OpenTable, Columns]]:
 
 def _columns(table: OpenTable) -> Columns:
     wanted = [place for place, content in enumerate(table.contents) if content == "numbers"][:MAX_READ]
-    return table.measured([Source(place, table.labels[place].name, str(place), "1") for place in wanted])[0] if wanted else {}
+    return (
+        table.measured([ColumnSource(place, table.labels[place].name, str(place), "1") for place in wanted])[0]
+        if wanted
+        else {}
+    )
 
 
 def _check(read: list[tuple[OpenTable, Columns]], folder: Path) -> None:

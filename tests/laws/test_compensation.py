@@ -19,7 +19,7 @@ from strainwave.native.cache import find_kernel, make_kernel
 from strainwave.native.kernel import Kernel
 from strainwave.native.static_type import in_words, static_type
 
-from tests.cplusplus import INCLUDE, ROOT, compiler
+from tests.cplusplus import INCLUDE_FOLDER, ROOT, compiler
 from tests.samples import sample
 from tests.strategies import built
 
@@ -325,7 +325,7 @@ def in_both_precisions(drives: list[sw.Drive], folder: Path) -> Array:
         "-std=c++20",
         "-O1",
         "-Wno-psabi",
-        f"-I{INCLUDE}",
+        f"-I{INCLUDE_FOLDER}",
         f"-I{ROOT / 'src'}",
         "both.cpp",
         "-o",

@@ -11,7 +11,7 @@ from strainwave import _core
 from strainwave.analysis.steady import constant_inputs
 from strainwave.hysteresis import FrictionalWindup, Preisach, Regimes
 from strainwave.kinematic_error import Stochastic
-from strainwave.simulation.state import Layout
+from strainwave.simulation.state import StateLayout
 
 from tests.structure.test_staged import STRUCTURE
 
@@ -63,7 +63,7 @@ def test_a_spring_with_memory_is_as_stiff_as_it_becomes_to_either_side(law: Any)
 
 def damping_by_noise(drive: sw.Drive, wave_generator: str) -> float:
     """By how much the noise changes the decay of the wave generator's speed, at the most of many angles, at rest [1/s]."""
-    layout = Layout(drive)
+    layout = StateLayout(drive)
     place = layout.names.index(wave_generator)
     without = drive.replace(gear=drive.gear.replace(kinematic_noise=Stochastic()))
     inputs = constant_inputs(0.0, 0.0, 293.15, 0.0)

@@ -8,7 +8,7 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave import _core
-from strainwave.simulation.motion import Motion
+from strainwave.simulation.motion import InputMotion
 
 from tests.geared import MOTOR, RATIO, K, geared
 
@@ -59,7 +59,7 @@ def test_the_motion_that_another_motor_made_needs_the_torque_that_it_gave(fricti
     }
     pushed = geared(motor=sw.motor.TorqueSource(inertia=INERTIA), **parts)
     made = sw.simulate(pushed, sw.scenario.sine(0.8, 3.0, 0.6), 1e-4)
-    measured = Motion.through(made.time, made["input_angle"], from_rest=True)
+    measured = InputMotion.through(made.time, made["input_angle"], from_rest=True)
     moved = sw.simulate(pushed.replace(motor=MOVED), measured.command, 1e-4, initial=measured.initial)
     assert moved["input_angle"] == pytest.approx(made["input_angle"], abs=1e-9)
     for name, near in (("output_angle", 1e-6), ("torque", 1e-4)):
@@ -141,7 +141,7 @@ def test_a_controller_may_ask_for_the_acceleration() -> None:
 def test_a_motion_passes_through_what_was_measured_at_crooked_instants() -> None:
     time = np.cumsum(np.r_[0.0, np.random.default_rng(3).uniform(5e-4, 3e-3, 400)])
     angle = 30.0 * np.sin(8.0 * time) + 100.0
-    measured = Motion.through(time, angle)
+    measured = InputMotion.through(time, angle)
     run = sw.simulate(geared(motor=MOVED), measured.command, 5e-4, sample=1e-3, initial=measured.initial)
     assert run["input_angle"] == pytest.approx(30.0 * np.sin(8.0 * run.time) + 100.0, abs=1e-6)
 
@@ -157,7 +157,7 @@ def test_a_motion_passes_through_what_was_measured_at_crooked_instants() -> None
 )
 def test_what_is_no_motion_is_refused(time: list[float], angle: list[float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        Motion.through(time, angle)
+        InputMotion.through(time, angle)
 
 
 def test_a_locked_joint_between_two_prescribed_motions_shows_its_spring() -> None:

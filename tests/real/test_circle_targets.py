@@ -56,4 +56,4 @@ def test_it_says_why_this_is_no_test_with_two_markers() -> None:
     frame = look(PHOTOGRAPH)
     assert frame.markers is None
     assert "markers instead of two: dark at x = " in frame.fault
-    assert "say which by radius=(least, most) in px, or by dark" in frame.fault
+    assert "select them by radius=(least, most) in px, or by dark" in frame.fault

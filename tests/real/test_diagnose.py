@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.diagnose.baseline import Comparison
+from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.diagnosis import Diagnosis, Question, diagnosed
 from strainwave.diagnose.refusals import JointRecording, usable
 from strainwave.identification.reading.mapping import FileMapping
@@ -110,7 +110,7 @@ def halves(joint: Joint) -> tuple[JointRecording, JointRecording]:
     return tuple(as_run(joint, half(joint.recording, is_second), f"half {1 + is_second}") for is_second in (False, True))  # type: ignore[return-value]
 
 
-def of_halves(first: JointRecording, second: JointRecording) -> Comparison | None:
+def of_halves(first: JointRecording, second: JointRecording) -> BaselineComparison | None:
     return diagnosed([second], Question(), baseline=[first]).runs[0].comparison
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.rig.influence.influence import JOINT
+from strainwave.rig.influence.influence import JOINT_FRICTION_FALL_RATE
 from strainwave.rig.influence.series import Series, analyse_series, figures_of
 from strainwave.rig.influence.trend import Trend
 from strainwave.rig.loop import Loop
@@ -99,4 +99,4 @@ def test_friction_of_a_joint_falls_as_it_warms_up() -> None:
     assert trend.significant
     assert trend.shuffled < 0.01
     assert low < relative < high < 0.0
-    assert pytest.approx(-relative, rel=0.01) == JOINT
+    assert pytest.approx(-relative, rel=0.01) == JOINT_FRICTION_FALL_RATE

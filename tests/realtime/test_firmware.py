@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cplusplus import HEADERS, INCLUDE, compilation, compiled_before, compiler, drives, zig
+from tests.cplusplus import HEADERS, INCLUDE_FOLDER, compilation, compiled_before, compiler, drives, zig
 
 STEP = """
 using Drive{number} = {drive};
@@ -22,7 +22,7 @@ STEPS = {f"step_{i}.cpp": STEP.format(number=i, drive=drive) for i, drive in enu
 
 FIRMWARE = (
     *("-std=c++20", "-Os", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-asynchronous-unwind-tables"),
-    *("-ffp-contract=off", "-ffunction-sections", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", f"-I{INCLUDE}"),
+    *("-ffp-contract=off", "-ffunction-sections", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", f"-I{INCLUDE_FOLDER}"),
 )
 # A Cortex-M4, whose floating-point unit knows single precision only: double would call a routine by name.
 CORTEX = ("-target", "thumb-linux-musleabihf", "-mcpu=cortex_m4+vfp4d16sp", "-fno-unwind-tables")

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.simulation.initial import beginning_numbers
-from strainwave.simulation.state import Layout
+from strainwave.simulation.state import StateLayout
 
 from tests.actuator_equations import IN, OUT, WG, X2, Y1, Y2, damping_matrix, masses, stiffness_matrix
 from tests.samples import sample
@@ -570,7 +570,7 @@ def test_no_body_within_accelerates_where_a_run_begins(fixed: str, initial: dict
     drive = DRIVE.replace(gear=gear)
     load = np.array([0.0, 0.0, 5.0, 0.0, 293.15, 0.0])
     start = beginning_numbers(drive, None, initial, load)
-    layout = Layout(drive)
+    layout = StateLayout(drive)
     rates = dict(zip(layout.names, _core.differentiate_rates(drive, start, load)[0], strict=False))
     inertia = {"generator": 2e-5, "radial": 0.08 * (0.025 / tan(pi / 6.0)) ** 2, "held": 5e-5, "driving": 5e-5}
     for body, kg in inertia.items():

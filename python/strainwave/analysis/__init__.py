@@ -1,1 +1,1 @@
-"""What a drive is like without running it at length: steady and linear views, responses, derivatives."""
+"""Properties of a drive without a long run: steady state, linearisation, responses, derivatives."""

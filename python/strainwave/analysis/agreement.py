@@ -1,4 +1,4 @@
-"""How far two recordings agree."""
+"""Agreement of two recordings."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Agreement:
-    """How far a column of one recording follows that of another.
+    """Agreement of a column of one recording with that of another.
 
     Attributes:
         name, unit: of the column, as the first recording has it
@@ -45,7 +45,7 @@ class Agreement:
 
 
 def agreements(first: Recording, second: Recording, names: Sequence[str] | None) -> list[Agreement]:
-    """Of each column that both recordings have, or of those named, as `compare` says it."""
+    """Return the agreement of each column that both recordings have, or of the named ones; see `compare`."""
     time, other = first.time, second.time
     wanted = _columns(first, second, names)
     common = (time >= other[0]) & (time <= other[-1])
@@ -70,7 +70,7 @@ def _span(time: Array) -> str:
 
 
 def _remedy(time: Array, other: Array) -> str:
-    """What to do where no sample of the first lies within the second."""
+    """Return the remedy if no sample of the first lies within the second."""
     apart = time[-1] < other[0] or other[-1] < time[0]
     return "shift the time of one" if apart else "no sample of the first lies within the second, so exchange them"
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SAMPLES = 2_000  # of a quasi-static path; more tell a fit nothing but the noise, which their means tell too
-SURE = 6.0  # standard deviations of the noise that a reversal must exceed
-PRESLIDING = 0.02  # of the span: bristles bend by milliradians at the input before they slip (assumed)
-SMALLEST = 0.02  # of the span: reversals below it are none of the test's
-LARGEST = 0.25  # of the span: reversals above it are, even of so few samples that the path itself looks like noise
+MAX_PATH_SAMPLES = 2_000  # of a quasi-static path: more add only noise, which their means contain too
+MIN_REVERSAL_SIGMA = 6.0  # standard deviations of the noise
+PRESLIDING_SHARE = 0.02  # of the span [1]: bristles bend by milliradians at the input before they slip (assumed)
+MIN_REVERSAL_SHARE = 0.02  # of the span [1]: smaller reversals do not belong to the test
+MAX_REVERSAL_SHARE = 0.25  # of the span [1]: larger reversals count, even if few samples make the path look like noise
 
 
 def noise(values: Array) -> float:
@@ -30,7 +30,7 @@ def turning_points(path: Array) -> list[int]:
     [3]
     """
     span = float(np.ptp(path))
-    least = min(max(SURE * noise(path), SMALLEST * span), LARGEST * span)
+    least = min(max(MIN_REVERSAL_SIGMA * noise(path), MIN_REVERSAL_SHARE * span), MAX_REVERSAL_SHARE * span)
     turns: list[int] = []
     low = high = 0
     sense = 0
@@ -77,12 +77,12 @@ def slid(path: Array) -> NDArray[np.bool_]:
     begun = np.zeros(len(path), int)
     begun[turns] = turns
     begun = np.maximum.accumulate(begun)  # the reversal before each sample
-    slides: NDArray[np.bool_] = np.abs(path - path[begun]) >= PRESLIDING * np.ptp(path)
+    slides: NDArray[np.bool_] = np.abs(path - path[begun]) >= PRESLIDING_SHARE * np.ptp(path)
     return slides
 
 
 def still_slides(path: Array, torque: Array, turn: int) -> bool:
-    """Whether the sample at a reversal belongs to the way there: its torque has risen at least half as steeply as before.
+    """True if the sample at a reversal belongs to the way there: its torque rose at least half as steeply as before.
 
     Behind the reversal, friction has turned over, and the torque has fallen.
 
@@ -98,7 +98,7 @@ def still_slides(path: Array, torque: Array, turn: int) -> bool:
     return bool(before * way > 0.0 and last / way >= 0.5 * risen / before)
 
 
-def thinned(*series: Array, samples: int = SAMPLES) -> tuple[Array, ...]:
+def thinned(*series: Array, samples: int = MAX_PATH_SAMPLES) -> tuple[Array, ...]:
     """Long series as the means of equal stretches; short ones as they are.
 
     >>> thinned(np.arange(6.0), samples=3)[0].tolist()

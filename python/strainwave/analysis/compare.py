@@ -1,4 +1,4 @@
-"""What two recordings, or two models, have in common and what not."""
+"""Comparison of two recordings, or of two models."""
 
 from __future__ import annotations
 

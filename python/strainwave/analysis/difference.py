@@ -1,4 +1,4 @@
-"""Where two models differ."""
+"""Differences of two models."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ class Difference:
     def __str__(self) -> str:
         """The difference in one line."""
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
-        first, second = (told if value is None else told + unit for told, value in zip(self.told, self._values, strict=True))
+        first, second = (text if value is None else text + unit for text, value in zip(self.texts, self._values, strict=True))
         change = "" if self.change is None else f" ({100.0 * self.change:+.3g} %)"
         return f"{self.path}: {first} against {second}{change}"
 
     @property
-    def told(self) -> tuple[str, str]:
-        """Both numbers or names in words, without their unit; numbers with so many digits that they differ."""
+    def texts(self) -> tuple[str, str]:
+        """Return both numbers or names as texts, without their unit; numbers with so many digits that they differ."""
         digits = next(digits for digits in (6, 10, 17) if digits == 17 or len({_shown(v, digits) for v in self._values}) == 2)
         first, second = (_shown(value, digits) for value in self._values)
         return first, second
@@ -63,7 +63,7 @@ def _shown(value: float | str | None, digits: int) -> str:
 
 
 def differences(first: Model, second: Model) -> list[Difference]:
-    """Every number and every law in which two models differ, as `compare` says it."""
+    """Return every number and every law in which two models differ; see `compare`."""
     ours, theirs = _parts(first), _parts(second)
     if isinstance(first, Gear) or isinstance(second, Gear):
         return _between("gear", ours["gear"], theirs["gear"])

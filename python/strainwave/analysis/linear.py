@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, Gear, _core, arguments, friction, motor
-from strainwave.analysis.steady import OVERFLOW, SLOWLY, averaged, constant_inputs, equilibrium
+from strainwave.analysis.steady import OVERFLOW, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.memory import room_for
 from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
-from strainwave.simulation.state import Layout, State, start_of
+from strainwave.simulation.state import State, StateLayout, start_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,7 +33,7 @@ Complex = NDArray[np.complex128]
 
 MIN_RELATIVE_POLE = 1e-6  # over the largest; a smaller one is 0 but for rounding
 DRAWN_FREQUENCIES = 600  # of a Bode diagram
-HELD = 1e30  # N.m: more than any torque that turns an input
+HOLDING_TORQUE = 1e30  # N.m: more than any torque that turns an input
 DAMPINGS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
 INPUTS = ("command", "command_rate", "load_torque", "temperature")
 _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
@@ -88,18 +88,18 @@ class Linearisation(ComparedByFields):
 
     @property
     def modes(self) -> Complex:
-        """How the states move in each mode: column k belongs to pole k, of length 1, shape (n, n)."""
+        """Return the mode shapes of the states: column k belongs to pole k, of length 1, shape (n, n)."""
         return self._eigen[1]
 
     @property
     def eigenfrequencies(self) -> Array:
-        """Of each pole, undamped: its distance from 0 [rad/s], shape (n,)."""
+        """Return the undamped natural frequency of each pole, its distance from 0 [rad/s], shape (n,)."""
         size: Array = np.abs(self.poles)
         return size
 
     @property
     def damping_ratios(self) -> Array:
-        """Of each pole: 1 decays without swinging, 0 swings without end, below 0 it grows; shape (n,). A pole at 0 has none."""
+        """Return the damping ratio of each pole, shape (n,): 1 aperiodic, 0 undamped, below 0 unstable; NaN for a pole at 0."""
         size = self.eigenfrequencies
         ratios: Array = np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0)
         return ratios
@@ -211,7 +211,7 @@ def linearise(
     ('input_angle', 'input_speed', 'transmission_error', 'output_speed')
     >>> [matrix.shape for matrix in linear]
     [(4, 4), (4, 4), (16, 4), (16, 4)]
-    >>> round(float(abs(linear.response(0.0))), 12)  # it goes where it is told
+    >>> round(float(abs(linear.response(0.0))), 12)  # it follows its command
     1.0
     """
     check_continuous(arguments.drive(drive), "linearise")
@@ -225,7 +225,7 @@ def linearise(
     slopes = [_core.differentiate_rates(drive, _vibrating(state, drive, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
     if not all(np.isfinite(each).all() for each in slopes):
         raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
-    layout = Layout(drive)
+    layout = StateLayout(drive)
     count = layout.count
     shown = outputs(drive)
     rows = [*range(count), *(count + each.channel for each in shown.values())]
@@ -271,7 +271,7 @@ def modes(drive: Drive) -> dict[str, Array]:
     damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPINGS]
     gear = gear.replace(structure=gear.structure.replace(dict.fromkeys(damped, 0.0)))
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
-    held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HELD, breakaway=HELD)))
+    held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HOLDING_TORQUE, breakaway=HOLDING_TORQUE)))
     return {"free": _frequencies(bare), "input held": _frequencies(held)}
 
 
@@ -289,8 +289,8 @@ def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array
     at_rest = state.input_speed == state.output_speed == 0.0
 
     def passing(numbers: Array, way: float) -> Array:
-        """The same with the speeds of what rests but does not stick, `way` times a little within `SLOWLY`."""
-        speed = way * little / SLOWLY
+        """The same with the speeds of what rests but does not stick, `way` times a little within `QUASI_STATIC_TIME`."""
+        speed = way * little / QUASI_STATIC_TIME
         return (
             State.of(drive, numbers)
             .replace(
@@ -305,11 +305,11 @@ def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array
         twist += way * little
         found = _core.advance_hysteresis(drive, found, twist)
         if at_rest:
-            found = _core.aged(drive, passing(found, way), inputs, SLOWLY)
+            found = _core.aged(drive, passing(found, way), inputs, QUASI_STATIC_TIME)
     return passing(_core.advance_hysteresis(drive, found, twist - 0.5 * sense * little), sense)
 
 
-def _moving(state: State, layout: Layout) -> list[int]:
+def _moving(state: State, layout: StateLayout) -> list[int]:
     """The places of what moves: all but the numbers of a shaft that sticks."""
     stuck = set[str]()
     if state.input_slip_direction == 0.0:
@@ -319,7 +319,7 @@ def _moving(state: State, layout: Layout) -> list[int]:
     return [place for place, name in enumerate(layout.names[: layout.count]) if name.partition(".")[0] not in stuck]
 
 
-def _tied(state: State, layout: Layout) -> Array:
+def _tied(state: State, layout: StateLayout) -> Array:
     """The numbers by those that move, columns: while the output sticks, the transmission error goes with the input."""
     moved = np.eye(layout.count)
     if state.output_slip_direction == 0.0:
@@ -328,7 +328,7 @@ def _tied(state: State, layout: Layout) -> Array:
 
 
 def _matters(place: int, by_numbers: Array, kept: list[int]) -> bool:
-    """Whether another number or an output depends on a number."""
+    """True if another number or an output depends on a number."""
     others = [row for row in kept if row != place]
     return bool(by_numbers[others, place].any() or by_numbers[by_numbers.shape[1] :, place].any())
 

@@ -17,11 +17,11 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.messages import listed, quoted
 from strainwave.native import kernels
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
 from strainwave.simulation.run import beginning, recording
-from strainwave.simulation.scenario import SHORTEST, constant, sine
+from strainwave.simulation.scenario import MIN_DURATION, constant, sine
 from strainwave.simulation.signals import check_continuous, command_unit
 from strainwave.simulation.signals import outputs as outputs_of
 from strainwave.simulation.signals import units as units_of
@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-_FEWEST = 64  # steps in a period: its harmonics up to the 31st
-_SLOWEST = 1e-300  # Hz: its period is still a number
-_SMALLEST = 1e-100  # amplitude: what is divided by it is still a number
+_MIN_STEPS_PER_PERIOD = 64  # harmonics up to the 31st
+_MIN_FREQUENCY = 1e-300  # Hz: its period is still finite
+_MIN_AMPLITUDE = 1e-100  # a quotient by it is still finite
 _SINES = ("command", "load_torque")
 
 
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse(ComparedByFields):
-    """How a drive answers a sine of some amplitude, once it has become periodic.
+    """Response of a drive to a sine of some amplitude, in periodic motion.
 
     ``answer["output_angle"]`` is the response of that output: amplitude and phase of its first harmonic over those of the
     input [unit of the output / unit of the input], shape (k,).
@@ -103,7 +103,7 @@ def frequency_response(
     tolerance: float = 1e-6,
     max_periods: int = 1000,
 ) -> FrequencyResponse:
-    """Runs a drive under sines around an operating point until it moves periodically, and takes the first harmonics.
+    """Run a drive under sines around an operating point until it moves periodically, and return the first harmonics.
 
     Each frequency begins at `start`. What drifts at a steady rate counts as periodic: the drift is taken off, and reported; the
     answer of a drive that creeps under the vibration is that of the moment. Of an amplitude small enough, the response is that
@@ -130,7 +130,7 @@ def frequency_response(
         ValueError: a frequency, `amplitude`, `dt` or `tolerance` is not positive, a period has more than 1e8 steps,
             `max_periods` is below 2, `input` is another, or there is no equilibrium
         FloatingPointError, MemoryError: as `simulate`
-        RuntimeError: a motion is not periodic after `max_periods`; says how far it is from that
+        RuntimeError: a motion is not periodic after `max_periods`; the message gives the remaining difference
 
     Warns:
         RuntimeWarning: the drive's bristles are too stiff for `dt`
@@ -146,7 +146,7 @@ def frequency_response(
     check_continuous(arguments.drive(drive), "frequency_response")
     constant_inputs(command, load_torque, temperature)  # refuses what makes no sense
     frequencies = np.atleast_1d(arguments.numbers("frequency", frequency))
-    amplitude = arguments.number("amplitude", amplitude, brackets="[)", low=_SMALLEST)
+    amplitude = arguments.number("amplitude", amplitude, brackets="[)", low=_MIN_AMPLITUDE)
     dt = arguments.seconds("dt", dt)
     _check(frequencies, input, dt)
     tolerance = arguments.number("tolerance", tolerance, low=0.0)
@@ -186,7 +186,7 @@ def _check(frequencies: Array, signal: str, dt: float) -> None:
     if frequencies.ndim != 1 or frequencies.size == 0:
         raise ValueError("frequency must hold positive numbers [Hz], one at least")
     for frequency in frequencies.tolist():
-        arguments.number("frequency", frequency, "Hz", "[]", _SLOWEST, 1.0 / SHORTEST)
+        arguments.number("frequency", frequency, "Hz", "[]", _MIN_FREQUENCY, 1.0 / MIN_DURATION)
         check_instants(1.0 / frequency, dt, "take a higher frequency, or a longer dt")
     arguments.one_of("input", signal, _SINES)
 
@@ -218,7 +218,7 @@ class _Sines:
         """The outputs over each period, both ends included."""
         period = excitation.command.duration
         step = _step(period, self.dt)
-        temperature = excitation.first()[TEMPERATURE]
+        temperature = excitation.first()[TEMPERATURE_PLACE]
         check_resolution(self.drive, step, 0.0, temperature)
         excitation.check_laid_out(step)
         time_grid = excitation.time_grid(step, None)
@@ -236,7 +236,7 @@ class _Sines:
 
 def _step(period: float, dt: float) -> float:
     """The longest step that divides a period and keeps to `dt` [s]."""
-    return period / max(ceil(period / dt), _FEWEST)
+    return period / max(ceil(period / dt), _MIN_STEPS_PER_PERIOD)
 
 
 def _change(values: Array, before: Array) -> float:

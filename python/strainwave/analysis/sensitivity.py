@@ -1,4 +1,4 @@
-"""How a run depends on the numbers of the drive."""
+"""Derivatives of a run by the numbers of the drive."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # Numbers by which there is no derivative, by their path or its last name, and why.
 NO_MEASURE = {
-    "control.period": (WHEN := "it tells when something happens, not how much of it"),
+    "control.period": (WHEN := "it determines when something happens, not how much of it"),
     "control.delay": WHEN,
-    "seed": "it tells which noise it is, not how much of it",
+    "seed": "it selects the noise, not its size",
     "counts": (ROUNDING := "a reading that is rounded jumps, and derivatives ignore the rounding"),
     "resolution": ROUNDING,
 }

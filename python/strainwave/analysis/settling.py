@@ -1,4 +1,4 @@
-"""When a response has come to rest."""
+"""Settling time of a response."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def settling_time(
 
 
 def _last_entry(time: Array, offset: Array, width: float) -> float:
-    """When the offset comes within the width for good, on the straight line between two samples."""
+    """Return the time from which the offset stays within the width, on the straight line between two samples."""
     outside = np.flatnonzero(np.abs(offset) > width)
     if not outside.size:
         return float(time[0])

@@ -14,15 +14,15 @@ from strainwave import Drive, _core, arguments, kinematic_error, motor
 from strainwave.equality import ComparedByFields
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, check_temperature
 from strainwave.simulation.signals import TWIST, actuation, check_continuous, command_unit, controls_position
-from strainwave.simulation.state import Layout, State, start_of
+from strainwave.simulation.state import State, StateLayout, start_of
 
 Array = NDArray[np.float64]
-SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
-_ROUNDING = 1e-14  # of what cancels
+QUASI_STATIC_TIME = 1e30  # s: of a motion that takes so long, friction depends on the path alone
+_ROUNDING_SHARE = 1e-14  # of the terms that cancel [1]
 MAX_ANGLE = 1e12  # rad of the input: beyond, where within a turn it stands is lost
-_NOTHING = 1e-12  # rad/s2, A/s: a term so small takes no part
+_NEGLIGIBLE_RATE = 1e-12  # rad/s2, A/s: a term so small has no effect
 OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
-_FASTEST = 1e9  # rad/s at the input: what nothing has stopped by then, nothing will
+_MAX_INPUT_SPEED = 1e9  # rad/s: a drive that exceeds it has no steady speed
 
 
 def equilibrium(
@@ -43,7 +43,7 @@ def equilibrium(
     kinematic error, which comes and goes with every turn; in open loop at the lowest speed, counted from rest, at which nothing
     accelerates.
 
-    Whether the state is stable, the poles of `linearise` tell.
+    The poles of `linearise` show whether the state is stable.
 
     Args:
         command: output angle [rad] of a drive under position control, output speed [rad/s] under speed control, voltage [V] of
@@ -59,7 +59,7 @@ def equilibrium(
         TypeError: an argument is not of its kind
         ValueError: an input is not finite, `temperature` is not positive, there is no equilibrium, torques grow beyond all
             numbers, or a part has none: a sampled controller, a load that prescribes or brakes, a motor that accelerates,
-            heating, a meter, noise, an encoder; says why
+            heating, a meter, noise, an encoder; the message gives the reason
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
@@ -95,7 +95,7 @@ def _check_uncounted(drive: Drive) -> None:
 def _check_prescribed(drive: Drive, state: Array, inputs: Array) -> None:
     """Refuses a motor that keeps accelerating the input shaft, whatever torque that takes."""
     if isinstance(drive.motor, motor.AccelerationSource):
-        place = Layout(drive).places["input_speed"].start
+        place = StateLayout(drive).places["input_speed"].start
         if not Rates.of(drive, state, inputs).vanishes([place], 1e-9):
             raise ValueError(_unsteady(drive, inputs, "the motor prescribes an acceleration that is not zero"))
 
@@ -134,7 +134,7 @@ class Rates(ComparedByFields):
         count = len(slopes) - len(inputs)
         by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
         size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
-        layout = Layout(drive)
+        layout = StateLayout(drive)
         places, sensing = layout.places, _sensing(layout)
         # A reading may be small because what it adds up cancels: then it is as exact as that is large.
         following = by_numbers[sensing][:, sensing]
@@ -144,20 +144,20 @@ class Rates(ComparedByFields):
         for rows, columns in ((places["motor"], places["motor"]), (places["input_speed"], places["transmission_error"])):
             each = size[rows] / _positive(np.abs(np.diag(by_numbers[rows, columns])))
             size += np.abs(by_numbers[:count, columns]) @ each
-        return cls(values[:count], by_numbers, by_inputs, size + _NOTHING)
+        return cls(values[:count], by_numbers, by_inputs, size + _NEGLIGIBLE_RATE)
 
     @property
     def output(self) -> Array:
-        """How outputs depend on the numbers, shape (channels, n)."""
+        """Return the derivatives of the outputs by the numbers, shape (channels, n)."""
         return self.by_numbers[len(self.rate) :]
 
     @property
     def finite(self) -> bool:
-        """Whether all of its numbers are: no torque is larger than a number can be."""
+        """True if all of its numbers are finite: no torque overflows."""
         return all(bool(np.isfinite(each).all()) for each in (self.rate, self.by_numbers, self.by_inputs, self.size))
 
     def vanishes(self, rows: list[int], share: float) -> bool:
-        """Whether these rates are less than a share of what they add up from."""
+        """True if these rates are less than a share of the terms that add up to them."""
         return bool((np.abs(self.rate) <= share * self.size)[rows].all())
 
 
@@ -167,7 +167,7 @@ class Rates(ComparedByFields):
 def _at_rest(drive: Drive, state: Array) -> Array:
     """`state` without its speeds, every shaft that can stick sticking."""
     still = state.copy()
-    layout = Layout(drive)
+    layout = StateLayout(drive)
     for name in ("input_speed", "output_speed", "input_slip_direction", "output_slip_direction"):
         still[layout.places[name]] = 0.0
     still[_bodies(layout)[1]] = 0.0
@@ -201,9 +201,9 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
 def _pushed(drive: Drive, state: Array, freed: Array, inputs: Array) -> Array:
     """`freed` with the shaft let go that an integral of the controller, growing on, pushes until it gives way.
 
-    The input, if it sticks; else the output: that of a position loop is held beside its command while the input winds it up.
+    The input, if it sticks; else the output: that of a position loop is held off its command while the input winds it up.
     """
-    layout, pushed, rates = Layout(drive), freed.copy(), Rates.of(drive, state, inputs)
+    layout, pushed, rates = StateLayout(drive), freed.copy(), Rates.of(drive, state, inputs)
     control = layout.places["control"]
     push = np.sign(rates.output[actuation(drive).channel, control] @ rates.rate[control])
     for end, way in (("input", push), ("output", push * np.sign(drive.gear.kinematics.ratio))):
@@ -222,12 +222,12 @@ class _Slow(ComparedByFields):
     inputs: Array
 
     @cached_property
-    def layout(self) -> Layout:
-        return Layout(self.drive)
+    def layout(self) -> StateLayout:
+        return StateLayout(self.drive)
 
     @property
     def free(self) -> tuple[bool, bool]:
-        """Whether input and output may move."""
+        """Return True for the input, and for the output, if it may move."""
         places = self.layout.places
         return bool(self.start[places["input_slip_direction"]]), bool(self.start[places["output_slip_direction"]])
 
@@ -239,7 +239,7 @@ class _Slow(ComparedByFields):
         return wanted + [speed for speed, free in zip(speeds, self.free, strict=True) if free]
 
     def guess(self) -> Array:
-        """Where to begin: where the controller wants the input, if it may move; else here."""
+        """Return the initial numbers: the input at its command if it may move, else where it is."""
         numbers, places = self.start[: self.layout.count].copy(), self.layout.places
         if self.free[0] and controls_position(self.drive):
             ratio = self.drive.gear.kinematics.ratio
@@ -250,17 +250,21 @@ class _Slow(ComparedByFields):
         return numbers
 
     def moved(self, numbers: Array) -> Array:
-        """Friction and sensors have followed the angles; what is left of their speeds tells which way."""
+        """Return the state in which friction and sensors have followed the angles; a rest of speed gives the direction."""
         places, count, friction = self.layout.places, self.layout.count, self.layout.friction()[:, 0]
         turned, wound = ((numbers - self.start[:count])[places[name]].item() for name in ("input_angle", "transmission_error"))
         moving = self.start.copy()
         moving[:count] = np.where(friction > 0.0, self.start[:count], numbers)
-        moving[places["input_speed"]] = turned / SLOWLY
-        moving[places["output_speed"]] = (turned / self.drive.gear.kinematics.ratio - wound) / SLOWLY if self.free[1] else 0.0
-        return _settled(self.drive, _core.aged(self.drive, moving, self.inputs, SLOWLY), self.inputs, _sensing(self.layout))
+        moving[places["input_speed"]] = turned / QUASI_STATIC_TIME
+        moving[places["output_speed"]] = (
+            (turned / self.drive.gear.kinematics.ratio - wound) / QUASI_STATIC_TIME if self.free[1] else 0.0
+        )
+        return _settled(
+            self.drive, _core.aged(self.drive, moving, self.inputs, QUASI_STATIC_TIME), self.inputs, _sensing(self.layout)
+        )
 
     def directions(self, rates: Rates) -> Array:
-        """What may move, in columns; the states of friction and of sensors go with the angles of their shafts."""
+        """Return the free motions in columns; the states of friction and of sensors go with the angles of their shafts."""
         places, count, friction = self.layout.places, self.layout.count, self.layout.friction()
         everything, inverse = np.eye(count), 1.0 / self.drive.gear.kinematics.ratio
         of_friction = friction * rates.by_numbers[:count]
@@ -315,8 +319,8 @@ class _Steady(ComparedByFields):
     inputs: Array
 
     @cached_property
-    def layout(self) -> Layout:
-        return Layout(self.drive)
+    def layout(self) -> StateLayout:
+        return StateLayout(self.drive)
 
     def rows(self, rates: Rates) -> list[int]:
         """The rates that must vanish; those of friction and of sensors have."""
@@ -332,7 +336,7 @@ class _Steady(ComparedByFields):
         return self.moved(numbers)
 
     def surplus(self, speed: float) -> float:
-        """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and motor settled."""
+        """Return the torque that accelerates the whole drive at a speed [N.m], at the input, with spring and motor settled."""
         drive, places, inputs = self.drive, self.layout.places, self.inputs
         state = _settled(drive, self.at(speed), inputs, [*_inner(self.layout), *_sensing(self.layout)])
         rates = Rates.of(drive, state, inputs)
@@ -350,13 +354,13 @@ class _Steady(ComparedByFields):
 
         if command_unit(self.drive) == "rad/s":
             return float(self.inputs[0] * self.drive.gear.kinematics.ratio)
-        way = next((sense for sense in (1.0, -1.0) if sense * self.surplus(sense / SLOWLY) > 0.0), 0.0)
+        way = next((sense for sense in (1.0, -1.0) if sense * self.surplus(sense / QUASI_STATIC_TIME) > 0.0), 0.0)
         if way == 0.0:
             raise ValueError(_unsteady(self.drive, self.inputs, "friction holds it, but no balance was found"))
-        low, high = way / SLOWLY, 1e-3 * way
+        low, high = way / QUASI_STATIC_TIME, 1e-3 * way
         while way * self.surplus(high) > 0.0:
             low, high = high, 2.0 * high
-            if abs(high) > _FASTEST:
+            if abs(high) > _MAX_INPUT_SPEED:
                 raise ValueError(_unsteady(self.drive, self.inputs, "nothing limits its speed"))
         return float(brentq(self.surplus, low, high))
 
@@ -364,11 +368,11 @@ class _Steady(ComparedByFields):
         """All transients of friction and of sensors gone."""
         state = self.start.copy()
         state[: self.layout.count] = numbers
-        aged = _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, SLOWLY)
+        aged = _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, QUASI_STATIC_TIME)
         return _settled(self.drive, aged, self.inputs, _sensing(self.layout))
 
     def directions(self, rates: Rates) -> Array:
-        """What may move, in columns; friction and sensors so that their rates stay as they are."""
+        """Return the free motions in columns; friction and sensors keep their rates."""
         places, count = self.layout.places, self.layout.count
         everything, friction = np.eye(count), np.flatnonzero(self.layout.friction()).tolist()
         run = everything[:, places["input_speed"]] + everything[:, places["output_speed"]] / self.drive.gear.kinematics.ratio
@@ -380,26 +384,26 @@ class _Steady(ComparedByFields):
 # Both
 
 
-def _sensing(layout: Layout) -> list[int]:
-    """Where the numbers of sensors stand."""
+def _sensing(layout: StateLayout) -> list[int]:
+    """Return the places of the sensors' numbers."""
     return [place for place, name in enumerate(layout.names[: layout.count]) if name.startswith("sensors.")]
 
 
-def _bodies(layout: Layout) -> tuple[list[int], list[int]]:
-    """Where the displacements of the bodies within the gear stand, and where their speeds do."""
+def _bodies(layout: StateLayout) -> tuple[list[int], list[int]]:
+    """Return the places of the displacements of the bodies within the gear, and those of their speeds."""
     places = range(layout.count)[layout.places["structure"]]
     speeds = [place for place in places if layout.names[place].endswith("_speed")]
     return [place for place in places if place not in speeds], speeds
 
 
-def _inner(layout: Layout) -> list[int]:
-    """Where the numbers of the motor and of the bodies within the gear stand."""
+def _inner(layout: StateLayout) -> list[int]:
+    """Return the places of the numbers of the motor and of the bodies within the gear."""
     everything = range(layout.count)
     return [*everything[layout.places["motor"]], *everything[layout.places["structure"]]]
 
 
-def _needed(layout: Layout, rates: Rates) -> list[int]:
-    """Where those numbers of the controller stand that something else depends on."""
+def _needed(layout: StateLayout, rates: Rates) -> list[int]:
+    """Return the places of the controller's numbers that something else depends on."""
     control = layout.places["control"]
     others = np.delete(rates.by_numbers, control, axis=0)
     return [place for place in range(layout.count)[control] if others[:, place].any()]
@@ -453,9 +457,9 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
 
 
 def _product(left: Array, right: Array) -> Array:
-    """Of two matrices, shapes (m, n) and (n, k); 0 where terms cancel but for rounding, which means no dependence at all."""
+    """Return the product of two matrices, shapes (m, n) and (n, k); 0 if terms cancel to rounding: no dependence at all."""
     product: Array = left @ right
-    return np.where(np.abs(product) > _ROUNDING * (np.abs(left) @ np.abs(right)), product, 0.0)
+    return np.where(np.abs(product) > _ROUNDING_SHARE * (np.abs(left) @ np.abs(right)), product, 0.0)
 
 
 def _least(matrix: Array, right: Array) -> Array:

@@ -20,7 +20,7 @@ def classify(
     seed: Annotated[int, whole("Seed of the choice of units and conditions, and of the forest.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for results.json.")] = Path("out/classify"),
 ) -> None:
-    """Print how well a classifier recognises faults, beside a physics-based detector, chance and a leaky split."""
+    """Print the scores of a classifier of faults, of a physics-based detector, of chance and of a leaky split."""
     from strainwave.dataset.classifier import benchmark
     from strainwave.dataset.labelled import labelled_runs
     from strainwave.files.writing import write_folder

@@ -36,7 +36,7 @@ from strainwave.commands.simulate import simulate
 from strainwave.commands.study import study
 from strainwave.messages import one_line, with_options
 
-REFUSED = 2  # exit code for input that cannot be used
+EXIT_REFUSED = 2  # exit code for input that cannot be used
 VERBS = (
     identify,
     predict,
@@ -107,14 +107,14 @@ def main() -> None:
             code = app(sys.argv[1:] or ["--help"], standalone_mode=False)
     except MISUSED as error:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
-        code = REFUSED
+        code = EXIT_REFUSED
     except (OverflowError, ZeroDivisionError) as error:
         _print(f"strainwave: a number is too large or too small to compute with: {one_line(str(error))}\n", sys.stderr)
-        code = REFUSED
+        code = EXIT_REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
         reason = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
         _print(f"strainwave: {one_line(with_options(reason, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
-        code = REFUSED
+        code = EXIT_REFUSED
     finally:
         _print(output.getvalue(), sys.stdout)
     sys.exit(code)

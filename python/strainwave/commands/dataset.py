@@ -12,8 +12,8 @@ import typer
 from strainwave.commands.options import whole
 
 if TYPE_CHECKING:
-    from strainwave.dataset.make import Estimate
-    from strainwave.dataset.plan import Plan
+    from strainwave.dataset.make import CostEstimate
+    from strainwave.dataset.plan import DatasetPlan
 
 RUNNERS = ("local", "dask", "slurm")
 QUIET_SECONDS = 60.0  # between lines of progress where nobody watches
@@ -108,15 +108,15 @@ def _make_member(plan: Path, member: int, out: Path | None) -> None:
 def _show_estimate(plan: Path, out: Path, workers: int | None) -> None:
     from strainwave.dataset.make import estimate
     from strainwave.dataset.members import Population
-    from strainwave.dataset.plan import Plan
+    from strainwave.dataset.plan import DatasetPlan
     from strainwave.dataset.shards import Shards
     from strainwave.simulation.threads import available_threads
 
-    shards = Shards(Population(Plan.read(plan)))
+    shards = Shards(Population(DatasetPlan.read(plan)))
     print("\n".join(_lines(shards.plan, estimate(shards, out, workers or available_threads()))))
 
 
-def _lines(plan: Plan, cost: Estimate) -> list[str]:
+def _lines(plan: DatasetPlan, cost: CostEstimate) -> list[str]:
     from strainwave.dataset.runners import duration_text
 
     return [

@@ -27,7 +27,7 @@ ALARM_EXIT_CODE = 3  # of the process, if a recording differs from the baseline
 
 
 @dataclass(frozen=True)
-class PlanOptions:
+class RecordingPlanOptions:
     """Options of a planned recording."""
 
     plan: Annotated[bool, typer.Option("--plan", help="Compute what a recording of the drive --gear would show.")] = False
@@ -66,7 +66,7 @@ class PlanOptions:
 @with_groups
 def diagnose(
     given: FileOptions,
-    planned: PlanOptions,
+    planned: RecordingPlanOptions,
     paths: Annotated[
         list[Path] | None, typer.Argument(metavar="RECORDING…", help="Recordings of a joint, in the order of time.")
     ] = None,
@@ -152,7 +152,7 @@ def diagnose(
         raise typer.Exit(ALARM_EXIT_CODE)
 
 
-def _plan(gear: str | None, planned: PlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:
+def _plan(gear: str | None, planned: RecordingPlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:
     """Write and print the detection limits of a drive."""
     from strainwave.commands.options import number_option
     from strainwave.diagnose.detection_limit import detection_limit

@@ -37,7 +37,7 @@ def doctor() -> None:
     from strainwave import _core
     from strainwave.commands.docs import MISSING, documentation
 
-    works, fails = list(CORE_WORKS), []
+    works, fails = list(CORE_WORKS), list[str]()
     print(f"strainwave {version('strainwave')}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")
     _show("package", str(Path(strainwave.__file__).parent))
     _show("core", f"loads; instruction set {_core.instruction_set()}")
@@ -86,9 +86,9 @@ def _compiler() -> str:
 def _kernels() -> Iterator[tuple[str, str]]:
     """Yield a label and a text for the kernels that the package contains, and for those of this user."""
     from strainwave.native.cache import listing
-    from strainwave.native.folder import SHIPPED, VARIABLE, cache_folder
+    from strainwave.native.folder import SHIPPED_KERNELS, VARIABLE, cache_folder
 
-    shipped = [path.stat().st_size for path in SHIPPED.glob("*.so")]
+    shipped = [path.stat().st_size for path in SHIPPED_KERNELS.glob("*.so")]
     yield "shipped kernels", _counted(shipped, "in the package")
     try:
         folder, records = cache_folder(), listing()

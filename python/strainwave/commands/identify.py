@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.source import MeasurementFiles
 
-FAILED = 3  # exit code if a check fails: no gear is written
+EXIT_FAILED = 3  # exit code if a check fails: no gear is written
 
 
 @with_groups
@@ -41,7 +41,7 @@ def identify(
     fit = _every_joint if given.joint == ALL else _one_gear
     if fit(gear, opened, given.mapping_of(opened.files), accept, name, out) and not accept:
         print("a gear with a failed check is not written: settle it, or --accept writes it")
-        raise typer.Exit(FAILED)
+        raise typer.Exit(EXIT_FAILED)
 
 
 def _one_gear(

@@ -21,7 +21,8 @@ def plan_experiments(
         list[str] | None, typer.Option(help="What can be made: friction, torsion; repeat as needed. Both, if not given.")
     ] = None,
     unknown: Annotated[
-        list[str] | None, typer.Option(help="What is not known either; if not given, what stands beside the wanted ones.")
+        list[str] | None,
+        typer.Option(help="Parameters that are not known either; if not given, the ones in the same part as the wanted ones."),
     ] = None,
     noise: Annotated[
         list[str] | None,

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from strainwave.rig.bench.steps import Step
     from strainwave.rig.running.guide import Settling
     from strainwave.rig.running.plan import Pans, Plan
-    from strainwave.rig.running.sources import Source
+    from strainwave.rig.running.sources import PictureSource
 
 rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
 
@@ -99,7 +99,7 @@ def simulate(
     options: PlanOptions = USUAL_PLAN,
     seed: Annotated[int, whole("Of the noise of the photographs.")] = 0,
 ) -> None:
-    """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
+    """Make a virtual test: photographs, masses and rig as a real test leaves them, and the true values."""
     import sys
 
     from strainwave.rig.bench.steps_file import write_steps
@@ -202,11 +202,11 @@ def analyse(
     from strainwave.report.rig import rig_report, summary
     from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
     from strainwave.rig.loop import COLUMNS
-    from strainwave.rig.reading.reading import Given, evaluate_paths
+    from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
     target = _target(paths, out)
     with Console(stderr=True).status("reading") as status:
-        given = Given(
+        given = EvaluationOptions(
             rig=None if name is None else _rig(name),
             gear_set=None if gear is None else GearSet.read(gear),
             rated_torque=rated_torque,
@@ -313,14 +313,14 @@ def influence(
 
 
 def _target(paths: Sequence[Path], out: Path | None) -> Path:
-    """Where the results go."""
+    """Return the folder of the results."""
     if out is not None:
         return out
     return paths[0] / "analysis" if len(paths) == 1 and paths[0].is_dir() else Path("out/rig")
 
 
 def _provenance(read: Sequence[Path]) -> Provenance:
-    """How the report came to be; files of the same name are shown with their folders."""
+    """Return the origin of the report; files of the same name are shown with their folders."""
     from dataclasses import replace
 
     from strainwave.report.provenance import Provenance
@@ -371,7 +371,7 @@ def _count(option: str, value: int) -> int:
     return value
 
 
-def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
+def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> PictureSource:
     from strainwave.rig.running.sources import Device, Filled
     from strainwave.rig.virtual.rehearsal import gear_named, rehearsal
 
@@ -384,7 +384,7 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Sour
 
 
 def _keep_plan(made: Plan, out: Path) -> None:
-    """Writes the plan beside the test, or refuses another one than a test that was broken off has."""
+    """Write the plan into the test's folder, or refuse a plan that differs from that of an interrupted test."""
     from strainwave.files.folder import inside
     from strainwave.rig.bench.steps_file import read_steps, write_steps
     from strainwave.rig.reading.measurement import PLAN
@@ -396,7 +396,7 @@ def _keep_plan(made: Plan, out: Path) -> None:
         raise ValueError(f"{kept} holds another plan; repeat the options that it was begun with, or give another --out")
 
 
-def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source, settling: Settling) -> int:
+def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: PictureSource, settling: Settling) -> int:
     """Guides through the steps that are left; returns how many are done."""
     from strainwave.report.rig_live import Terminal
     from strainwave.rig.bench.rig_file import write_rig

@@ -55,7 +55,7 @@ def simulate(
     title = one_line(f"{gear_set.name}: {given.name or scenario.stem}")
     recording = Recording(run.columns, run.units, title).select(["time", *wanted])
     _write_run(recording, out, plot)
-    _tell_run(gear_set, run, recording)
+    _print_run(gear_set, run, recording)
     for path in filter(None, (out, plot)):
         print(f"wrote {path}")
 
@@ -95,8 +95,8 @@ def _run(given: ScenarioFile, drive: Drive, dt: float | None, tolerance: float |
     return given.simulate_adaptively(drive, tolerance, **options)
 
 
-def _tell_run(gear_set: GearSet, run: Run, recording: Recording) -> None:
-    """How the run went, the range of what is recorded, and the ratings that it exceeded."""
+def _print_run(gear_set: GearSet, run: Run, recording: Recording) -> None:
+    """Print the method of the run, the range of each column, and the ratings that it exceeded."""
     from strainwave.files.ratings import check_ratings
     from strainwave.report.listing import range_table
 

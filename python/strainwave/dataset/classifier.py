@@ -1,4 +1,4 @@
-"""A classifier of features, judged on units and conditions that it was not trained on, beside a detector and beside chance.
+"""A classifier of features, tested on units and conditions outside its training, and compared with a detector and chance.
 
 A split by run puts runs of one unit into both halves. The classifier then recognises the unit and not its fault: `leaky` is
 the accuracy that such a split pretends.

@@ -31,7 +31,7 @@ NEUTRAL: Mapping[str, Mapping[str, float]] = {"backlash": {"clearance": 0.0}}  #
 Fault = Any  # a model of `sw.fault`
 
 
-class Change(NamedTuple):
+class ModelChange(NamedTuple):
     """A change of the numbers called `quantity` under a part of a drive: its kind is scale, add, vector or wave.
 
     Attributes:
@@ -55,7 +55,7 @@ class Change(NamedTuple):
     order: float
 
 
-def changes_of(drive: Drive, fault: Fault) -> list[Change]:
+def changes_of(drive: Drive, fault: Fault) -> list[ModelChange]:
     """Return the changes that a fault lists for a drive.
 
     Raises:
@@ -71,8 +71,8 @@ def _check(fault: Fault) -> None:
         raise TypeError(f"a fault must be a model of strainwave.fault, not {type(fault).__name__}")
 
 
-def _listed(fault: Fault, facts: Any) -> list[Change]:
-    return [Change(*each) for each in fault.changes(facts)]
+def _listed(fault: Fault, facts: Any) -> list[ModelChange]:
+    return [ModelChange(*each) for each in fault.changes(facts)]
 
 
 def prepared(drive: Drive, faults: Sequence[Fault]) -> Drive:
@@ -189,7 +189,7 @@ def _at(drive: Drive, place: str) -> Any:
     return part
 
 
-def _holder(drive: Drive, change: Change) -> str | None:
+def _holder(drive: Drive, change: ModelChange) -> str | None:
     """Return the path of the law that has the numbers of a change, or None."""
     for path, model in _models(change.place, _at(drive, change.place)):
         if model.name == change.law if change.kind == "wave" else hasattr(model, change.quantity):
@@ -200,7 +200,7 @@ def _holder(drive: Drive, change: Change) -> str | None:
 # ---- Preparation -----------------------------------------------------------------------------------------------------
 
 
-def _with_law(drive: Drive, fault: Fault, change: Change) -> Drive:
+def _with_law(drive: Drive, fault: Fault, change: ModelChange) -> Drive:
     """Return the drive with a law that has the numbers of a change."""
     if _holder(drive, change) is not None:
         return drive
@@ -240,7 +240,7 @@ def _required(kind: Any) -> bool:
     return any(field["required"] for field in kind.fields)
 
 
-def _with_wave(drive: Drive, fault: Fault, change: Change) -> Drive:
+def _with_wave(drive: Drive, fault: Fault, change: ModelChange) -> Drive:
     """Return the drive with a wave of the order of a change, of amplitude 0 if it is new."""
     path = _holder(drive, change)
     assert path is not None
@@ -264,7 +264,7 @@ def _same_order(one: float, other: float) -> bool:
     return isclose(one, other, rel_tol=SAME_ORDER)
 
 
-def _has_effect(drive: Drive, change: Change) -> bool:
+def _has_effect(drive: Drive, change: ModelChange) -> bool:
     """True if the drive has a number that the change alters at some severity."""
     if change.kind == "scale":
         places = _places(drive)
@@ -281,7 +281,7 @@ def _number_names(model: Any) -> Iterator[str]:
     return (field["name"] for field in model.fields if field["kind"] == "number")
 
 
-def _paths_of(drive: Drive, change: Change) -> Iterator[str]:
+def _paths_of(drive: Drive, change: ModelChange) -> Iterator[str]:
     """Yield the paths of all numbers that a scale or an addition changes."""
     for part, model in _models(change.place, _at(drive, change.place)):
         for path in own_paths(part, model):
@@ -302,14 +302,14 @@ class _Places:
         self._scaled: dict[tuple[str, str], tuple[str, ...]] = {}
         self._held: dict[tuple[str, str, str, float], tuple[str, str]] = {}
 
-    def scaled(self, change: Change) -> tuple[str, ...]:
+    def scaled(self, change: ModelChange) -> tuple[str, ...]:
         """Return the paths of all numbers that a scale changes."""
         key = change.place, change.quantity
         if key not in self._scaled:
             self._scaled[key] = tuple(_paths_of(self.drive, change))
         return self._scaled[key]
 
-    def held(self, fault: Fault, change: Change) -> tuple[str, str]:
+    def held(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
         """Return the paths of the number that a change adds to, and of its direction.
 
         Raises:
@@ -320,7 +320,7 @@ class _Places:
             self._held[key] = self._found(fault, change)
         return self._held[key]
 
-    def _found(self, fault: Fault, change: Change) -> tuple[str, str]:
+    def _found(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
         path = _holder(self.drive, change)
         if path is None:
             raise ValueError(
@@ -348,7 +348,7 @@ class _Numbers:
         self.places = places
         self.changed: dict[str, float] = {}
 
-    def make(self, fault: Fault, change: Change) -> None:
+    def make(self, fault: Fault, change: ModelChange) -> None:
         if change.kind == "scale":
             for path in self.places.scaled(change):
                 self.changed[path] = self._value(path) * change.value
@@ -359,7 +359,7 @@ class _Numbers:
         else:
             self._add_vector(path, direction, change)
 
-    def _add_vector(self, length: str, direction: str, change: Change) -> None:
+    def _add_vector(self, length: str, direction: str, change: ModelChange) -> None:
         value, angle = self._value(length), self._value(direction)
         if value == 0.0 and change.value > 0.0:
             value, angle = change.value, change.phase  # without the rounding of the sum

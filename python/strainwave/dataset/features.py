@@ -124,7 +124,7 @@ def moments(values: Array) -> dict[str, Array]:
 
 
 def order_amplitudes(current: Array, angle: Array, used: NDArray[np.bool_], orders: Sequence[float]) -> Array:
-    """Return the amplitude of each order of an angle by least squares, beside a mean and a trend of second degree.
+    """Return the amplitude of each order of an angle by least squares, together with a mean and a trend of second degree.
 
     The speed is no regressor: at a steady command all that varies of it is the ripple itself.
 

@@ -11,7 +11,7 @@ from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 from strainwave.files.writing import making, remove_drafts, replacing
 from strainwave.messages import one_line
 
@@ -26,10 +26,10 @@ class DatasetFolder:
     path: Path
 
     @cached_property
-    def plan(self) -> Plan:
+    def plan(self) -> DatasetPlan:
         if not (self.path / PLAN).exists():
             raise ValueError(one_line(f"{self.path} is no data set: it has no {PLAN}"))
-        return Plan.read(self.path / PLAN)
+        return DatasetPlan.read(self.path / PLAN)
 
     def shard(self, number: int, kind: str = "shards") -> Path:
         return self.path / kind / f"shard-{number:06d}.parquet"
@@ -48,7 +48,7 @@ class DatasetFolder:
     def is_finished(self) -> bool:
         return (self.path / SUMS).exists()
 
-    def begin(self, plan: Plan, text: bytes, manifest: str, card: str) -> None:
+    def begin(self, plan: DatasetPlan, text: bytes, manifest: str, card: str) -> None:
         """Write what describes the data set, or check that the folder has the same plan.
 
         Raises:

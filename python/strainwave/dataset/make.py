@@ -14,7 +14,7 @@ from strainwave.dataset import runners
 from strainwave.dataset.card import card, empty_splits, manifest
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.members import Population
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 from strainwave.dataset.shards import Shards, write_table
 from strainwave.files.writing import claiming, making, replacing
 from strainwave.messages import one_line
@@ -31,8 +31,8 @@ Runner = Literal["local", "dask", "slurm"]
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """What a data set takes, from a pilot of some members.
+class CostEstimate:
+    """Time and size of a data set, estimated from a pilot of some members.
 
     Args:
         members, shards: of the plan
@@ -53,11 +53,11 @@ class Estimate:
 
     @property
     def seconds(self) -> float:
-        """Of the whole, on all workers."""
+        """Return the time of the whole data set on all workers [s]."""
         return self.members * self.seconds_per_member / self.workers
 
 
-def estimate(shards: Shards, folder: Path, workers: int, shards_left: int | None = None) -> Estimate:
+def estimate(shards: Shards, folder: Path, workers: int, shards_left: int | None = None) -> CostEstimate:
     """Return what a plan takes, measured on a pilot.
 
     Raises:
@@ -79,7 +79,7 @@ def estimate(shards: Shards, folder: Path, workers: int, shards_left: int | None
     notes = empty_splits(population)
     if failed := [reason for reason in table["failure"].to_pylist() if reason]:
         notes.append(one_line(f"{len(failed)} of {count} members of the pilot fail, the first because: {failed[0]}"))
-    return Estimate(plan.members, plan.shards, seconds, whole, workers, tuple(notes), table.schema)
+    return CostEstimate(plan.members, plan.shards, seconds, whole, workers, tuple(notes), table.schema)
 
 
 def prepare_kernel(population: Population) -> None:
@@ -120,7 +120,7 @@ def make(
         RuntimeError: workers die again and again
     """
     text = Path(plan).read_bytes() if Path(plan).is_file() else b""
-    shards = Shards(Population(Plan.read(plan)))
+    shards = Shards(Population(DatasetPlan.read(plan)))
     target = DatasetFolder(Path(folder))
     count = workers or available_threads()
     show = progress or (lambda line: None)
@@ -156,7 +156,7 @@ def member(plan: str | Path, index: int) -> tuple[pyarrow.Table, pyarrow.Table]:
     Raises:
         ValueError: the plan is refused, or has no such member
     """
-    shards = Shards(Population(Plan.read(plan)))
+    shards = Shards(Population(DatasetPlan.read(plan)))
     if not 0 <= index < shards.plan.members:
         raise ValueError(f"member = {index} must lie in [0, {shards.plan.members - 1}]")
     row, samples = shards.member(index)
@@ -164,7 +164,7 @@ def member(plan: str | Path, index: int) -> tuple[pyarrow.Table, pyarrow.Table]:
     return row, samples
 
 
-def _bytes(table: pyarrow.Table, plan: Plan, count: int) -> float:
+def _bytes(table: pyarrow.Table, plan: DatasetPlan, count: int) -> float:
     """Bytes of all shards: what each has, and what each member adds, from files of two lengths."""
     half = max(count // 2, 1)
     with tempfile.TemporaryDirectory() as place:

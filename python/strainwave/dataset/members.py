@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.dataset.features import FeatureSet
-from strainwave.dataset.plan import Plan, Range, check_unit_grid
+from strainwave.dataset.plan import DatasetPlan, Range, check_unit_grid
 from strainwave.dataset.profiles import command_of, peak_speed
 from strainwave.dataset.sampling import Indices, hashed, points
 from strainwave.dataset.splits import share_of
@@ -75,7 +75,7 @@ class Population:
         ValueError: the gear set does not exist, the plan names what it does not have, steps are too coarse or samples too rare
     """
 
-    plan: Plan
+    plan: DatasetPlan
 
     def __post_init__(self) -> None:
         if command_unit(self.drive) != "rad":
@@ -91,7 +91,7 @@ class Population:
         """Refuse steps that are too coarse and samples that alias, in any condition.
 
         Raises:
-            ValueError, FloatingPointError: says which condition, and what to do
+            ValueError, FloatingPointError: the message names the condition and what to do
         """
         table = self.plan.simulation
         for number in range(self.plan.condition_count):

@@ -33,13 +33,13 @@ Line = Annotated[str, Field(max_length=2000)]
 Design = Literal["grid", "latin", "random", "sobol"]
 
 
-class Table(BaseModel):
+class PlanTable(BaseModel):
     """A table of a plan: unknown keys and other types are refused."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
-class Range(Table):
+class Range(PlanTable):
     """Numbers between two limits; equal limits are one number."""
 
     low: Finite
@@ -56,7 +56,7 @@ class Range(Table):
         return self.high > self.low
 
 
-class Spread(Table):
+class Spread(PlanTable):
     """Spread of a number over the units: relative to its value in the gear set, or between two limits in SI units."""
 
     relative: Annotated[float, Field(ge=0.0, lt=1.0)] | None = None
@@ -97,7 +97,7 @@ def _shown(both: Range) -> str:
     return f"[{both.low:g}, {both.high:g}]" if both.varies else f"{both.low:g}"
 
 
-class SimulationTable(Table):
+class SimulationTable(PlanTable):
     """Steps and samples of each run."""
 
     duration: Annotated[float, Field(gt=0.0, le=3600.0)] = 1.0
@@ -117,7 +117,7 @@ class SimulationTable(Table):
         return self
 
 
-class UnitsTable(Table):
+class UnitsTable(PlanTable):
     """Units: single drives of one type, which differ by spread and fault."""
 
     number: Annotated[int, Field(ge=1, le=MAX_MEMBERS)]
@@ -126,22 +126,22 @@ class UnitsTable(Table):
     catalogue_spread: bool = False
 
 
-class LifeTable(Table):
+class LifeTable(PlanTable):
     """Instants of the life of each unit at which it is run."""
 
     stages: Annotated[int, Field(ge=1, le=10_000)] = 1
     usage: Positive = 1.0
 
 
-class OnsetTable(Table):
-    """How the severity of a fault develops with usage: a law of `sw.onset` and its numbers."""
+class OnsetTable(PlanTable):
+    """Development of the severity of a fault with usage: a law of `sw.onset` and its numbers."""
 
     law: str
     numbers: dict[str, Finite] = {}
     words: dict[str, str] = {}
 
 
-class FaultTable(Table):
+class FaultTable(PlanTable):
     """A fault, the share of the units that have it, and its severity."""
 
     kind: str
@@ -172,7 +172,7 @@ class FaultTable(Table):
         return "+".join(self.kinds)
 
 
-class ConditionTable(Table):
+class ConditionTable(PlanTable):
     """Conditions of one profile: its numbers, temperature and external load."""
 
     profile: str
@@ -205,7 +205,7 @@ class ConditionTable(Table):
         return own | {"temperature": range_of(self.temperature), "load_torque": range_of(self.load_torque)}
 
 
-class FeaturesTable(Table):
+class FeaturesTable(PlanTable):
     """Features of each run, and the noise of what they are computed from."""
 
     start: Annotated[float, Field(ge=0.0)] = 0.0
@@ -226,8 +226,8 @@ class FeaturesTable(Table):
         return value
 
 
-class SamplesTable(Table):
-    """Series to keep beside the features."""
+class SamplesTable(PlanTable):
+    """Series to keep in addition to the features."""
 
     columns: tuple[str, ...]
     every: Annotated[int, Field(ge=1)] = 1
@@ -238,7 +238,7 @@ class SamplesTable(Table):
         return tuple(value) if isinstance(value, list) else value
 
 
-class SplitsTable(Table):
+class SplitsTable(PlanTable):
     """Shares of the units, and of the conditions, for each use."""
 
     train: Share = 0.7
@@ -257,7 +257,7 @@ class SplitsTable(Table):
         return {"train": self.train, "validation": self.validation, "test": self.test}
 
 
-class Plan(Table):
+class DatasetPlan(PlanTable):
     """A data set as a function of an index: members = conditions times units times stages, conditions first."""
 
     name: Annotated[str, Field(min_length=1, max_length=200)]
@@ -281,7 +281,7 @@ class Plan(Table):
         return tuple(value) if isinstance(value, list) else value
 
     @model_validator(mode="after")
-    def _sums(self) -> Plan:
+    def _sums(self) -> DatasetPlan:
         if self.condition_count > MAX_CONDITIONS:
             raise ValueError(f"the plan has {self.condition_count} conditions; at most {MAX_CONDITIONS} are allowed")
         if self.members > MAX_MEMBERS:
@@ -327,29 +327,29 @@ class Plan(Table):
         return sha256(json.dumps(self.model_dump(mode="json"), sort_keys=True).encode()).hexdigest()
 
     @staticmethod
-    def read(path: str | Path) -> Plan:
+    def read(path: str | Path) -> DatasetPlan:
         """Read a plan.
 
         Raises:
             ValueError: the file cannot be read, or what is wrong in it, with file, key, value and what is allowed
         """
         with at(f"{path}:"):
-            return Plan.of(document(Path(path)))
+            return DatasetPlan.of(document(Path(path)))
 
     @staticmethod
-    def parse(text: str) -> Plan:
+    def parse(text: str) -> DatasetPlan:
         """Return the plan that a text in TOML contains."""
-        return Plan.of(tomllib.loads(text))
+        return DatasetPlan.of(tomllib.loads(text))
 
     @staticmethod
-    def of(content: dict[str, Any]) -> Plan:
+    def of(content: dict[str, Any]) -> DatasetPlan:
         """Return the plan of tables.
 
         Raises:
             ValueError: the first thing that is wrong, in one line
         """
         try:
-            return Plan.model_validate(_without_whole_numbers(content))
+            return DatasetPlan.model_validate(_without_whole_numbers(content))
         except ValidationError as error:
             raise ValueError(_in_words(error, content)) from None
 

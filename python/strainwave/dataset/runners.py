@@ -1,4 +1,4 @@
-"""Who makes the shards: processes of this machine, tasks of Dask, or a job array of Slurm. The folder is the queue of all."""
+"""Runners of the shards: processes of this machine, tasks of Dask, or a job array of Slurm. The folder is the queue of all."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from typing import IO
 
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.members import Population
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 from strainwave.dataset.shards import Shards
 from strainwave.messages import one_line
 from strainwave.native import kernels
@@ -28,7 +28,7 @@ POLL_SECONDS = 0.2
 PROGRESS_SECONDS = 2.0
 MAX_FINISH_SECONDS = 60.0  # that a worker may take to end after the last shard is there
 MAX_DEATHS_WITHOUT_SHARD = 5  # of workers in succession, while no shard was completed
-REFUSED = 2  # exit code of a worker for what will not go better the next time
+EXIT_REFUSED = 2  # exit code of a worker for an error that a repeated try does not cure
 MAX_ERROR_BYTES = 4000
 DASK_RETRIES = 5  # of a shard whose worker died
 SLURM_SCRIPT = "slurm.sh"
@@ -131,7 +131,7 @@ def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
             for part, (worker, code) in enumerate(zip(workers, codes, strict=True)):
                 if code is None or board.done >= whole or (code == 0 and None in codes):
                     continue  # at work, or nothing was left for it
-                if code == REFUSED:
+                if code == EXIT_REFUSED:
                     raise OSError(f"a worker stopped: {worker.message()}")
                 deaths += 1
                 if deaths > MAX_DEATHS_WITHOUT_SHARD:
@@ -246,7 +246,7 @@ def shard_task(number: int, path: str) -> int:
 # Slurm
 
 
-def slurm_script(path: Path, plan: Plan, tasks: int) -> str:
+def slurm_script(path: Path, plan: DatasetPlan, tasks: int) -> str:
     """Return a job array that makes the shards of a folder, each task those of its part first."""
     command = " ".join(shlex.quote(word) for word in worker_command(path))
     count = min(tasks, plan.shards)

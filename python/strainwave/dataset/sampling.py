@@ -15,7 +15,7 @@ Words = NDArray[np.uint64]
 
 MAX_SOBOL_POINTS = 1 << 32  # the resolution of a coordinate, 2^-32
 SOBOL_BITS = 32
-ROUNDS = 4  # of a Feistel network, from which on a permutation is pseudo-random (Luby and Rackoff 1988)
+FEISTEL_ROUNDS = 4  # from this number on the permutation is pseudo-random (Luby and Rackoff 1988)
 
 
 def hashed(seed: int, column: int, indices: Indices) -> Words:
@@ -54,8 +54,8 @@ def permuted(seed: int, column: int, indices: Indices, count: int) -> Indices:
 def _feistel(seed: int, column: int, words: Words, half: int) -> Words:
     mask = np.uint64((1 << half) - 1)
     left, right = words >> np.uint64(half), words & mask
-    for turn in range(ROUNDS):
-        key = hashed(seed, ROUNDS * column + turn + (1 << 32), right.astype(np.int64))
+    for turn in range(FEISTEL_ROUNDS):
+        key = hashed(seed, FEISTEL_ROUNDS * column + turn + (1 << 32), right.astype(np.int64))
         left, right = right, (left ^ key) & mask
     return (left << np.uint64(half)) | right
 

@@ -16,7 +16,7 @@ from strainwave.messages import listed, quoted
 from strainwave.parameters import every
 from strainwave.simulation.ensemble import Ensemble, simulate_many
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.simulation.resolution import COARSEST
+from strainwave.simulation.resolution import MAX_STEP_PHASE
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, ramp
 
@@ -223,7 +223,7 @@ def geometry(drive: Drive) -> tuple[Any, bool]:
 
 def longest_step(drive: Drive) -> float:
     """Return the longest step of a run [s], for the fastest mode of the drive."""
-    return min(MAX_STEP, STEP_MARGIN * COARSEST / _core.max_rate(drive, 0.0, ROOM_TEMPERATURE))
+    return min(MAX_STEP, STEP_MARGIN * MAX_STEP_PHASE / _core.max_rate(drive, 0.0, ROOM_TEMPERATURE))
 
 
 def noises(drive: Drive, name: str) -> list[str]:

@@ -39,7 +39,7 @@ MIN_PLACE_MARGIN = 0.05  # rad of the output, by which it may lie outside or apa
 
 
 @dataclass(frozen=True)
-class Change:
+class OrderChange:
     """Change of one order in one direction, recording less baseline.
 
     Attributes:
@@ -79,7 +79,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class BaselineComparison:
     """Changes of a recording against a baseline.
 
     Attributes:
@@ -89,13 +89,13 @@ class Comparison:
         remarks: what was not compared, and why
     """
 
-    changes: tuple[Change, ...]
+    changes: tuple[OrderChange, ...]
     tests: float
     resolution: float
     remarks: tuple[str, ...]
 
     @property
-    def alarms(self) -> tuple[Change, ...]:
+    def alarms(self) -> tuple[OrderChange, ...]:
         """Changes that are alarms."""
         return tuple(each for each in self.changes if each.alarm)
 
@@ -161,7 +161,7 @@ def compared(
     false_alarm: float = FALSE_ALARM,
     new: Sequence[float] = (),
     searched: float = 1.0,
-) -> Comparison:
+) -> BaselineComparison:
     """Return the change of each order of a recording against a baseline.
 
     Args:
@@ -204,7 +204,7 @@ def compared(
             "record both directions"
         )
     ranked = tuple(sorted(changes, key=lambda each: (each.false_alarm, -abs(each.change) / each.sigma)))
-    return Comparison(ranked, float(planned), baseline.resolution, tuple(remarks))
+    return BaselineComparison(ranked, float(planned), baseline.resolution, tuple(remarks))
 
 
 def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], run: JointRecording) -> tuple[list[Cell], list[str]]:
@@ -282,7 +282,7 @@ def _margin(first: float, last: float) -> float:
 
 def _change(
     name: str, order: float, healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], tests: float, allowed: float, is_new: bool
-) -> Change:
+) -> OrderChange:
     """Return the change of one order, by Student's distribution with the baseline's spread."""
     from scipy.stats import t as student
 
@@ -300,7 +300,7 @@ def _change(
     reach = sigma * float(student.isf(0.5 * (1.0 - CONFIDENCE_LEVEL), freedom))
     probability = min(1.0, tests * 2.0 * float(student.sf(abs(change) / sigma, freedom)))
     limit = sigma * float(student.isf(0.5 * allowed / tests, freedom))
-    return Change(
+    return OrderChange(
         order, name, mean, spread, amplitude, change, sigma, change - reach, change + reach, limit, probability,
         probability < allowed, replicates, len(own), condition, is_new,
     )  # fmt: skip

@@ -10,10 +10,10 @@ from typing import Any, Literal
 import numpy as np
 
 from strainwave import arguments
-from strainwave.diagnose.baseline import Comparison, baseline_of, compared
+from strainwave.diagnose.baseline import BaselineComparison, baseline_of, compared
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise, threshold_of
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current
-from strainwave.diagnose.health import CatalogueLife, Condition, Trend, catalogue_life, condition, trend
+from strainwave.diagnose.health import CatalogueLife, HealthIndicator, HealthTrend, catalogue_life, condition, trend
 from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_orders
 from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
@@ -21,7 +21,7 @@ from strainwave.diagnose.response import error_response
 from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import without_name
-from strainwave.orders.lines import Line
+from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ripple import Ripple, ripple
 from strainwave.spline_orders import WAVE_ORDER
 
@@ -30,7 +30,7 @@ Verdict = Literal["changed", "no change found", "insensitive", "not comparable",
 LOAD_LEVELS = 3  # of the size of the load, in the table of the wave generator's ripple
 MIN_LOAD_SPREAD = 0.3  # of the load's root mean square [1], from which it has levels
 WAVE_RESOLUTIONS = 1.5  # resolutions, by which a line differs at most from the order of the wave generator
-MAX_OTHER_LINES = 6  # that are fitted beside the wave generator's
+MAX_OTHER_LINES = 6  # that are fitted in addition to the wave generator's
 
 
 @dataclass(frozen=True)
@@ -117,10 +117,10 @@ class RunDiagnosis:
     wave: WaveRipple | None
     orders: tuple[OrderAgainstNoise, ...]
     response: str
-    comparison: Comparison | None
+    comparison: BaselineComparison | None
     verdict: Verdict
     reason: str
-    condition: Condition | None
+    condition: HealthIndicator | None
     geometry: Geometry | None
     revolutions: float
     load: float
@@ -153,7 +153,7 @@ class Diagnosis:
     gear: str
     ratio: float
     life: CatalogueLife | None
-    trend: Trend | None
+    trend: HealthTrend | None
     remarks: tuple[str, ...]
 
     @property
@@ -307,7 +307,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
 
 
 def _geometry(run: JointRecording, question: Question, remarks: list[str]) -> Geometry | None:
-    """Return the misalignment by a ramp of the drive, or say why there is none."""
+    """Return the misalignment by a ramp of the drive; if there is none, add the reason to `remarks`."""
     if question.ramp_drive is None:
         return None
     try:
@@ -319,14 +319,14 @@ def _geometry(run: JointRecording, question: Question, remarks: list[str]) -> Ge
 
 def _compared(
     motion: JointMotion, found: Ripple, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]
-) -> tuple[Comparison | None, list[str]]:
+) -> tuple[BaselineComparison | None, list[str]]:
     """Return the comparison with the baseline, or why there is none."""
     if not healthy:
         return None, []
     named = [each for each in question.named_orders(motion.run) if each.order <= found.highest]
     multiples = {each.order for each in named if each.is_multiple}
     resolution = 1.0 / max(each.span for each in healthy)
-    # a line is where it was found, also beside a whole order
+    # a line is where it was found, also next to a whole order
     planned = apart([*known, *(each.order for each in named)], resolution)
     own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
     ranked = [*(each for each in planned if each not in multiples), *own, *(each for each in planned if each in multiples)]
@@ -340,7 +340,7 @@ def _compared(
 
 
 def _located(
-    order: float, comparison: Comparison, found: Ripple, motion: JointMotion, known: Sequence[float]
+    order: float, comparison: BaselineComparison, found: Ripple, motion: JointMotion, known: Sequence[float]
 ) -> tuple[float, float]:
     """Return where the line of an alarm is, and with what resolution.
 
@@ -399,7 +399,7 @@ def _threshold(cell: Cell, false_alarm: float, tests: int) -> float:
 
 def _verdict(
     orders: Sequence[OrderAgainstNoise],
-    comparison: Comparison | None,
+    comparison: BaselineComparison | None,
     found: Ripple,
     name: str,
     has_baseline: bool,
@@ -449,7 +449,7 @@ def _wave(motion: JointMotion, found: Ripple) -> WaveRipple | None:
     return WaveRipple(line.order, line.order_sigma, found.concluded, line.false_alarm, _by_load(motion, orders))
 
 
-def _wave_line(own: Sequence[Line], motion: JointMotion, found: Ripple) -> Line | None:
+def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, found: Ripple) -> SpectrumLine | None:
     reach = WAVE_RESOLUTIONS / motion.span
     per_input = motion.run.per_input
     if motion.run.side == "input":
@@ -484,7 +484,7 @@ def _by_load(motion: JointMotion, orders: Sequence[float]) -> tuple[LoadCell, ..
 # ---- Condition and life -----------------------------------------------------------------------------------------------
 
 
-def _trend(done: Sequence[RunDiagnosis], question: Question, remarks: list[str]) -> Trend | None:
+def _trend(done: Sequence[RunDiagnosis], question: Question, remarks: list[str]) -> HealthTrend | None:
     if question.threshold is None:
         return None
     if not question.hours:

@@ -19,7 +19,7 @@ from strainwave.diagnose.actuator_ramp import RUN_IN, ActuatorRamp
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.inversion import (
     COMBINE,
-    MICRON,
+    M_PER_MICRON,
     ORDERS,
     MeasuredOrders,
     MisalignmentEstimate,
@@ -116,7 +116,7 @@ class Geometry:
         sensitivity: of the run
         parts: current per error, separated into reaction and inertia
         height: h, distance of the section from the centre of tilt [m]
-        doubts: contradictions between record and set
+        contradictions: between record and set, in words
     """
 
     estimate: MisalignmentEstimate
@@ -128,7 +128,7 @@ class Geometry:
     sensitivity: Sensitivity
     parts: CurrentPerError
     height: float
-    doubts: tuple[str, ...]
+    contradictions: tuple[str, ...]
 
     @property
     def ends(self) -> tuple[MisalignmentEstimate, MisalignmentEstimate]:
@@ -166,8 +166,8 @@ class Geometry:
         return "misaligned" if self.detected else "no misalignment shown"
 
     def words(self) -> str:
-        """Return the equivalence class of geometries, or why there is none."""
-        lines = [f"{each}." for each in self.doubts]
+        """Return the equivalence class of geometries in words, or the reason why there is none."""
+        lines = [f"{each}." for each in self.contradictions]
         if self.condition == "insensitive":
             return " ".join([*lines, f"{self.sensitivity.words()}."])
         if self.condition != "misaligned":
@@ -187,11 +187,11 @@ def in_words(eccentricity: MisalignmentEstimate, tilt: MisalignmentEstimate, hei
     way = f"{_between(direction, float(np.degrees(turn)))} deg"
     way += f" (or {(direction + 180.0) % 360.0:.0f} deg{', with -c_x' if has_offset else ''}, which makes the same)"
     angles = (float(np.degrees(np.arctan2(value, height))) for value in (tilt.size, tilt.half_widths[0]))
-    c_x = eccentricity.c_x / MICRON, eccentricity.interval_factor * eccentricity.c_x_sigma / MICRON
+    c_x = eccentricity.c_x / M_PER_MICRON, eccentricity.interval_factor * eccentricity.c_x_sigma / M_PER_MICRON
     generator = f", and the generator is c_x = {_between(*c_x)} um off its shaft along the major axis" if has_offset else ""
     return (
-        f"a housing eccentricity of {_between(eccentricity.size / MICRON, size / MICRON)} um at {way}, or a tilt of "
-        f"the housing of {_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta"
+        f"a housing eccentricity of {_between(eccentricity.size / M_PER_MICRON, size / M_PER_MICRON)} um at {way}, or a tilt "
+        f"of the housing of {_between(*angles)} deg at h = {1e3 * height:g} mm, or any sum of both equal to m = e1 + h beta"
         f"{generator} (95 %, if {WORDS_OF_SHARING[eccentricity.combine]})"
     )
 
@@ -281,7 +281,7 @@ def misalignment_from_current(
         _sensitivity(measured, gains, known.parts, reference_error),
         known.parts,
         float(known.law.offset),
-        (*_doubts(off), *_doubts_of_fit(found[best].estimate)),
+        (*_contradictions(off), *_contradictions_of_fit(found[best].estimate)),
     )
 
 
@@ -343,7 +343,7 @@ def _sensitivity(measured: MeasuredOrders, gains: Complex, parts: CurrentPerErro
     return Sensitivity(error, REFERENCE_ORDER, current, resolved, parts.torque, resolved / per_torque)
 
 
-def _doubts(off: Array) -> list[str]:
+def _contradictions(off: Array) -> list[str]:
     names = ("mean", "slope over the angle", "curvature over the angle")
     far = [f"{name} by {size:.1f}" for name, size in zip(names, off, strict=True) if abs(size) > MAX_TREND_SIGMA]
     if not far:
@@ -354,11 +354,11 @@ def _doubts(off: Array) -> list[str]:
     ]
 
 
-def _doubts_of_fit(estimate: MisalignmentEstimate) -> list[str]:
+def _contradictions_of_fit(estimate: MisalignmentEstimate) -> list[str]:
     if estimate.misfit < MAX_MISFIT:
         return []
     return [
         "The orders 1 to 4 do not have the ratios of a misalignment: the mean square of their residual is "
         f"{estimate.misfit:.3g} times that of noise and model. Errors of teeth, a ripple of friction or of the motor, or an e2 "
-        "beside m explain such orders"
+        "in addition to m explain such orders"
     ]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.baseline import Comparison
+from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL
 from strainwave.files.gear_set import GearSet
 
@@ -26,7 +26,7 @@ LIFE_QUANTILES = (0.1, 0.5, 0.9)  # of the gears that have failed
 
 
 @dataclass(frozen=True)
-class Condition:
+class HealthIndicator:
     """Health indicator of a recording.
 
     Attributes:
@@ -68,7 +68,7 @@ class CatalogueLife:
 
 
 @dataclass(frozen=True)
-class Trend:
+class HealthTrend:
     """Straight line through the health indicator over the hours of operation.
 
     Attributes:
@@ -86,13 +86,13 @@ class Trend:
     high: float
 
 
-def condition(name: str, comparison: Comparison) -> Condition | None:
+def condition(name: str, comparison: BaselineComparison) -> HealthIndicator | None:
     """Return the health indicator of a compared recording; None if nothing was compared."""
     if not comparison.changes:
         return None
     largest = max(comparison.changes, key=lambda each: abs(each.change) / each.limit)
     distance = float(np.sqrt(sum((each.change / each.sigma) ** 2 for each in comparison.changes)))
-    return Condition(name, abs(largest.change) / largest.limit, distance, largest.order, largest.direction)
+    return HealthIndicator(name, abs(largest.change) / largest.limit, distance, largest.order, largest.direction)
 
 
 def catalogue_life(gear_set: GearSet, *, average_torque: float, average_speed: float, hours: float = 0.0) -> CatalogueLife:
@@ -135,7 +135,7 @@ def _conditional(scale: float, hours: float, failed: float) -> float:
     return left
 
 
-def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float) -> Trend:
+def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float) -> HealthTrend:
     """Return the line through health indicators and the hours until it passes a threshold.
 
     The interval is that of Fieller's theorem (Fieller1954): it contains all hours at which the line may have the value
@@ -175,7 +175,7 @@ def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float)
     last = float(x.max())
     crossing = middle + (threshold - level) / slope if slope > 0.0 else inf
     low, high = _fieller(slope, threshold - level, reach**2 * variance, len(x), spread)
-    return Trend(
+    return HealthTrend(
         slope,
         float(np.sqrt(variance / spread)),
         threshold,

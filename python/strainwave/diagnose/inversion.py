@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 COMBINE = ("single", "mean", "max")
-MICRON = 1e-6  # m
+M_PER_MICRON = 1e-6  # m
 ORDERS = (1.0, 2.0, 3.0, 4.0)
 NOISE_LINES = 14  # the nearest ones, from which the noise of an order is estimated
 SPECTRUM_MARGIN = 0.5  # order, by which the spectrum goes on beyond the highest one
@@ -260,15 +260,15 @@ def inverted(error: MeasuredOrders, law: Any, *, with_offset: bool = False) -> t
     Args:
         error: orders of the kinematic error
         law: `Misalignment`, whose dimensions are kept
-        with_offset: fit c_x too, if the lobe further out carries. Beside m it moves the error from orders 2 and 4 to 1 and 3
+        with_offset: fit c_x too, if the lobe further out carries. With m it moves the error from orders 2 and 4 to 1 and 3
 
     Returns:
         m, and c_x if it is fitted [m], shape (2,) or (3,); misfit.
     """
-    first, misfit = _least_squares(error, law, _initial_m(error.values, law), MICRON)
+    first, misfit = _least_squares(error, law, _initial_m(error.values, law), M_PER_MICRON)
     if not with_offset or law.combine != "max":
         return first, misfit
-    unit = max(float(np.hypot(*first)), 0.1 * MICRON)
+    unit = max(float(np.hypot(*first)), 0.1 * M_PER_MICRON)
     point, misfit = np.append(first, 0.0), np.inf
     for larger, share in STARTS:
         found, left = _least_squares(error, law, larger * np.append(first, share * unit), unit)
@@ -283,20 +283,20 @@ def _least_squares(error: MeasuredOrders, law: Any, start: Array, unit: float) -
     from scipy.optimize import least_squares
 
     def residual(point: Array) -> Array:
-        return stacked((_at(law, MICRON * point) - error.values) / error.noise)
+        return stacked((_at(law, M_PER_MICRON * point) - error.values) / error.noise)
 
-    far = MAX_RADIUS_SHARE * float(law.minor_radius) / MICRON
-    begin = np.clip(start / MICRON, -0.9 * far, 0.9 * far)
-    scale = max(float(np.abs(begin).max()), 1.0) if len(start) == 2 else unit / MICRON
+    far = MAX_RADIUS_SHARE * float(law.minor_radius) / M_PER_MICRON
+    begin = np.clip(start / M_PER_MICRON, -0.9 * far, 0.9 * far)
+    scale = max(float(np.abs(begin).max()), 1.0) if len(start) == 2 else unit / M_PER_MICRON
     best: Any = least_squares(residual, begin, bounds=(-far, far), x_scale=scale)
-    return MICRON * best.x, 2.0 * float(best.cost) / (2 * len(ORDERS) - len(start))
+    return M_PER_MICRON * best.x, 2.0 * float(best.cost) / (2 * len(ORDERS) - len(start))
 
 
 def _initial_m(values: Complex, law: Any) -> Array:
     """Return m by the first order that the law has, whose size grows with m or its square, and whose phase turns with it."""
     place = 0 if law.combine == "single" else 1
-    ratio = values[place] / harmonics(displaced(law, (MICRON, 0.0)))[place]
-    size = MICRON * float(np.sqrt(abs(ratio)) if law.combine == "mean" else abs(ratio))
+    ratio = values[place] / harmonics(displaced(law, (M_PER_MICRON, 0.0)))[place]
+    size = M_PER_MICRON * float(np.sqrt(abs(ratio)) if law.combine == "mean" else abs(ratio))
     way = -float(np.angle(ratio)) / ORDERS[place]
     return size * np.array([np.cos(way), np.sin(way)])
 

@@ -25,8 +25,8 @@ MAX_ROUNDING = 1e-6  # revolutions, by which a whole number may be missed
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
-    """A shaft that turns, and a column beside it, evenly in time.
+class SampledMotion:
+    """A turning shaft and a column, sampled evenly in time.
 
     Attributes:
         angle: of the shaft [rad], shape (n,)
@@ -77,7 +77,7 @@ def motion_of(
     angle: str = "input_angle",
     ratio: float | None = None,
     rate: float | None = None,
-) -> Motion:
+) -> SampledMotion:
     """Return the shaft with the column, prepared for orders up to the highest.
 
     A motion of one sense is cut to its last whole revolutions: of the output if it makes one and its angle or the ratio is
@@ -120,7 +120,7 @@ def motion_of(
     rows = _means(used.astype(float), every) == 1.0
     series_of = [_means(each, every)[rows] for each in (turned, series, speed)]
     turns = float(np.ptp(turned)) / tau
-    return Motion(
+    return SampledMotion(
         angle=series_of[0],
         series=series_of[1],
         load=None if load is None else _means(load, every)[rows],

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.diagnose.detection import FALSE_ALARM, amplitude_interval, false_alarm_of
-from strainwave.diagnose.motion import Motion, motion_of
+from strainwave.diagnose.motion import SampledMotion, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
@@ -186,7 +186,7 @@ def synchronous_average(
     )
 
 
-def _trend(motion: Motion) -> Array:
+def _trend(motion: SampledMotion) -> Array:
     """Return the straight line through the series over its rows."""
     rows = np.arange(len(motion.series))
     line: Array = np.asarray(np.polyval(np.polyfit(rows, motion.series, 1), rows), dtype=np.float64)
@@ -202,7 +202,7 @@ def _wanted(orders: ArrayLike) -> list[float]:
     return [float(each) for each in wanted]
 
 
-def _chosen(wanted: Sequence[float], motion: Motion) -> tuple[list[float], dict[float, str]]:
+def _chosen(wanted: Sequence[float], motion: SampledMotion) -> tuple[list[float], dict[float, str]]:
     """Return the orders that the record determines, and the reason of each other. Of two that merge, the first one stays."""
     chosen: list[float] = []
     reasons: dict[float, str] = {}
@@ -236,7 +236,7 @@ def _separation(order: float, other: float, revolutions: float) -> str:
     )
 
 
-def _near_remarks(chosen: Sequence[float], motion: Motion) -> dict[float, tuple[str, ...]]:
+def _near_remarks(chosen: Sequence[float], motion: SampledMotion) -> dict[float, tuple[str, ...]]:
     """Return remarks on 2 and 2 z_c / z_f, which differ by two periods in a revolution of the output."""
     if motion.ratio != motion.ratio or motion.ratio < 10.0:
         return {}
@@ -250,7 +250,7 @@ def _near_remarks(chosen: Sequence[float], motion: Motion) -> dict[float, tuple[
     return {order: (remark,) for order in chosen if abs(order - 2.0) < 2.5 / motion.ratio}
 
 
-def _line(each: OrderRegression, motion: Motion, tests: int, allowed: float, near: Sequence[str]) -> OrderLine:
+def _line(each: OrderRegression, motion: SampledMotion, tests: int, allowed: float, near: Sequence[str]) -> OrderLine:
     """Return an order with its parts."""
     series = motion.series[:, None]
     variance = float(each.variance(series)[0])

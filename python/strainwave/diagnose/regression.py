@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.diagnose.motion import Motion
+from strainwave.diagnose.motion import SampledMotion
 from strainwave.orders.floor import Floor
 from strainwave.orders.smooth_part import MIN_GRAVITY_SPAN, MIN_SENSE_SHARE, floor_without, orthonormal
 
@@ -131,7 +131,7 @@ def _root(matrix: Array) -> Array:
     return root
 
 
-def smooth_columns(motion: Motion, lowest: float) -> Array:
+def smooth_columns(motion: SampledMotion, lowest: float) -> Array:
     """Return columns of what is no order: friction over speed, inertia, load, gravity and a slow trend, shape (n, k).
 
     Args:
@@ -158,7 +158,7 @@ def smooth_columns(motion: Motion, lowest: float) -> Array:
     return np.stack(columns, axis=1)
 
 
-def growths(motion: Motion) -> dict[str, Array]:
+def growths(motion: SampledMotion) -> dict[str, Array]:
     """Return what the parts of an order grow with, as far as the motion separates them; first what does not change.
 
     Friction ripple turns over with the direction, the kinematic part grows with the load, the inertial part with the square of
@@ -176,7 +176,7 @@ def growths(motion: Motion) -> dict[str, Array]:
     return found
 
 
-def regressions(motion: Motion, orders: Sequence[float]) -> list[OrderRegression]:
+def regressions(motion: SampledMotion, orders: Sequence[float]) -> list[OrderRegression]:
     """Return the regression of each order, all fitted together with the smooth part.
 
     Args:
@@ -246,7 +246,9 @@ def _whitening(series: Array, columns: Array) -> Callable[[Array], Array]:
     return floor.whitened
 
 
-def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: Array, white: Callable[[Array], Array]) -> Array:
+def _noise_basis(
+    motion: SampledMotion, order: float, orders: Sequence[float], basis: Array, white: Callable[[Array], Array]
+) -> Array:
     """Return orthonormal columns of the neighbours of an order that are orthogonal to all that is fitted."""
     around = neighbours_of(order, orders, motion.revolutions)
     if not around:
@@ -260,7 +262,7 @@ def _noise_basis(motion: Motion, order: float, orders: Sequence[float], basis: A
 
 
 def _scores(
-    motion: Motion,
+    motion: SampledMotion,
     order: float,
     orders: Sequence[float],
     basis: Array,

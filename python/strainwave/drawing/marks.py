@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import typeset
-from strainwave.drawing.style import HANDLE, LIGHT, LINE, RESOLUTION, RUNS, STYLE, TITLE_LINE, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, HANDLE, LIGHT, LINE, RESOLUTION, RUNS, STYLE, TITLE_LINE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def new_figure(height: float, title: str = "") -> Iterator[Figure]:
     from matplotlib.figure import Figure
 
     with style.context(["default", STYLE | {"figure.dpi": RESOLUTION}]):
-        figure = Figure(figsize=(WIDTH, height))
+        figure = Figure(figsize=(FIGURE_WIDTH, height))
         if title:
             figure.suptitle(textwrap.fill(title, TITLE_LINE), x=0.0, ha="left", size="large")
         yield figure

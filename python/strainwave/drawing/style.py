@@ -23,7 +23,7 @@ DARK = {
 RUNS = (  # colours, lines and widths of curves, in turn
     ("model", "-", 2.0), ("measured", "--", 1.5), ("held-out", ":", 1.3), ("earlier", "-.", 1.3),
 )  # fmt: skip
-WIDTH = 4.4  # inches: its letters are as large as those of the page, on a telephone as well as on a desk
+FIGURE_WIDTH = 4.4  # inches: its letters are as large as those of the page, on a telephone as well as on a desk
 LINE = 48  # letters that fit beside each other in this width
 TITLE_LINE = 50  # letters of a title that fit in this width
 RESOLUTION = 160  # dots per inch of a figure as pixels

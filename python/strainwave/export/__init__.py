@@ -20,12 +20,12 @@ from strainwave.export.mujoco import mjcf
 from strainwave.export.newton import newton
 from strainwave.export.ros2 import ros2
 from strainwave.export.slots import slot
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 __all__ = [
+    "ExportLoss",
     "Exported",
     "Firmware",
-    "Loss",
     "bam",
     "firmware",
     "fmu",

@@ -8,10 +8,10 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from strainwave.native.kernel import INCLUDE
+from strainwave.native.kernel import INCLUDE_FOLDER
 from strainwave.native.static_type import NAMESPACES, parameters
 
-INCLUDING = re.compile(r'^#include (?:<(?P<found>[^>]+)>|"(?P<beside>[^"]+)").*\n', re.MULTILINE)
+INCLUDING = re.compile(r'^#include (?:<(?P<found>[^>]+)>|"(?P<local>[^"]+)").*\n', re.MULTILINE)
 SHARED = "contradictions.hpp", "mathematics.hpp", "stretches.hpp"  # texts of exports
 
 
@@ -78,10 +78,10 @@ def _header_of(kind: type[Any]) -> str:
     """Return the header that defines a model, which lies in the folder of its family if it has one."""
     family = kind.__module__.rpartition(".")[2]
     folders = NAMESPACES.get(family, family), ".", "*"
-    for path in (path for folder in folders for path in sorted(INCLUDE.glob(f"strainwave/{folder}/*.hpp"))):
+    for path in (path for folder in folders for path in sorted(INCLUDE_FOLDER.glob(f"strainwave/{folder}/*.hpp"))):
         if re.search(rf"^struct {kind.__name__} ", path.read_text("utf-8"), re.MULTILINE):
-            return path.relative_to(INCLUDE).as_posix()
-    raise LookupError(f"no header in {INCLUDE} defines {kind.__name__}")
+            return path.relative_to(INCLUDE_FOLDER).as_posix()
+    raise LookupError(f"no header in {INCLUDE_FOLDER} defines {kind.__name__}")
 
 
 def headers(source: str) -> list[str]:
@@ -101,7 +101,7 @@ def closure(names: Iterable[str]) -> dict[str, str]:
     waiting = list(names)
     while waiting:
         if (name := waiting.pop()) not in texts:
-            texts[name] = (INCLUDE / name).read_text("utf-8")
+            texts[name] = (INCLUDE_FOLDER / name).read_text("utf-8")
             waiting += headers(texts[name]) + _headers_beside(name, texts[name])
     return texts
 
@@ -126,12 +126,12 @@ def _inlined(name: str, own: Mapping[str, str], done: set[str]) -> str:
     if name in done or not (is_of_package or name in own):
         return ""
     done.add(name)
-    text = (INCLUDE / name).read_text("utf-8") if is_of_package else own[name]
+    text = (INCLUDE_FOLDER / name).read_text("utf-8") if is_of_package else own[name]
     folder = name.rpartition("/")[0]
 
     def included(match: re.Match[str]) -> str:
-        beside = match["beside"]
-        return _inlined(match["found"] or (f"{folder}/{beside}" if folder else beside), own, done)
+        local = match["local"]
+        return _inlined(match["found"] or (f"{folder}/{local}" if folder else local), own, done)
 
     return INCLUDING.sub(included, text.replace("#pragma once\n", "", 1))
 

@@ -22,7 +22,7 @@ from strainwave.files.units import convert
 from strainwave.simulation import scenario
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import simulate
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
@@ -68,7 +68,7 @@ class Spring:
 
 
 @dataclass(frozen=True)
-class Friction:
+class ShaftFriction:
     """Friction of a shaft: a bristle, or a dry and a viscous part.
 
     Attributes:
@@ -111,8 +111,8 @@ class GearElements:
     springs: tuple[Spring, ...]
     slips: tuple[tuple[float, float], ...]
     damping: float
-    at_input: Friction
-    at_output: Friction
+    at_input: ShaftFriction
+    at_output: ShaftFriction
     max_torque: float
     max_speed: float
     left_out: tuple[str, ...]
@@ -155,7 +155,7 @@ class GearElements:
             left_out=tuple(_left_out(gear, max_torque)),
         )
 
-    def losses(self, gear: Gear) -> tuple[Loss, ...]:
+    def losses(self, gear: Gear) -> tuple[ExportLoss, ...]:
         """Return the losses against a gear: of torsion loops, of friction over speed, and of a run."""
         twist = _twist_at(gear, self.max_torque)
         friction = friction_losses(gear, self.max_speed, self.friction)
@@ -167,7 +167,7 @@ class GearElements:
         total: Array = sum((spring.torque(twist) for spring in self.springs), np.asarray(memory.trace(twist)))
         return total
 
-    def torsion_losses(self, gear: Gear, twist: float) -> Iterator[Loss]:
+    def torsion_losses(self, gear: Gear, twist: float) -> Iterator[ExportLoss]:
         """Yield what torque, width and loss per cycle of a loop to the largest twist, and of one to half of it, differ by."""
         for reach in (twist, 0.5 * twist):
             path, loop = _loop(reach)
@@ -175,13 +175,13 @@ class GearElements:
             both = [(np.asarray(gear.stiffness.torque(path)) + held)[loop], self.torque(path)[loop]]
             top = float(np.abs(both[0]).max())
             over = f"a torsion loop to {top:.4g} N.m"
-            yield Loss.between("torque of the loop", both[1] - both[0], "N.m", top, over)
+            yield ExportLoss.between("torque of the loop", both[1] - both[0], "N.m", top, over)
             if held.any():
                 (width, energy), (own_width, own_energy) = (_width_and_energy(path[loop], torque) for torque in both)
-                yield Loss.between("width of the loop", np.array([own_width - width]), "rad", width, over)
-                yield Loss.between("loss per cycle", np.array([own_energy - energy]), "J", energy, over)
+                yield ExportLoss.between("width of the loop", np.array([own_width - width]), "rad", width, over)
+                yield ExportLoss.between("loss per cycle", np.array([own_energy - energy]), "J", energy, over)
 
-    def run_losses(self, gear: Gear) -> Iterator[Loss]:
+    def run_losses(self, gear: Gear) -> Iterator[ExportLoss]:
         """Yield what output angle and motor torque differ by if the input moves to and fro before an inertia."""
         speed = min(RUN_SPEED, 0.5 * self.max_speed)
         inertia = RUN_TORQUE_SHARE * self.max_torque * abs(self.ratio) / (2.0 * np.pi * RUN_FREQUENCY * speed)
@@ -190,9 +190,9 @@ class GearElements:
         )
         over = f"{RUN_DURATION:g} s at {RUN_FREQUENCY:g} Hz, the input to {speed:.4g} rad/s before {inertia:.3g} kg.m2"
         twist = float(np.ptp(full["transmission_error"]))
-        yield Loss.between("transmission error of a run", own["output_angle"] - full["output_angle"], "rad", twist, over)
+        yield ExportLoss.between("transmission error of a run", own["output_angle"] - full["output_angle"], "rad", twist, over)
         torque = float(np.sqrt(np.mean(full["motor_torque"] ** 2)))
-        yield Loss.between("motor torque of a run", own["motor_torque"] - full["motor_torque"], "N.m", torque, over)
+        yield ExportLoss.between("motor torque of a run", own["motor_torque"] - full["motor_torque"], "N.m", torque, over)
 
     def simplified(self, gear: Gear) -> Gear:
         """Return a gear with the spring of the given one and no law but the elements."""
@@ -223,7 +223,7 @@ def _to_and_fro(gear: Gear, rotor_inertia: float, speed: float, inertia: float) 
     return simulate(drive, motion, sample=RUN_SAMPLE, initial=begin, record=recorded)
 
 
-def friction_losses(gear: Gear, max_speed: float, exported: Callable[[Array], Array]) -> Iterator[Loss]:
+def friction_losses(gear: Gear, max_speed: float, exported: Callable[[Array], Array]) -> Iterator[ExportLoss]:
     """Yield what the friction of an exported model differs by, at the input, over speeds of both senses and a turn.
 
     Args:
@@ -238,7 +238,7 @@ def friction_losses(gear: Gear, max_speed: float, exported: Callable[[Array], Ar
     size = float(np.sqrt(np.mean(full**2)))
     if size > 0.0:
         over = f"{forward[0]:.3g} to {forward[-1]:.4g} rad/s of the input in both senses, over a turn of the output"
-        yield Loss.between("friction at the input", exported(speed)[:, None] - full, "N.m", size, over)
+        yield ExportLoss.between("friction at the input", exported(speed)[:, None] - full, "N.m", size, over)
 
 
 def twist_at_largest(elements: GearElements) -> float:
@@ -355,15 +355,15 @@ def _slips(law: Any, twist: float) -> tuple[tuple[float, float], ...]:
     return tuple((float(k), float(k * slip)) for k, slip in zip(weights, reach, strict=True) if k > 0.0)
 
 
-def _friction_at_input(gear: Gear, fast: float) -> Friction:
+def _friction_at_input(gear: Gear, fast: float) -> ShaftFriction:
     """Return the friction of input and mesh, at the input."""
     at_mesh = _friction_of(gear.friction_mesh, fast / abs(gear.kinematics.ratio), 1.0)
     ratio = abs(float(gear.kinematics.ratio))
     own = _friction_of(gear.friction_input, fast, float(gear.kinematics.ratio))
-    return Friction(own.dry + at_mesh.dry / ratio, own.viscous + at_mesh.viscous / ratio**2, own.bristle)
+    return ShaftFriction(own.dry + at_mesh.dry / ratio, own.viscous + at_mesh.viscous / ratio**2, own.bristle)
 
 
-def _friction_of(law: Any, fast: float, turns: float) -> Friction:
+def _friction_of(law: Any, fast: float, turns: float) -> ShaftFriction:
     """Return a bristle if the law is one, else the least squares of a dry and a viscous part over speeds and angles.
 
     Args:
@@ -372,14 +372,14 @@ def _friction_of(law: Any, fast: float, turns: float) -> Friction:
         turns: of its shaft per turn of the output, over which it is averaged
     """
     if isinstance(law, friction.LuGre):
-        return Friction(0.0, float(law.viscous), law)
+        return ShaftFriction(0.0, float(law.viscous), law)
     forward = np.linspace(CREEP_SHARE * fast, fast, FITTED_SPEEDS)
     angle = _angles(turns)
     speed, where = (each.ravel() for each in np.meshgrid(forward, angle, indexing="ij"))
     both = [np.asarray(law.steady(sense * speed, where, 0.0, ROOM_TEMPERATURE)) * sense for sense in (1.0, -1.0)]
     mean = np.mean(both, axis=0).reshape(len(forward), len(angle)).mean(axis=1)
     (dry, viscous), _ = nnls(np.stack([np.ones_like(forward), forward], axis=1), mean)
-    return Friction(float(dry), float(viscous))
+    return ShaftFriction(float(dry), float(viscous))
 
 
 def _angles(turns: float) -> Array:

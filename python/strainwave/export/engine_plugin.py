@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, arguments, loads
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
-from strainwave.export.elements import Friction, max_torque_of
+from strainwave.export.elements import ShaftFriction, max_torque_of
 from strainwave.export.exported import Exported
 from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import (
@@ -212,7 +212,7 @@ def _add_plugin(root: Element, shaft: Element, coupled: CoupledDrive, command: C
     ElementTree.SubElement(motor, "config", key="command", value=command)
     if coupled.hold > 0.0:
         dry = coupled.hold + float(shaft.get("frictionloss", 0.0))
-        shaft.attrib.update(friction_attributes(Friction(dry=dry, viscous=0.0), timestep_of(root)))
+        shaft.attrib.update(friction_attributes(ShaftFriction(dry=dry, viscous=0.0), timestep_of(root)))
 
 
 def _run_in_mujoco(content: bytes, model: str, command: float, angle: float, timestep: float, every: int) -> Array:

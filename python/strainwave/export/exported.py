@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from strainwave.files.recording import Recording
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Exported:
     gear: str
     files: Mapping[str, str | bytes]
     numbers: Mapping[str, tuple[float, str]] = field(default_factory=dict)
-    losses: tuple[Loss, ...] = ()
+    losses: tuple[ExportLoss, ...] = ()
     left_out: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     table: Recording | None = None

@@ -6,7 +6,7 @@ from inspect import signature
 
 from strainwave import Drive, _core, arguments
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.simulation.resolution import COARSEST, FASTEST_ON_BRISTLES, fine_enough, rounded_down
+from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, MAX_STEP_PHASE, fine_enough, rounded_down
 from strainwave.simulation.run import simulate
 
 MIN_STEP = 1e-7  # s
@@ -33,7 +33,7 @@ def internal_step(drive: Drive, step: float | None, name: str = "step") -> float
         return default_step(drive)
     step = arguments.number(name, step, "s", low=MIN_STEP)
     fastest, bristles = _core.max_rate(drive, 0.0, ROOM_TEMPERATURE), _core.bristle_frequency(drive)
-    longest = COARSEST / fastest
+    longest = MAX_STEP_PHASE / fastest
     reason = f"the drive is as fast as a vibration of {fastest:.3g} rad/s"
     if bristles * longest > FASTEST_ON_BRISTLES:
         longest = FASTEST_ON_BRISTLES / bristles

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from strainwave import arguments, loads, motor
-from strainwave.export.elements import Friction, GearElements, Spring
+from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed, quoted
@@ -265,7 +265,7 @@ def child(root: Element, tag: str) -> Element:
     return ElementTree.SubElement(root, tag) if found is None else found
 
 
-def friction_attributes(shaft: Friction, timestep: float) -> dict[str, str]:
+def friction_attributes(shaft: ShaftFriction, timestep: float) -> dict[str, str]:
     """Return attributes of a joint for its dry and viscous friction."""
     dry = {"frictionloss": repr(shaft.dry), "solreffriction": f"{2.0 * timestep!r} 1", "solimpfriction": STIFF_FRICTION}
     return (dry if shaft.dry > 0.0 else {}) | ({"damping": repr(shaft.viscous)} if shaft.viscous > 0.0 else {})
@@ -292,7 +292,7 @@ def _spring(spring: Spring) -> dict[str, str]:
     return found | ({"springlength": f"{-spring.gap!r} {spring.gap!r}"} if spring.gap else {})
 
 
-def _add_actuators(actuators: Element, part: Any, at_input: Friction, name: str) -> None:
+def _add_actuators(actuators: Element, part: Any, at_input: ShaftFriction, name: str) -> None:
     joint = {"joint": f"{name}_input"}
     bristle = {} if at_input.bristle is None else {"lugre": _lugre(at_input)}
     match part:
@@ -319,7 +319,7 @@ def _dc(part: motor.DC) -> Iterator[tuple[str, str]]:
         yield "cogging", f"{float(part.cogging_torque)!r} {float(part.cogging_order)!r} 0"
 
 
-def _lugre(at_input: Friction) -> str:
+def _lugre(at_input: ShaftFriction) -> str:
     law = at_input.bristle
     assert law is not None
     numbers = (law.bristle_stiffness, law.bristle_damping, law.coulomb, law.breakaway, law.stribeck_speed)

@@ -28,7 +28,7 @@ from strainwave.tuning.candidates import USUAL_SPEED
 from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
 from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
@@ -126,17 +126,17 @@ class Request:
         """Yield what is assumed of the effects of the gear, and in what unit currents are."""
         for effect in effects:
             if assumed := assumed_numbers(self.gear_set, effect):
-                doubt = (
+                consequence = (
                     "the slot may add as much as it takes away" if effect == "kinematic error" else "so is the loss of the slot"
                 )
-                yield f"{effect} is assumed ({assumed}), and {doubt}; {MEASUREMENTS[effect]}"
+                yield f"{effect} is assumed ({assumed}), and {consequence}; {MEASUREMENTS[effect]}"
         if self.unit == "A" and type(self.gear_set.motor) is motor.PMSM:
             yield "currents are amplitudes of the phases; the root mean square is smaller by the square root of 2"
 
     def exported(
         self,
         numbers: Mapping[str, tuple[float, str]],
-        losses: tuple[Loss, ...],
+        losses: tuple[ExportLoss, ...],
         sign: str,
         remarks: Iterator[str],
         table: Recording | None = None,
@@ -292,10 +292,10 @@ class FullFriction:
         """Mean over the angle; exactly the friction where this does not vary."""
         return mean_over_last(self.torque)
 
-    def loss(self, applied: Array) -> Loss:
+    def loss(self, applied: Array) -> ExportLoss:
         """Return the loss of what a slot applies at the speeds; both senses weigh the same."""
         difference = self.torque - applied[:, np.newaxis]
-        return Loss(
+        return ExportLoss(
             "friction", self._rms(difference), float(np.abs(difference).max()), self.unit, self._rms(self.torque), self.over
         )
 
@@ -424,7 +424,7 @@ def anticogging_map(request: Request) -> Exported:
     values = mean_over_last(there.ripple)[::COMPARED_ANGLES_PER_POINT]
     applied = np.interp(fine, fine[::COMPARED_ANGLES_PER_POINT], values, period=2.0 * np.pi)[:, np.newaxis]
     losses = tuple(
-        Loss.between(
+        ExportLoss.between(
             "ripple", turn.ripple - applied, request.unit, _rms(turn.friction),
             f"{turns} turns of the input at {each:.3g} rad/s under {request.load:g} N.m", "friction",
         )
@@ -489,7 +489,7 @@ def torque_offset(request: Request) -> Exported:
             f"at most {MAX_PERMILLE} permille"
         )
     begin, end = sent[:-1] - wanted[:-1], sent[:-1] - wanted[1:]  # held while the torque moves in a line
-    loss = Loss(
+    loss = ExportLoss(
         "torque",
         float(np.sqrt(np.mean((begin**2 + begin * end + end**2) / 3.0))),
         float(np.maximum(np.abs(begin), np.abs(end)).max()),

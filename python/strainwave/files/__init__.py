@@ -1,1 +1,1 @@
-"""What is read and written: recordings, tables, units, gear files and ratings, folders of ensembles."""
+"""Files: recordings, tables, units, gear files and ratings, folders of ensembles."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Content, Label, Source
+from strainwave.files.labels import ColumnSource, Content, Label
 from strainwave.files.units import measures
 from strainwave.messages import listed, one_line, quoted
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ArrayTable:
-    """Columns by their names in the file, all of one length; what was left out, in words; and single numbers beside them."""
+    """Columns by their names in the file, all of one length; the columns left out, in words; and single numbers."""
 
     file: str
     title: str
@@ -30,11 +30,11 @@ class ArrayTable:
     def contents(self) -> list[Content]:
         return ["numbers" for _ in self.labels]
 
-    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """The columns wanted."""
         return {source.name: self.columns[source.position] for source in sources}
 
-    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written; and what was left out."""
         return self.numbers(sources), list(self.left_out)
 
@@ -72,7 +72,7 @@ class GridTable:
     def contents(self) -> list[Content]:
         return ["numbers" for _ in self.labels]
 
-    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """The columns wanted, which must be of one grid."""
         grids = self._grids(sources)
         if len(grids) > 1:
@@ -81,7 +81,7 @@ class GridTable:
             raise ValueError(f"{self.file}: {pair} were sampled at other instants; read them one by one")
         return self._on(grids[0], grids[:1], sources)
 
-    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted on the slowest of their grids; and what was done."""
         grids = self._grids(sources)
         if len(grids) == 1:
@@ -102,16 +102,16 @@ class GridTable:
     def place(self, row: int) -> str:
         return f"sample {row}"
 
-    def _wanted(self, sources: Sequence[Source]) -> list[str]:
+    def _wanted(self, sources: Sequence[ColumnSource]) -> list[str]:
         return [self.labels[source.position].text for source in sources if source.position]
 
-    def _grids(self, sources: Sequence[Source]) -> list[Grid]:
+    def _grids(self, sources: Sequence[ColumnSource]) -> list[Grid]:
         """The grids of what is wanted; the first one where that is the time alone."""
         wanted = self._wanted(sources)
         return [grid for grid in self.grids if any(name in grid.columns for name in wanted)] or [self.grids[0]]
 
-    def _on(self, common: Grid, grids: Sequence[Grid], sources: Sequence[Source]) -> dict[str, Array]:
-        """What is wanted at the instants of a grid."""
+    def _on(self, common: Grid, grids: Sequence[Grid], sources: Sequence[ColumnSource]) -> dict[str, Array]:
+        """Return the columns of some sources at the instants of a grid."""
         found = {}
         for source in sources:
             if not source.position:

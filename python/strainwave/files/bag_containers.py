@@ -17,7 +17,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from strainwave.files.bag_messages import Message
-from strainwave.files.budget import MAX_TEXT_BYTES, Budget, RefusedFile, open_regular, read_regular
+from strainwave.files.budget import MAX_TEXT_BYTES, ReadBudget, RefusedFile, open_regular, read_regular
 from strainwave.messages import quoted
 
 METADATA = "metadata.yaml"  # names the files of a folder
@@ -52,7 +52,7 @@ def bag_files(path: Path) -> list[Path]:
     return [path / name for name in names]
 
 
-def messages_of(files: Iterable[Path], kinds: Collection[str], budget: Budget) -> Iterator[Message]:
+def messages_of(files: Iterable[Path], kinds: Collection[str], budget: ReadBudget) -> Iterator[Message]:
     """Return the messages of some kinds that are in the files of a bag, in their order.
 
     Raises:
@@ -73,12 +73,12 @@ def messages_of(files: Iterable[Path], kinds: Collection[str], budget: Budget) -
             raise ValueError("no bag file")
 
 
-def _content(data: memoryview, budget: Budget) -> memoryview:
+def _content(data: memoryview, budget: ReadBudget) -> memoryview:
     """Return a message or file, unpacked if it is a zstd stream: the first letters are none of CDR."""
     return memoryview(b"".join(_unzipped(data, budget))) if data[:4] == ZSTD else data
 
 
-def _unzipped(content: memoryview, budget: Budget) -> Iterator[bytes]:
+def _unzipped(content: memoryview, budget: ReadBudget) -> Iterator[bytes]:
     """Return the content of a zstd stream, piece by piece."""
     import pyarrow
 
@@ -88,7 +88,7 @@ def _unzipped(content: memoryview, budget: Budget) -> Iterator[bytes]:
             yield piece
 
 
-def _unpacked(content: memoryview, packing: str, size: int, budget: Budget) -> memoryview:
+def _unpacked(content: memoryview, packing: str, size: int, budget: ReadBudget) -> memoryview:
     """Return the content of a chunk, which is of the size claimed."""
     if packing in ("", "none"):
         return content
@@ -115,7 +115,7 @@ def _kind(name: str) -> str:
 # rosbag
 
 
-def _of_rosbag(content: memoryview, kinds: Collection[str], budget: Budget) -> Iterator[Message]:
+def _of_rosbag(content: memoryview, kinds: Collection[str], budget: ReadBudget) -> Iterator[Message]:
     connections: dict[bytes, tuple[str, str]] = {}
     for header, data in _records(content[len(ROSBAG) :], budget):
         inside: Iterable[tuple[Mapping[str, bytes], memoryview]] = [(header, data)]
@@ -133,7 +133,7 @@ def _of_rosbag(content: memoryview, kinds: Collection[str], budget: Budget) -> I
                     yield Message(topic, kind, seconds * 1_000_000_000 + nanoseconds, data, is_ros1=True)
 
 
-def _records(content: memoryview, budget: Budget) -> Iterator[tuple[Mapping[str, bytes], memoryview]]:
+def _records(content: memoryview, budget: ReadBudget) -> Iterator[tuple[Mapping[str, bytes], memoryview]]:
     """Return the header and the data of each record."""
     place = 0
     while place < len(content):
@@ -164,7 +164,7 @@ def _sized(content: memoryview, place: int, form: str = "I") -> tuple[memoryview
 # MCAP
 
 
-def _of_mcap(content: memoryview, kinds: Collection[str], budget: Budget) -> Iterator[Message]:
+def _of_mcap(content: memoryview, kinds: Collection[str], budget: ReadBudget) -> Iterator[Message]:
     types: dict[int, str] = {0: ""}
     channels: dict[int, tuple[str, str, bool]] = {}
     for number, record in _mcap_records(content[len(MCAP) :], budget):
@@ -188,7 +188,7 @@ def _of_mcap(content: memoryview, kinds: Collection[str], budget: Budget) -> Ite
                     yield Message(topic, kind, stamp, _content(record[22:], budget), is_ros1)
 
 
-def _mcap_records(content: memoryview, budget: Budget) -> Iterator[tuple[int, memoryview]]:
+def _mcap_records(content: memoryview, budget: ReadBudget) -> Iterator[tuple[int, memoryview]]:
     """Return the number and the content of each record up to the end of the data."""
     place = 0
     while place < len(content) and (number := content[place]) != OF_MCAP["end"]:
@@ -197,7 +197,7 @@ def _mcap_records(content: memoryview, budget: Budget) -> Iterator[tuple[int, me
         yield number, record
 
 
-def _chunk(record: memoryview, budget: Budget) -> memoryview:
+def _chunk(record: memoryview, budget: ReadBudget) -> memoryview:
     size, checksum = struct.unpack_from("<QI", record, 16)
     packing, place = _sized(record, 28)
     content = _unpacked(_sized(record, place, "Q")[0], bytes(packing).decode(), size, budget)
@@ -209,10 +209,12 @@ def _chunk(record: memoryview, budget: Budget) -> memoryview:
 # SQLite
 
 
-def _of_sqlite(path: Path, content: memoryview | None, size: int, kinds: Collection[str], budget: Budget) -> Iterator[Message]:
+def _of_sqlite(
+    path: Path, content: memoryview | None, size: int, kinds: Collection[str], budget: ReadBudget
+) -> Iterator[Message]:
     """Return the messages of a database, which stands in `content` where it was packed.
 
-    It is opened as one that nobody changes, so that no journal beside it is read. Its tables must be tables, without computed
+    It is opened as one that nobody changes, so that no journal next to it is read. Its tables must be tables, without computed
     columns: a view may contain a query without end.
     """
     source = ":memory:" if content is not None else f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"

@@ -41,12 +41,12 @@ class JointStates(NamedTuple):
 
 def plain_number(message: Message) -> float:
     """Return the number of a message of one of the kinds in `NUMBERS`."""
-    return float(_Reader(message).take(NUMBERS[message.kind])[0])
+    return float(_MessageReader(message).take(NUMBERS[message.kind])[0])
 
 
 def joint_states(message: Message) -> JointStates:
     """Return the state of each joint; an effort or velocity that was not measured is left empty in the message."""
-    reader = _Reader(message)
+    reader = _MessageReader(message)
     if message.is_ros1:
         reader.take("I")
     seconds, nanoseconds = reader.take("I" if message.is_ros1 else "i") + reader.take("I")
@@ -60,7 +60,7 @@ def joint_states(message: Message) -> JointStates:
     return JointStates(seconds * 1_000_000_000 + nanoseconds, numbers)
 
 
-class _Reader:
+class _MessageReader:
     """Reads the fields of a message one after the other.
 
     CDR aligns each to its own size, behind four bytes that name the byte order.

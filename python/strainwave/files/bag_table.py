@@ -11,7 +11,7 @@ import numpy as np
 from strainwave.files.array_table import Grid, GridTable, grid_table
 from strainwave.files.bag_containers import bag_files, messages_of
 from strainwave.files.bag_messages import JOINTS, NUMBERS, UNITS, joint_states, plain_number
-from strainwave.files.budget import Budget
+from strainwave.files.budget import ReadBudget
 from strainwave.files.labels import check_names, read_by_others
 from strainwave.messages import one_line
 
@@ -24,7 +24,7 @@ def open_bag(path: str | Path) -> GridTable:
     series: dict[tuple[str, str], _Series] = {}
     with read_by_others(path, "bag"):
         files = bag_files(Path(path))
-        budget = Budget(sum(file.stat().st_size for file in files))
+        budget = ReadBudget(sum(file.stat().st_size for file in files))
         for message in messages_of(files, (JOINTS, *NUMBERS), budget):
             own = series.setdefault((message.topic, message.kind), _Series(budget))
             if message.kind == JOINTS:
@@ -51,7 +51,7 @@ def _prefix(topic: str, kind: str, several: bool) -> str:
 class _Series:
     """Numbers of one topic as they come, nan where a message lacks one."""
 
-    def __init__(self, budget: Budget) -> None:
+    def __init__(self, budget: ReadBudget) -> None:
         self.budget = budget
         self.recorded = array("q")  # ns
         self.stamps = array("q")  # ns

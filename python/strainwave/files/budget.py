@@ -1,7 +1,7 @@
 """Limits of reading one file: regular files only; bytes, nodes and depth are bounded before anything is allocated.
 
 A file from a stranger may claim gigabytes in a few bytes, refer to itself, or be a FIFO that never ends. Every reader opens
-its file with `open_regular` or `read_regular` and takes from one `Budget` what it is about to expand or visit.
+its file with `open_regular` or `read_regular` and takes from one `ReadBudget` what it is about to expand or visit.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ class RefusedFile(ValueError):  # noqa: N818 - its message is the reason alone, 
 
 
 @dataclass
-class Budget:
+class ReadBudget:
     """Bytes and nodes that reading one file has taken, and their limits.
 
     Args:
         file_bytes: size of the file [bytes]; a larger file may expand to more
 
-    >>> budget = Budget(file_bytes=1000)
+    >>> budget = ReadBudget(file_bytes=1000)
     >>> budget.take_bytes(8 * 10**9, "dataset q")
     Traceback (most recent call last):
     strainwave.files.budget.RefusedFile: dataset q expands the file to 8000 MB; a file of this size may expand to 268 MB
@@ -101,7 +101,7 @@ def open_regular(path: str | Path) -> BinaryIO:
     return os.fdopen(descriptor, "rb")
 
 
-def budget_of(path: str | Path) -> Budget:
+def budget_of(path: str | Path) -> ReadBudget:
     """Return the budget of a file by its size.
 
     Raises:
@@ -109,7 +109,7 @@ def budget_of(path: str | Path) -> Budget:
         OSError: there is no such file, or it may not be read
     """
     with open_regular(path) as file:
-        return Budget(os.fstat(file.fileno()).st_size)
+        return ReadBudget(os.fstat(file.fileno()).st_size)
 
 
 def read_regular(path: str | Path, max_bytes: int = MAX_ALLOWED_BYTES) -> bytes:

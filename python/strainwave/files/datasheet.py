@@ -1,4 +1,4 @@
-"""The set of a gear that is in no catalogue, from what its maker's data sheet says."""
+"""The set of a gear that is in no catalogue, from its maker's data sheet."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def from_datasheet(
             average_input_speed: what the maker allows, the ratings of the set
 
     Returns:
-        The set, with source and spread of each number. `note` says what contradicts itself.
+        The set, with source and spread of each number. `note` contains the contradictions of the sheet.
 
     Raises:
         TypeError: a figure is no number, text or quantity; an unknown figure
@@ -117,7 +117,7 @@ def read(content: Mapping[str, Any]) -> GearSet:
     for key, value in texts.items():
         if key not in ("name", "maker", "source"):
             raise ValueError(
-                f"{unquoted(key)}: beside [{TABLE}] stand name, maker and source alone; to add, save the set to a gear file"
+                f"{unquoted(key)}: only name, maker and source may stand outside [{TABLE}]; to add, save the set to a gear file"
             )
         arguments.text(key, value)
     sheet = content[TABLE]
@@ -156,24 +156,24 @@ class _Sheet:
             value = arguments.number("size", size, "", "[]", *SIZE_RANGE)
             return cls(moves, nominal, given, value, f"size {value:g}", 0.0, spread, source)
         for names in typical.SIZED_BY:
-            told = {name: given[name].to(UNITS[name]).value for name in names if name in given}
-            if told:
-                value = typical.mean_size(told, nominal)
-                laws = [typical.law(name, nominal) for name in told]
+            figures = {name: given[name].to(UNITS[name]).value for name in names if name in given}
+            if figures:
+                value = typical.mean_size(figures, nominal)
+                laws = [typical.law(name, nominal) for name in figures]
                 off = max(law.scatter / law.exponent for law in laws)
-                return cls(moves, nominal, given, value, f"size {value:.3g} by its {listed(told)}", off, spread, source)
+                return cls(moves, nominal, given, value, f"size {value:.3g} by its {listed(figures)}", off, spread, source)
         value = typical.ANY_SIZE
         return cls(
-            moves, nominal, given, value, f"size {value:g}, as no figure tells it", typical.ANY_SIZE_SPREAD, spread, source
+            moves, nominal, given, value, f"size {value:g}, as no figure determines it", typical.ANY_SIZE_SPREAD, spread, source
         )
 
     def value(self, name: str) -> float | None:
         return self.given[name].to(UNITS[name]).value if name in self.given else None
 
     def entry(self, name: str, detail: str, spread: float | None = None) -> Entry:
-        """The entry of a number that a figure of the sheet tells."""
-        told = self.given[name]
-        return Entry(f"{told.source}, {detail}", told.spread if told.spread is not None else spread)
+        """Return the entry of a number that a figure of the sheet determines."""
+        figure = self.given[name]
+        return Entry(f"{figure.source}, {detail}", figure.spread if figure.spread is not None else spread)
 
     def scaled(self, name: str) -> tuple[float, Entry]:
         """A figure of the sheet, or what the catalogue's gears of the size have."""
@@ -198,7 +198,7 @@ class _Sheet:
         notes = _wide(0.5 * loss, t1 / k1)
         whole = typical.Divided.of(k1, t1, t2, loss)
         accuracy, of_accuracy = self._accuracy()
-        dry, viscous, friction_sources, told = self._friction()
+        dry, viscous, friction_sources, friction_notes = self._friction()
         mesh, of_mesh, more = self._mesh(dry[1], viscous)
         split = f"k1 x {0.5 * loss / typical.ARCMIN:.3g} arcmin / 6 each: loop half as wide at zero torque as {of_loss}"
         gear = Gear(
@@ -232,7 +232,7 @@ class _Sheet:
             **friction_sources,
             **of_mesh,
         }
-        return gear, sources, [*notes, *told, *more]
+        return gear, sources, [*notes, *friction_notes, *more]
 
     def _loss(self) -> tuple[float, str]:
         for name, words in (
@@ -241,16 +241,16 @@ class _Sheet:
         ):
             value = self.value(name)
             if value is not None:
-                told = self.given[name]
-                return value, f"the {words} of {told.value:g} {told.unit} ({told.source})"
+                figure = self.given[name]
+                return value, f"the {words} of {figure.value:g} {figure.unit} ({figure.source})"
         bound = typical.hysteresis_loss(self.nominal)
         return bound, f"the usual bound on hysteresis loss, {bound / typical.ARCMIN:g} arcmin"
 
     def _accuracy(self) -> tuple[float, str]:
         value = self.value("transmission_accuracy")
         if value is not None:
-            told = self.given["transmission_accuracy"]
-            return value, f"{told.value:g} {told.unit} ({told.source})"
+            figure = self.given["transmission_accuracy"]
+            return value, f"{figure.value:g} {figure.unit} ({figure.source})"
         bound = typical.transmission_accuracy(self.size, self.nominal)
         return bound, f"of the catalogue's gears {bound / typical.ARCMIN:g} arcmin, {self.sized}"
 
@@ -260,10 +260,10 @@ class _Sheet:
         running, speed = self.value("no_load_running_torque"), self.value("no_load_running_speed")
         if (running is None) != (speed is None):
             raise ValueError(
-                "no_load_running_torque and no_load_running_speed belong together: a running torque tells the viscous friction "
-                "only at a speed that is known; give both or none"
+                "no_load_running_torque and no_load_running_speed belong together: a running torque determines the viscous "
+                "friction only at a known speed; give both or none"
             )
-        of_level = Entry("assumed: equal to breakaway; no figure tells the two apart")
+        of_level = Entry("assumed: equal to breakaway; no figure separates the two")
         place = "gear.friction_input."
         if running is None or speed is None:
             off = hypot(typical.VISCOUS_SPREAD, 3.0 * self.size_spread)
@@ -340,7 +340,7 @@ class _Sheet:
 
 
 def _wide(width: float, twist: float) -> list[str]:
-    """What a loop of this width does to the first loading up to T1, at this twist [rad]."""
+    """Return remarks on a loop of this width at the first loading up to T1, at this twist [rad]."""
     wide, turned = width / typical.ARCMIN, twist / typical.ARCMIN
     if 0.5 * width >= twist:
         raise ValueError(
@@ -351,7 +351,7 @@ def _wide(width: float, twist: float) -> list[str]:
         return []
     return [
         f"The loop is {wide:.3g} arcmin wide, more than the {turned:.3g} arcmin of twist at T1: "
-        "the gear that is loaded for the first time is stiffer than K1 says."
+        "a gear that is loaded for the first time is stiffer than K1."
     ]
 
 
@@ -367,7 +367,7 @@ def _kinematics(ratio: float, fixed: str | None) -> Any:
     if fixed is None:
         if nominal > 0.0:
             raise ValueError(
-                f'ratio = {nominal:g} does not say what is held; give ratio = {-nominal:g}, or fixed = "circular_spline" '
+                f'ratio = {nominal:g} leaves the fixed part open; give ratio = {-nominal:g}, or fixed = "circular_spline" '
                 '(the output turns against the input) or "flexspline" (it turns with it)'
             )
         fixed = "circular_spline"

@@ -1,4 +1,4 @@
-"""What the models say of their parts and numbers."""
+"""Descriptions of parts and numbers by the models."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def parameters(model: Any) -> list[ParameterField]:
 
 
 def default_of(model: Any, name: str) -> Any:
-    """What a parameter of a model, or of a class of models, is by default; an order of magnitude where it must be given."""
+    """Return the default of a parameter of a model or class of models; an order of magnitude if it must be given."""
     return next(field["default"] for field in model.fields if field["name"] == name)
 
 

@@ -1,7 +1,7 @@
-"""An ensemble in a folder: first what is asked for, then part by part what was run.
+"""An ensemble in a folder: first its plan, then part by part the results.
 
-The plan says how many members there are and what each is, so that what is missing shows. Every part names its plan and holds a
-digest of its values, so that what was damaged, renamed or copied from elsewhere is refused.
+The plan contains the members and their parameters, so that missing ones are known. Every part names its plan and contains a
+digest of its values, so that a damaged, renamed or foreign file is refused.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 PLAN = "plan.parquet"
-SHORT = 40  # characters that a message can show
+MAX_SHOWN_CHARACTERS = 40  # of a value in a message
 
 
 class FolderPart(NamedTuple):
@@ -73,12 +73,12 @@ class EnsembleFolder(ComparedByFields):
         table = _read(path / PLAN)
         sound = False
         with suppress(KeyError, TypeError, ValueError, RecursionError):
-            said = json.loads(table.schema.metadata[b"plan"])
+            plan = json.loads(table.schema.metadata[b"plan"])
             parameters = {name: table[name].to_numpy() for name in table.column_names}
-            found = EnsembleFolder(path, said["asked"], parameters, said["units"], said["size"])
+            found = EnsembleFolder(path, plan["asked"], parameters, plan["units"], plan["size"])
             sound = table.schema.metadata[b"identity"] == found.identity and type(found.size) is int and found.size > 0
         if not sound:
-            raise ValueError(one_line(f"{path / PLAN} is damaged; the parts beside it cannot be checked without it"))
+            raise ValueError(one_line(f"{path / PLAN} is damaged; the parts of its folder cannot be checked without it"))
         return found
 
     def begin(self) -> EnsembleFolder:
@@ -95,21 +95,21 @@ class EnsembleFolder(ComparedByFields):
             return found
         if any(self.path.iterdir()):
             raise FileExistsError(one_line(f"{self.path} is not empty; take another folder, or move what is there"))
-        said = json.dumps({"asked": dict(self.asked), "units": dict(self.units), "size": self.size})
-        _write(self.path / PLAN, dict(self.parameters), {}, {"plan": said, "identity": self.identity})
+        plan = json.dumps({"asked": dict(self.asked), "units": dict(self.units), "size": self.size})
+        _write(self.path / PLAN, dict(self.parameters), {}, {"plan": plan, "identity": self.identity})
         return self
 
     def _check_equal(self, found: Mapping[str, str]) -> None:
         names = [name for name in {**self.asked, **found} if self.asked.get(name) != found.get(name)]
         if names:
-            told = "; ".join(f"{name} is {found.get(name)} there, {self.asked.get(name)} here" for name in names)
-            raise FileExistsError(one_line(f"{self.path} holds another ensemble: {told}; take another folder"))
+            differing = "; ".join(f"{name} is {found.get(name)} there, {self.asked.get(name)} here" for name in names)
+            raise FileExistsError(one_line(f"{self.path} holds another ensemble: {differing}; take another folder"))
 
     @cached_property
     def identity(self) -> bytes:
-        """Tells this plan from others."""
-        said = [self.asked, self.units, self.size, self.parameters]
-        return sha256(_text(said).encode()).hexdigest().encode()
+        """Return a digest that identifies this plan."""
+        content = [self.asked, self.units, self.size, self.parameters]
+        return sha256(_text(content).encode()).hexdigest().encode()
 
     @property
     def members(self) -> int:
@@ -120,7 +120,7 @@ class EnsembleFolder(ComparedByFields):
             yield FolderPart(f"part-{number:06d}.parquet", first, min(first + self.size, self.members))
 
     def has(self, part: FolderPart) -> bool:
-        """Whether a part was run. Its members are written last."""
+        """True if a part was run. Its members are written last."""
         return all((self.path / kind / part.name).exists() for kind in ("samples", "members"))
 
     def write(self, part: FolderPart, time: Array, columns: Mapping[str, Array], failures: Mapping[int, str]) -> None:
@@ -129,8 +129,8 @@ class EnsembleFolder(ComparedByFields):
         series = {name: values.reshape(-1) for name, values in columns.items()}
         _write(self.path / "samples" / part.name, samples | series, {"time": "s"} | dict(self.units), self._proof)
         parameters = {name: values[part.first : part.last] for name, values in self.parameters.items()}
-        told = {"failure": [failures.get(member) for member in part.members.tolist()]}
-        _write(self.path / "members" / part.name, {"member": part.members} | parameters | told, {}, self._proof)
+        reasons = {"failure": [failures.get(member) for member in part.members.tolist()]}
+        _write(self.path / "members" / part.name, {"member": part.members} | parameters | reasons, {}, self._proof)
 
     def samples(self, part: FolderPart) -> tuple[Array, dict[str, Array]]:
         """Time, and outputs of shape (members, samples)."""
@@ -139,9 +139,9 @@ class EnsembleFolder(ComparedByFields):
         return columns["time"][0], {name: columns[name] for name in self.units}
 
     def failures(self, part: FolderPart) -> dict[int, str]:
-        """Why members of a part have no result."""
-        told = self._checked("members", part)["failure"].to_pylist()
-        return {part.first + number: reason for number, reason in enumerate(told) if reason is not None}
+        """Return for each member of a part without a result the reason."""
+        reasons = self._checked("members", part)["failure"].to_pylist()
+        return {part.first + number: reason for number, reason in enumerate(reasons) if reason is not None}
 
     @property
     def _proof(self) -> dict[str, str | bytes]:
@@ -169,7 +169,7 @@ def fingerprint(value: object) -> str:
     'sha256 4f98773821eaf6dd'
     """
     text = _text(value)
-    return text if len(text) <= SHORT else f"sha256 {sha256(text.encode()).hexdigest()[:16]}"
+    return text if len(text) <= MAX_SHOWN_CHARACTERS else f"sha256 {sha256(text.encode()).hexdigest()[:16]}"
 
 
 def _text(value: object) -> str:
@@ -228,6 +228,6 @@ def _read(path: Path) -> pyarrow.Table:
 
 
 def _digest(table: pyarrow.Table) -> bytes:
-    """Of names, types and values."""
+    """Return a digest of names, types and values."""
     columns = {name: table[name].to_pylist() if name == "failure" else table[name].to_numpy() for name in table.column_names}
     return sha256(_text(columns).encode()).hexdigest().encode()

@@ -16,7 +16,7 @@ NOT_GIVEN = "not given"
 
 @dataclass(frozen=True)
 class Entry:
-    """Where a number comes from, and how well it is known.
+    """Source of a number, with its spread and its standard deviation.
 
     Args:
         source: document, measurement or rule, one line of text; "not given" where a file leaves out the whole table
@@ -33,7 +33,7 @@ class Entry:
 
     @property
     def assumed(self) -> bool:
-        """Whether the number was neither measured nor published."""
+        """True if the number was neither measured nor published."""
         return self.source.startswith("assumed") or self.source == NOT_GIVEN
 
     def sigma(self, value: float) -> float | None:

@@ -1,4 +1,4 @@
-"""What may be written in one place of a file of numbers with unit and source, and what is said of anything else there."""
+"""Forms of the entries of a file of numbers with unit and source, and the errors for any other content."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Form(NamedTuple):
-    """What may be written in one place of a file: its type, how each key is written, and what a key is called."""
+    """Form of one place of a file: its type, an example of each key, and the name of a key."""
 
     noun: str
     schema: Any
@@ -73,7 +73,7 @@ _WANTED = {
 
 
 def _explained(fault: ErrorDetails, form: Form) -> str:
-    """What pydantic found, in the words of the file: key, value, what is allowed."""
+    """Return the error of pydantic in the words of the file: key, value, what is allowed."""
     kind, given = fault["type"], fault["input"]
     key, *inner = fault["loc"]
     attribute = next((name for name in inner if isinstance(name, str)), "")

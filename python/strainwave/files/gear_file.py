@@ -34,7 +34,7 @@ Sources = dict[str, Entry]
 
 
 class Contents(Protocol):
-    """What a file holds, as a gear set has it."""
+    """Content of a file, as members of a gear set."""
 
     @property
     def gear(self) -> Gear: ...
@@ -54,7 +54,7 @@ _LONG_KEY = re.compile(rf"(?:{_PART_OF_KEY}\.[ \t]*+){{{MAX_DEPTH}}}")
 
 
 def read(content: Mapping[str, Any]) -> dict[str, Any]:
-    """The members of the set in a file; `ValueError` says what is wrong in it, with table and key."""
+    """Return the members of the set in a file; a `ValueError` names the table and key of a fault."""
     checked(_head_form(), content)
     models, sources = _read_models(content)
     with at("[ratings]"):
@@ -116,7 +116,7 @@ class _Table(NamedTuple):
 
     @property
     def header(self) -> str:
-        """As the file writes it."""
+        """Return the header of the table in the file."""
         return f"[{self.path.removeprefix('gear.')}]"
 
 
@@ -159,7 +159,7 @@ def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
 
 
 def document(path: Path) -> dict[str, Any]:
-    """What stands in a TOML file; `ValueError` where it cannot be read, is no TOML or holds nothing."""
+    """Return the content of a TOML file; `ValueError` if it cannot be read, is no TOML or is empty."""
     try:
         text = read_regular(path, MAX_TEXT_BYTES).decode("utf-8-sig")
         if _LONG_KEY.search(text):
@@ -297,7 +297,7 @@ def _table_form(path: str, model: Any) -> Form:
 
 
 def _with_model(table: _Table) -> str:
-    """What else has to be said of a table whose model can be chosen."""
+    """Return the choice of models of a table in words; empty if there is none."""
     return f" with {_choice(table)}" if table.kinds else ""
 
 
@@ -325,7 +325,7 @@ def _example(parameter: ParameterField, default: Any) -> str:
 
 
 def text(gear_set: Contents) -> str:
-    """What stands in the file of a set."""
+    """Return the text of the file of a set."""
     import tomlkit
 
     document = tomlkit.document()
@@ -347,12 +347,12 @@ def text(gear_set: Contents) -> str:
 
 
 def _is_left_out(table: _Table, model: Any, sources: Mapping[str, Entry]) -> bool:
-    """Whether a file says this without a table: the part does nothing, and no source is given for its numbers."""
+    """True if a file omits this table: the part does nothing, and no source is given for its numbers."""
     return _does_nothing(table, model) and all(sources[path].source == NOT_GIVEN for path in own_paths(table.path, model))
 
 
 def _does_nothing(table: _Table, model: Any) -> bool:
-    """Whether a table that is left out is read as this model, of a gear without its parts."""
+    """True if a table that is left out is read as this model, of a gear without its parts."""
     absent = table.absent
     return type(model) is type(absent) and all(getattr(model, p.name) == getattr(absent, p.name) for p in parameters(model))
 

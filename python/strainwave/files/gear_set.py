@@ -1,6 +1,6 @@
-"""Gear sets: a gear with the source of each of its numbers, and what else is known of it.
+"""Gear sets: a gear with the source of each of its numbers, its ratings and the other parts of its drive.
 
-Which numbers there are, the models say themselves; none is named here. `gear_file` reads and writes the files.
+The models describe their own numbers; none is named here. `gear_file` reads and writes the files.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from strainwave.messages import quoted, shortened, unquoted
 Kind = TypeVar("Kind", bound=Entry)
 _PARTS = [field["name"] for field in Drive.fields]
 
-CATALOGUE = Path(__file__).parents[1] / "catalogue"
-FOLDERS = {"gears": CATALOGUE, "drives": CATALOGUE / "drives"}
+CATALOGUE_FOLDER = Path(__file__).parents[1] / "catalogue"  # of the package
+FOLDERS = {"gears": CATALOGUE_FOLDER, "drives": CATALOGUE_FOLDER / "drives"}
 
 
 class Estimated(Protocol):
-    """A number that was fitted: its path in the model, and its standard deviation, infinite where the data do not tell."""
+    """A fitted number: its path in the model, and its standard deviation, infinite if the data do not determine it."""
 
     @property
     def path(self) -> str: ...
@@ -43,7 +43,7 @@ class Estimated(Protocol):
 
 
 @runtime_checkable
-class Fitted(Protocol):
+class FittedModel(Protocol):
     """A model with fitted numbers, as `sw.fit` gives it. Estimates that are no numbers of the model are of no concern here."""
 
     @property
@@ -54,7 +54,7 @@ class Fitted(Protocol):
 
 @dataclass(frozen=True)
 class GearSet:
-    """A gear, the source of each of its numbers, and what else is known of it.
+    """A gear, the source of each of its numbers, its ratings and the other parts of its drive.
 
     Two sets are equal if all members are, sources and ratings too. Their gears are equal if models and numbers are: as the
     published tables give HFUC-20-80 and CSG-20-80 the same stiffness and inertia, their gears are equal, the sets are not.
@@ -65,7 +65,7 @@ class GearSet:
         sources: where each number of the models comes from, by path: "gear.stiffness.k1", "motor.resistance",
             "gear.hysteresis.stiffness[0]"
         maker: who makes it
-        note: what else is to be said
+        note: free text
         ratings: what the maker allows, by name; no part of the model
         motor, control, load, sensors, thermal, meter: the rest of a drive, models of `sw.motor`, `sw.control`, `sw.loads`,
             `sw.thermal` and `sw.meter`, and `sw.Sensors`; None if not known
@@ -140,11 +140,13 @@ class GearSet:
         return gear_file.left_out(self)
 
     @classmethod
-    def of(cls, model: Gear | Drive | Fitted, *, name: str, source: str, sources: Mapping[str, Entry] | None = None) -> GearSet:
+    def of(
+        cls, model: Gear | Drive | FittedModel, *, name: str, source: str, sources: Mapping[str, Entry] | None = None
+    ) -> GearSet:
         """The set of a model, or of a fit.
 
         A model does not remember which of its numbers were given. So a part that does nothing is "not given", and the
-        source of a number that equals its default says so.
+        source of a number that equals its default states that.
 
         Args:
             model: a gear, a whole drive, or a fit of one
@@ -172,15 +174,15 @@ class GearSet:
         """
         if sources is not None:
             arguments.mapping("sources", sources, '{"gear.damping": Entry("assumed")}')
-        whole = model.model if isinstance(model, Fitted) else model
+        whole = model.model if isinstance(model, FittedModel) else model
         models = _models(whole)
         _drive(models)  # refuses what is no gear
-        rest = Entry("assumed: kept by the fit, its source is not given" if isinstance(model, Fitted) else source)
+        rest = Entry("assumed: kept by the fit, its source is not given" if isinstance(model, FittedModel) else source)
         alike = cls(name=name, sources=dict.fromkeys(_paths(models), rest), **models)
         entries = {path: _unless_default(alike, path) for path in alike.sources}
         entries |= {path: Entry(NOT_GIVEN) for path in gear_file.idle(alike)}
         entries |= _named(alike, sources or {})
-        if isinstance(model, Fitted):
+        if isinstance(model, FittedModel):
             entries |= _estimated(alike, model, source)
         return alike.replace(sources=entries)
 
@@ -193,7 +195,7 @@ class GearSet:
                 A file with a table [datasheet] holds figures of a maker, as `from_datasheet` takes them
 
         Returns:
-            The set, in SI units. A table left out is the part that does nothing, its sources say "not given".
+            The set, in SI units. A table left out is the part that does nothing, its sources are "not given".
 
         Raises:
             ValueError: no such name or file, or what is wrong in it, with file, table and key.
@@ -209,7 +211,7 @@ class GearSet:
 
     @staticmethod
     def from_datasheet(ratio: float, **figures: Any) -> GearSet:
-        """The set of a gear in no catalogue, from what its maker's data sheet says.
+        """Return the set of a gear in no catalogue, from its maker's data sheet.
 
         Args:
             ratio: that with the circular spline held, signed, or with `fixed`
@@ -254,7 +256,7 @@ class GearSet:
         """The same with these parts of a drive, whose numbers come from one source.
 
         Args:
-            source: where they come from, one line of text; a number that equals its default says so, as in `of`
+            source: where they come from, one line of text; a number that equals its default has another one, as in `of`
             motor, control, load, sensors, thermal, meter: as the set has them; what is not given stays
 
         >>> import strainwave as sw
@@ -311,9 +313,9 @@ def catalogue(of: str = "gears") -> list[str]:
 
 
 def load(name_or_path: str | Path) -> Any:
-    """What a file holds: the drive, where it has a motor and a load, else the gear.
+    """Return the drive of a file that has a motor and a load, else the gear.
 
-    What was saved is what is loaded: a gear, or a drive. Where the type must be known beforehand, `GearSet.read(path).gear`
+    A saved gear is loaded as a gear, a saved drive as a drive. If the type must be known beforehand, `GearSet.read(path).gear`
     is the gear of any file, and `GearSet.read(path).drive` the drive. Neither has ratings; yet the ratings of a file, a data
     sheet among them, are remembered: `simulate` compares with them every drive that has this gear unchanged.
 
@@ -342,14 +344,14 @@ def load(name_or_path: str | Path) -> Any:
 def save(model: GearSet, path: str | Path) -> None: ...
 @overload
 def save(
-    model: Gear | Drive | Fitted,
+    model: Gear | Drive | FittedModel,
     path: str | Path,
     *,
     name: str,
     source: str,
     sources: Mapping[str, Entry] | None = None,
 ) -> None: ...
-def save(model: GearSet | Gear | Drive | Fitted, path: str | Path, **naming: Any) -> None:
+def save(model: GearSet | Gear | Drive | FittedModel, path: str | Path, **naming: Any) -> None:
     """Write a gear file, which `load` reads back equal, bit for bit.
 
     Args:
@@ -387,7 +389,7 @@ def _models(model: Any) -> dict[str, Any]:
 
 
 def _unless_default(gear_set: GearSet, path: str) -> Entry:
-    """The entry of a number, which says so where the number equals the default of its model."""
+    """Return the entry of a number; its source states if the number equals the default of its model."""
     entry, (place, _, name) = gear_set.sources[path], path.rpartition(".")
     name, _, index = name.partition("[")
     model = attrgetter(place)(gear_set)
@@ -415,13 +417,13 @@ def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:
     return named
 
 
-def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
+def _estimated(gear_set: GearSet, fit: FittedModel, source: str) -> dict[str, Entry]:
     """The entries of fitted numbers; the paths of a gear's fit begin inside the gear."""
     before = "" if isinstance(fit.model, Drive) else "gear."
     entries = {}
     for estimate in fit.estimates:
-        told = isfinite(estimate.sigma)
-        entry = Entry(source, uncertainty=estimate.sigma) if told else Entry(f"not determined by: {source}")
+        determined = isfinite(estimate.sigma)
+        entry = Entry(source, uncertainty=estimate.sigma) if determined else Entry(f"not determined by: {source}")
         entries[before + estimate.path] = entry
     return {path: entry for path, entry in entries.items() if path in gear_set.sources}
 
@@ -429,7 +431,7 @@ def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
 def _drive(models: Mapping[str, Any]) -> Drive:
     """The drive of these models, with the default for each that is None."""
     rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
-    # Every controller can act on a brushless motor: whether it fits another is told once that is known.
+    # Every controller can act on a brushless motor; another motor is checked once it is known.
     return Drive(**{"motor": motors.BrushlessDC()} | rest)
 
 

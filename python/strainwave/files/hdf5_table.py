@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.budget import Budget, RefusedFile, budget_of
+from strainwave.files.budget import ReadBudget, RefusedFile, budget_of
 from strainwave.files.labels import read_by_others
-from strainwave.files.variables import DEPTH, MANY, Unreadable, object_of_matlab, table_of
+from strainwave.files.variables import MAX_MATRIX_COLUMNS, MAX_NESTING, Unreadable, object_of_matlab, table_of
 from strainwave.messages import one_line, quoted
 
 MAX_ATTRIBUTE = 1000  # bytes of the name of a class
@@ -32,7 +32,7 @@ def open_hdf5(path: str | Path) -> ArrayTable:
     return table_of(one_line(str(path)), hdf5_variables(Path(path), "HDF5", budget), budget)
 
 
-def hdf5_variables(path: Path, kind: str, budget: Budget) -> Iterator[tuple[str, Any]]:
+def hdf5_variables(path: Path, kind: str, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     """Return the variables of a file by their names, groups as mappings.
 
     Raises:
@@ -51,7 +51,7 @@ def hdf5_variables(path: Path, kind: str, budget: Budget) -> Iterator[tuple[str,
 class _Walk:
     """Reads what a file contains, each group and dataset once."""
 
-    def __init__(self, opened: Any, budget: Budget) -> None:
+    def __init__(self, opened: Any, budget: ReadBudget) -> None:
         self.opened = opened
         self.budget = budget
         self.known: dict[tuple[int, int], Any] = {}  # by address in the file and depth
@@ -62,7 +62,7 @@ class _Walk:
         import h5py
 
         self.begun.add(h5py.h5o.get_info(self.opened.id).addr)
-        return self._members(self.opened, DEPTH + 1)
+        return self._members(self.opened, MAX_NESTING + 1)
 
     def content(self, node: Any, depth: int) -> Any:
         """Return the content of a group or dataset, nothing beyond the depth."""
@@ -125,11 +125,11 @@ class _Walk:
         if kind == "char" and node.dtype.kind == "u":
             return "".join(map(chr, np.ravel(self._values(node))))
         if h5py.check_ref_dtype(node.dtype) is h5py.Reference:
-            references = np.ravel(self._values(node))[:MANY] if depth else ()
+            references = np.ravel(self._values(node))[:MAX_MATRIX_COLUMNS] if depth else ()
             found = [self.content(self.opened[each], depth - 1) for each in references if each]
             return CYCLE if found and all(each is CYCLE for each in found) else found
         shape = node.shape or ()
-        is_series = len(shape) < 2 or (len(shape) == 2 and min(shape) <= MANY)
+        is_series = len(shape) < 2 or (len(shape) == 2 and min(shape) <= MAX_MATRIX_COLUMNS)
         return self._values(node) if is_series and node.dtype.kind in "fiub" else []
 
     def _values(self, node: Any) -> Any:

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.budget import Budget, RefusedFile, read_regular
+from strainwave.files.budget import ReadBudget, RefusedFile, read_regular
 from strainwave.files.labels import unreadable
-from strainwave.files.variables import DEPTH, table_of
+from strainwave.files.variables import MAX_NESTING, table_of
 from strainwave.messages import one_line
 
 BYTES_OF_VALUE = 64  # that a value takes in memory as Python has it
@@ -28,7 +28,7 @@ def open_json(path: str | Path) -> ArrayTable:
     A number that a row lacks, or that is null in it, is nan.
 
     Raises:
-        ValueError: the file cannot be read, or holds neither; says where
+        ValueError: the file cannot be read, or contains neither; the message gives the place
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -41,7 +41,7 @@ def open_json(path: str | Path) -> ArrayTable:
     file = one_line(str(path))
     try:
         data = read_regular(path)
-        budget = Budget(len(data))
+        budget = ReadBudget(len(data))
         budget.take_bytes(BYTES_OF_VALUE * sum(map(data.count, (b",", b"[", b"{"))), "its values")
         found = _parsed(file, data.decode("utf-8-sig"))
         if isinstance(found, Mapping):
@@ -92,11 +92,11 @@ def _are_rows(value: Any) -> bool:
     return isinstance(value, list) and len(value) > 1 and all(isinstance(each, Mapping) for each in value)
 
 
-def _of_rows(rows: Sequence[Mapping[str, Any]], budget: Budget) -> Iterator[tuple[str, Any]]:
+def _of_rows(rows: Sequence[Mapping[str, Any]], budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     """The series of rows, by the names that any of them has."""
     columns: dict[str, list[float]] = {}
     for place, row in enumerate(rows):
-        for name, value in _flat("", row, DEPTH):
+        for name, value in _flat("", row, MAX_NESTING):
             column = columns.get(name)
             if column is None:
                 budget.take_bytes(len(name) + 8 * len(rows), "a column for each name in its rows")

@@ -1,4 +1,4 @@
-"""What files call their columns, and which of them are to be read, with their units."""
+"""Names of the columns of files, and the columns to be read, with their units."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ MAX_NAME = 1000  # characters of the name of a column, or of a header cell
 
 
 class Label(NamedTuple):
-    """What a file calls a column: its text, and what this says of name and unit."""
+    """Heading of a column in a file: its text, and the name and unit in it."""
 
     text: str
     name: str
     unit: str | None
 
 
-class Source(NamedTuple):
+class ColumnSource(NamedTuple):
     """A column to read: where it stands, its name in the file and in the recording, and its unit."""
 
     position: int
@@ -91,7 +91,7 @@ def is_unit(text: str) -> bool:
 
 def sources_of(
     file: str, labels: Sequence[Label], columns: Mapping[str, str] | None, units: Mapping[str, str] | None
-) -> list[Source]:
+) -> list[ColumnSource]:
     """The columns to read, each found in the file and with its unit."""
     arguments.mapping("columns", {} if columns is None else columns, '{"speed": "Motor Speed"}')
     arguments.mapping("units", {} if units is None else units, '{"speed": "rpm"}')
@@ -105,7 +105,7 @@ def sources_of(
     if extra := (units or {}).keys() - chosen.keys():
         raise ValueError(f"{file}: units names {quoted(min(extra))}, which is not read; there are {listed(chosen)}")
     return [
-        Source(index, labels[index].name, name, _unit(file, labels[index], name, (units or {}).get(name)))
+        ColumnSource(index, labels[index].name, name, _unit(file, labels[index], name, (units or {}).get(name)))
         for name, index in chosen.items()
     ]
 
@@ -121,7 +121,7 @@ def _check_labels(file: str, labels: Sequence[Label]) -> None:
 
 
 def places_of(labels: Sequence[Label], wanted: str) -> list[int]:
-    """Where the columns stand that are called so; if none is, the column of this number, counted from 1.
+    """Return the places of the columns with this name; if there is none, the column of this number, counted from 1.
 
     A column of a matrix may be named by its number there: `out:3` is `out_3`.
 

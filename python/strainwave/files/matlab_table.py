@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.budget import Budget, budget_of, open_regular, read_regular
+from strainwave.files.budget import ReadBudget, budget_of, open_regular, read_regular
 from strainwave.files.hdf5_table import hdf5_variables
 from strainwave.files.labels import read_by_others
 from strainwave.files.matlab_variables import HEADER_BYTES, variables_of_version_4, variables_of_version_5
@@ -25,7 +25,7 @@ def open_mat(path: str | Path) -> ArrayTable:
     return table_of(one_line(str(path)), _variables(Path(path), budget), budget)
 
 
-def _variables(path: Path, budget: Budget) -> Iterator[tuple[str, Any]]:
+def _variables(path: Path, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     with read_by_others(path, "MAT"):
         with open_regular(path) as file:
             head = file.read(HEADER_BYTES)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from strainwave.files.budget import Budget, RefusedFile
+from strainwave.files.budget import ReadBudget, RefusedFile
 from strainwave.files.variables import object_of_matlab
 
 HEADER_BYTES = 128  # bytes, version 5
@@ -34,7 +34,7 @@ class _Element(NamedTuple):
     content: memoryview
 
 
-def variables_of_version_4(data: bytes, budget: Budget) -> Iterator[tuple[str, Any]]:
+def variables_of_version_4(data: bytes, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     """Return the real matrices of a file of version 4 by their names.
 
     Raises:
@@ -57,7 +57,7 @@ def variables_of_version_4(data: bytes, budget: Budget) -> Iterator[tuple[str, A
             yield _text(data[begin - length : begin]), values.reshape(rows, columns, order="F")
 
 
-def variables_of_version_5(data: bytes, budget: Budget) -> Iterator[tuple[str, Any]]:
+def variables_of_version_5(data: bytes, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     """Return the variables of a file of version 5 by their names: structures as mappings, cells as lists.
 
     Raises:
@@ -70,7 +70,7 @@ def variables_of_version_5(data: bytes, budget: Budget) -> Iterator[tuple[str, A
         yield _array(element, order, budget, 0)
 
 
-def _unpacked(content: memoryview, budget: Budget) -> memoryview:
+def _unpacked(content: memoryview, budget: ReadBudget) -> memoryview:
     inflater = zlib.decompressobj()
     found = inflater.decompress(content, budget.allowed_bytes + 1)
     budget.take_bytes(len(found), "a packed variable")
@@ -93,7 +93,7 @@ def _elements(content: memoryview, order: str, is_padded: bool = True) -> Iterat
         place = end
 
 
-def _array(element: _Element, order: str, budget: Budget, depth: int) -> tuple[str, Any]:
+def _array(element: _Element, order: str, budget: ReadBudget, depth: int) -> tuple[str, Any]:
     """Return name and content of an array; an empty array of numbers for what contains no series."""
     budget.take_node(depth)
     budget.take_bytes(BYTES_OF_VALUE, "its cells and fields")

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.files.budget import Budget, RefusedFile
-from strainwave.files.mdf_channels import Bytes, Channel, ChannelGroup, NumberField, RecordLayout, Records, records_of
+from strainwave.files.budget import ReadBudget, RefusedFile
+from strainwave.files.mdf_channels import Bytes, ChannelGroup, MdfChannel, NumberField, RecordLayout, Records, records_of
 from strainwave.files.mdf_conversion import (
     Convert,
     RefusedChannel,
@@ -33,7 +33,7 @@ TIME_CHANNEL = 1  # type of a channel that contains the instants of its group
 FORMULA, TEXTS, NONE = 10, (11, 12), 65535  # types of conversions
 
 
-def channel_groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
+def channel_groups(data: Bytes, budget: ReadBudget) -> Iterator[ChannelGroup]:
     """Return the channel groups of a file of version 2 or 3."""
     whole = data.data
     is_big_endian = _unpack("H", whole, 24)[0] != 0
@@ -42,7 +42,7 @@ def channel_groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
         block = _block(whole, address, b"DG", budget)
         address, first, _, place, _, ids = _unpack("4I2H", block, 4)
         layouts: dict[int, RecordLayout] = {}
-        channels: dict[int, list[Channel]] = {}
+        channels: dict[int, list[MdfChannel]] = {}
         while first:
             block = _block(whole, first, b"CG", budget)
             first, channel, _, number, _, length, records = _unpack("3I3HI", block, 4)
@@ -57,7 +57,7 @@ def channel_groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
         yield from (ChannelGroup(each, found[number], _master(each, found[number])) for number, each in channels.items())
 
 
-def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: Budget) -> Iterator[Channel]:
+def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: ReadBudget) -> Iterator[MdfChannel]:
     """Return the channels of a group that contain numbers."""
     while address:
         block = _block(whole, address, b"CN", budget)
@@ -73,14 +73,14 @@ def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: Budg
         place = NumberField(kind_of_number, more_bytes + start // 8, start % 8, bits, is_big_endian if order is None else order)
         unit, convert = _conversion(_block(whole, conversion, b"CC"), budget) if conversion else ("", identity)
         if convert is not None:
-            yield Channel(name, unit, place, convert, is_master=kind == TIME_CHANNEL)
+            yield MdfChannel(name, unit, place, convert, is_master=kind == TIME_CHANNEL)
 
 
-def _master(channels: Sequence[Channel], records: Records) -> tuple[Channel, Records] | None:
+def _master(channels: Sequence[MdfChannel], records: Records) -> tuple[MdfChannel, Records] | None:
     return next(((channel, records) for channel in channels if channel.is_master), None)
 
 
-def _conversion(block: memoryview, budget: Budget) -> tuple[str, Convert | RefusedChannel | None]:
+def _conversion(block: memoryview, budget: ReadBudget) -> tuple[str, Convert | RefusedChannel | None]:
     """Return unit and conversion; None if it gives texts."""
     unit = _text(block[22:42])
     kind, count = _unpack("2H", block, 42)
@@ -90,7 +90,7 @@ def _conversion(block: memoryview, budget: Budget) -> tuple[str, Convert | Refus
         return unit, refused
 
 
-def _convert(kind: int, count: int, parameters: memoryview, budget: Budget) -> Convert | None:
+def _convert(kind: int, count: int, parameters: memoryview, budget: ReadBudget) -> Convert | None:
     if kind == NONE:
         return identity
     if kind in TEXTS:
@@ -112,7 +112,7 @@ def _convert(kind: int, count: int, parameters: memoryview, budget: Budget) -> C
     raise RefusedChannel(f"its conversion is of the type {kind}, which MDF 3 does not define")
 
 
-def _block(whole: memoryview, address: int, kind: bytes, budget: Budget | None = None) -> memoryview:
+def _block(whole: memoryview, address: int, kind: bytes, budget: ReadBudget | None = None) -> memoryview:
     """Return a block as its length is stated; with a budget one that no other block may refer to."""
     if budget is not None:
         budget.take_node()

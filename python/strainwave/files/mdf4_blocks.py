@@ -11,8 +11,8 @@ from xml.sax.saxutils import unescape
 
 import numpy as np
 
-from strainwave.files.budget import Budget, RefusedFile
-from strainwave.files.mdf_channels import Bytes, Channel, ChannelGroup, NumberField, RecordLayout, Records, records_of
+from strainwave.files.budget import ReadBudget, RefusedFile
+from strainwave.files.mdf_channels import Bytes, ChannelGroup, MdfChannel, NumberField, RecordLayout, Records, records_of
 from strainwave.files.mdf_conversion import (
     Convert,
     RefusedChannel,
@@ -49,7 +49,7 @@ class _Group(NamedTuple):
 
     address: int
     master_group: int | None
-    channels: Sequence[Channel]
+    channels: Sequence[MdfChannel]
 
 
 class _Block(NamedTuple):
@@ -66,7 +66,7 @@ class _Block(NamedTuple):
 class Mdf4File:
     """The blocks of a file of version 4, each structural one visited once."""
 
-    def __init__(self, data: Bytes, budget: Budget) -> None:
+    def __init__(self, data: Bytes, budget: ReadBudget) -> None:
         self.data = data
         self.whole = data.data
         self.budget = budget
@@ -118,7 +118,7 @@ class Mdf4File:
         records.update((numbers[number], each) for number, each in found.items())
         return int(following)
 
-    def _channels(self, address: int, depth: int = 0) -> Iterator[Channel]:
+    def _channels(self, address: int, depth: int = 0) -> Iterator[MdfChannel]:
         """Return the channels of a list that contain numbers, and those of the structures among them."""
         while address:
             block = self._new_block(address, b"##CN", depth)
@@ -134,7 +134,7 @@ class Mdf4File:
                 continue
             own_unit, convert = self._conversion(conversion, KINDS[data_type][0] != "f")
             if convert is not None:
-                yield Channel(
+                yield MdfChannel(
                     self._text(name),
                     self._text(unit) or own_unit,
                     None if is_virtual else NumberField(KINDS[data_type][0], byte, bit, bits, KINDS[data_type][1]),

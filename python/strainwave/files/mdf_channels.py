@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.budget import Budget, RefusedFile
+from strainwave.files.budget import ReadBudget, RefusedFile
 from strainwave.files.mdf_conversion import Convert, RefusedChannel
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ class NumberField(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Channel:
+class MdfChannel:
     """A channel that contains numbers.
 
     Args:
@@ -79,12 +79,12 @@ class Records:
 class ChannelGroup:
     """Channels sampled at the same instants; `master` is that of another group where this one has none."""
 
-    channels: Sequence[Channel]
+    channels: Sequence[MdfChannel]
     records: Records
-    master: tuple[Channel, Records] | None
+    master: tuple[MdfChannel, Records] | None
 
 
-def channel_values(channel: Channel, records: Records, budget: Budget) -> Array:
+def channel_values(channel: MdfChannel, records: Records, budget: ReadBudget) -> Array:
     """Return the physical values of a channel, nan where the file marks them as not valid.
 
     Raises:
@@ -105,7 +105,7 @@ def channel_values(channel: Channel, records: Records, budget: Budget) -> Array:
     return values
 
 
-def _raw(channel: Channel, field: NumberField, content: Bytes) -> Array:
+def _raw(channel: MdfChannel, field: NumberField, content: Bytes) -> Array:
     if field.byte + field.length > content.shape[1]:
         raise RefusedFile(f"channel {channel.name} lies outside its record of {content.shape[1]} bytes")
     if not 0 < field.bits <= 64 or (field.kind == "f" and (field.bit or field.bits not in FLOAT_BITS)):
@@ -147,7 +147,7 @@ class RecordLayout(NamedTuple):
 
 
 def records_of(
-    data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, budget: Budget, id_bytes_behind: int = 0
+    data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, budget: ReadBudget, id_bytes_behind: int = 0
 ) -> dict[int, Records]:
     """Return the records of each channel group of a data group, by the number that stands before each record.
 
@@ -195,7 +195,7 @@ def _check_count(found: int, claimed: int) -> None:
 
 
 def _starts(
-    data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, id_bytes_behind: int, budget: Budget
+    data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, id_bytes_behind: int, budget: ReadBudget
 ) -> dict[int, list[int]]:
     """Return where the records of each channel group begin."""
     if not id_bytes and len(data):

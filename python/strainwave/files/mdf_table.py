@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
-from strainwave.files.budget import Budget, RefusedFile, open_regular
+from strainwave.files.budget import ReadBudget, RefusedFile, open_regular
 from strainwave.files.labels import check_names, read_by_others
 from strainwave.files.mdf3_blocks import channel_groups
 from strainwave.files.mdf4_blocks import Mdf4File
@@ -37,7 +37,7 @@ def open_mdf(path: str | Path) -> GridTable:
     left_out: list[str] = []
     with read_by_others(path, "MDF"), open_regular(path) as file:
         data = np.frombuffer(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ), np.uint8)
-        budget, names, tries = Budget(len(data)), list[str](), Counter[tuple[str, int]]()
+        budget, names, tries = ReadBudget(len(data)), list[str](), Counter[tuple[str, int]]()
         for number, group in enumerate(_groups(data, budget)):
             names += [channel.name for channel in group.channels]
             check_names(names)
@@ -46,7 +46,7 @@ def open_mdf(path: str | Path) -> GridTable:
     return grid_table(one_line(str(path)), "", grids, units, left_out)
 
 
-def _groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
+def _groups(data: Bytes, budget: ReadBudget) -> Iterator[ChannelGroup]:
     begin = data[:64].tobytes()
     if begin.startswith(MAGIC[1]):
         raise RefusedFile("was not closed by its recorder (UnFinMF); let the recorder's software finalise it")
@@ -62,7 +62,7 @@ def _grid(
     units: dict[str, str],
     tries: Counter[tuple[str, int]],
     left_out: list[str],
-    budget: Budget,
+    budget: ReadBudget,
 ) -> Grid | None:
     """Return the channels of a group; add what they are measured in, and what of it is not read."""
     try:
@@ -83,7 +83,7 @@ def _grid(
     return Grid(time, columns) if columns else None
 
 
-def _time(group: ChannelGroup, budget: Budget) -> Array:
+def _time(group: ChannelGroup, budget: ReadBudget) -> Array:
     """Return the instants of a group [s]."""
     if group.master is None:
         raise RefusedChannel("it has no time channel")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib import format as numpy_format
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.budget import Budget, RefusedFile, budget_of, open_regular
+from strainwave.files.budget import ReadBudget, RefusedFile, budget_of, open_regular
 from strainwave.files.labels import read_by_others
 from strainwave.files.variables import Unreadable, table_of
 from strainwave.messages import one_line
@@ -41,7 +41,7 @@ def open_numpy(path: str | Path) -> ArrayTable:
     return table_of(one_line(str(path)), variables, budget)
 
 
-def _of_zip(file: BinaryIO, budget: Budget) -> Iterator[tuple[str, Any]]:
+def _of_zip(file: BinaryIO, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     with zipfile.ZipFile(file) as members:
         for member in members.infolist():
             budget.take_node()
@@ -52,7 +52,7 @@ def _of_zip(file: BinaryIO, budget: Budget) -> Iterator[tuple[str, Any]]:
                     yield from _of_array(member.filename.removesuffix(".npy"), opened, member.file_size, budget)
 
 
-def _of_array(name: str, file: Any, file_bytes: int, budget: Budget) -> Iterator[tuple[str, Any]]:
+def _of_array(name: str, file: Any, file_bytes: int, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
     """Return the arrays of numbers in a file of that many bytes, those of a structured array by its names."""
     version = numpy_format.read_magic(file)
     read_header = numpy_format.read_array_header_1_0 if version == (1, 0) else numpy_format.read_array_header_2_0

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any, BinaryIO
 
-from strainwave.files.budget import MAX_DEPTH, Budget, RefusedFile
+from strainwave.files.budget import MAX_DEPTH, ReadBudget, RefusedFile
 
-END = 8  # bytes at the end of the file: length of the footer, and PAR1
+TAIL_BYTES = 8  # at the end of the file: length of the footer, and PAR1
 MAX_HEADER = 2**16  # bytes of the header of a page, statistics included
-GROUPS = 4  # field of the footer: the row groups
+ROW_GROUPS_FIELD = 4  # number of the footer's field with the row groups
 COLUMNS, ROWS = 1, 3  # of a row group
 OTHER_FILE, COLUMN = 1, 3  # of a column in it
 PATH, SIZE, PAGE, DICTIONARY_PAGE = 3, 7, 9, 11  # of its description: name by name, bytes, and where its pages begin
@@ -21,17 +21,17 @@ UNPACKED, PACKED, DICTIONARY = 2, 3, 7  # of the header of a page; field 1 of th
 STOP, TRUE, FALSE, BYTE, DOUBLE, TEXT, LIST, SET, MAP, STRUCTURE = 0, 1, 2, 3, 7, 8, 9, 10, 11, 12  # types of Thrift
 
 
-def check_columns(file: BinaryIO, names: Collection[str] | None, budget: Budget) -> None:
+def check_columns(file: BinaryIO, names: Collection[str] | None, budget: ReadBudget) -> None:
     """Take from the budget what columns expand to: those of these names and what is nested in them, or all.
 
     Raises:
         RefusedFile: they expand to more than the budget allows, or a page claims what cannot be
         Exception: the file is damaged; any kind
     """
-    file.seek(-END, 2)
+    file.seek(-TAIL_BYTES, 2)
     length = int.from_bytes(file.read(4), "little")
-    file.seek(-END - length, 2)
-    for group in _Reader(file.read(length)).structure()[GROUPS]:
+    file.seek(-TAIL_BYTES - length, 2)
+    for group in _ThriftReader(file.read(length)).structure()[ROW_GROUPS_FIELD]:
         for chunk in group[COLUMNS]:
             if OTHER_FILE in chunk:
                 raise RefusedFile("has a column in another file")
@@ -45,12 +45,12 @@ def check_columns(file: BinaryIO, names: Collection[str] | None, budget: Budget)
                 _check_pages(file, begin, begin + column[SIZE], f"column {path}", budget)
 
 
-def _check_pages(file: BinaryIO, place: int, end: int, what: str, budget: Budget) -> None:
+def _check_pages(file: BinaryIO, place: int, end: int, what: str, budget: ReadBudget) -> None:
     """Take from the budget what the pages between two places expand to."""
     while place < end:
         budget.take_node()
         file.seek(place)
-        reader = _Reader(file.read(MAX_HEADER))
+        reader = _ThriftReader(file.read(MAX_HEADER))
         header = reader.structure()
         unpacked, packed, values = header[UNPACKED], header[PACKED], header.get(DICTIONARY, {}).get(1, 0)
         if min(unpacked, packed) < 0 or values > unpacked:
@@ -59,7 +59,7 @@ def _check_pages(file: BinaryIO, place: int, end: int, what: str, budget: Budget
         place += reader.place + packed
 
 
-class _Reader:
+class _ThriftReader:
     """Reads the compact protocol of Thrift."""
 
     def __init__(self, data: bytes) -> None:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from strainwave.files.budget import RefusedFile, budget_of, open_regular
 from strainwave.files.labels import (
+    ColumnSource,
     Content,
     Label,
-    Source,
     check_names,
     label_of,
     read_by_others,
@@ -61,12 +61,12 @@ class ParquetTable:
     def contents(self) -> list[Content]:
         return [_content(field.type) for field in self.schema]
 
-    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """The columns wanted, which must be numbers."""
         table = self._read(sources, ("numbers",))
         return {source.name: self._numbers(table, source.position) for source in sources}
 
-    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds; and what was left out."""
         table = self._read(sources, ("numbers", "dates"))
         contents = self.contents
@@ -81,7 +81,7 @@ class ParquetTable:
     def place(self, row: int) -> str:
         return f"row {row}"
 
-    def _read(self, sources: Sequence[Source], allowed: Sequence[Content]) -> pyarrow.Table:
+    def _read(self, sources: Sequence[ColumnSource], allowed: Sequence[Content]) -> pyarrow.Table:
         wanted = [self.schema.field(source.position) for source in sources]
         for field in wanted:
             if (count := len(self.schema.get_all_field_indices(field.name))) > 1:

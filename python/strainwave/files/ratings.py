@@ -1,4 +1,4 @@
-"""What the maker of a gear allows, beside what a recording shows."""
+"""Limits by the maker of a gear, compared with a recording."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class RatingCheck:
 
     @property
     def exceeded(self) -> bool:
-        """Whether the recording went beyond the limit."""
+        """True if the recording exceeded the limit."""
         return self.reached > self.limit.value
 
     def __str__(self) -> str:
@@ -133,7 +133,7 @@ def warn_of_ratings(model: Drive | GearSet, run: Recording) -> None:
 
 
 def _check(name: str, limit: Quantity, recording: Recording) -> RatingCheck | None:
-    """The check of one limit; None where it is none of this kind, or the recording cannot tell."""
+    """Return the check of one limit; None if it is none of this kind, or the recording lacks the quantity."""
     measure = _LARGEST.get(name, _MEAN.get(name))
     measured = None if measure is None else measure(recording)
     if measured is None:

@@ -370,7 +370,7 @@ def check_recording(name: str, value: object) -> None:
 
 
 class _Fault(NamedTuple):
-    """What is wrong with a value, and where."""
+    """A fault of a value: its column, its row and the reason."""
 
     column: str
     row: int

@@ -17,7 +17,7 @@ from strainwave.files.bag_table import open_bag
 from strainwave.files.budget import RefusedFile, open_regular
 from strainwave.files.hdf5_table import open_hdf5
 from strainwave.files.json_table import open_json
-from strainwave.files.labels import Content, Label, Source, sources_of, unreadable
+from strainwave.files.labels import ColumnSource, Content, Label, sources_of, unreadable
 from strainwave.files.matlab_table import open_mat
 from strainwave.files.mdf_table import MAGIC, open_mdf
 from strainwave.files.numpy_table import open_numpy
@@ -34,7 +34,7 @@ class OpenTable(Protocol):
 
     @property
     def file(self) -> str:
-        """How messages call the file."""
+        """Return the name of the file in messages."""
 
     @property
     def title(self) -> str: ...
@@ -48,20 +48,20 @@ class OpenTable(Protocol):
 
     @property
     def contents(self) -> Sequence[Content]:
-        """What each column holds, as its beginning tells."""
+        """Return the content of each column, by its first rows."""
 
-    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """The columns wanted; whatever is no number is refused."""
 
-    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds since the first; in words what was left out."""
 
     def place(self, row: int) -> str:
-        """How to speak of a row, counted from 0."""
+        """Return the name of a row in messages, counted from 0."""
 
 
 def _open_dat(path: str | Path) -> OpenTable:
-    """A file whose suffix says nothing but that it holds data: MDF by its first letters, else text."""
+    """Open a file with a general suffix: MDF by its first letters, else text."""
     try:
         with open_regular(path) as file:
             begin = file.read(8)
@@ -116,7 +116,7 @@ def is_table_of_numbers(path: str | Path) -> bool:
 
 
 class Table(NamedTuple):
-    """What was read: columns by the name wanted, their units, and how to speak of a place in the file."""
+    """Columns read from a file, by their wanted names, with their units and the name of each place in messages."""
 
     columns: dict[str, Array]
     units: dict[str, str]

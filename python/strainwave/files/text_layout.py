@@ -1,4 +1,4 @@
-"""What programs write around a table of text: lines above its header, units below it, lists in one cell, times of day."""
+"""Layouts of text tables: lines above the header, units below it, lists in one cell, times of day."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ NUMBER = re.compile(
 CLOCK = re.compile(  # a time of day, or with a date as controllers and loggers write it
     r"(?:(?P<day>\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})[ T])?(?P<h>\d\d?):(?P<m>\d\d):(?P<s>\d\d(?:[.,]\d{1,9})?)", re.ASCII
 )
-DAY = 86400.0  # s
-SEEN = 100  # lines that show what the rows of a table look like
+SECONDS_PER_DAY = 86400.0  # s
+MAX_LAYOUT_LINES = 100  # lines that determine the layout of a table
 MAX_LINE_BYTES = 2**20  # which is what Arrow reads at a time; a line must fit into it
 SCOPE_KEYS = ("data-type", "sampletime[ms]", "symbolname", "unit")  # first cells of the rows of a scope of TwinCAT
 NOT_FINITE = ("inf", "+inf", "-inf", "nan", "-nan")  # in small letters, as numbers in a table without names
@@ -35,13 +35,13 @@ _LIST = re.compile(rb"""["']?(?:array\((?:'d', *)?)?[\[(](\s*(?:[-+.\d']|nan)[^\
 
 
 def lines_above(data: bytes) -> int:
-    """How many bytes stand above the header of a table, as a recorder writes what it is and when; 0 where it is the first line.
+    """Return the bytes above the header of a table, where recorders write remarks; 0 if the header is the first line.
 
     >>> lines_above(b"Recorder: X\\n\\ntime,torque\\n0,1\\n1,2\\n")
     13
     """
     begin = data if len(data) <= MAX_LINE_BYTES else data[: data.rfind(b"\n", 0, MAX_LINE_BYTES) + 1]
-    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", begin), SEEN)]
+    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", begin), MAX_LAYOUT_LINES)]
     for mark in "\t;,":
         cells = [[cell.strip(' "') for cell in text.split(mark)] for _, text in lines]
         usual = len(cells[-1]) if cells else 0
@@ -82,7 +82,7 @@ def scope_header(data: bytes) -> ScopeHeader | None:
     ['time [ms]', 'Pos [°]', 'Torque']
     """
     begin = data if len(data) <= MAX_LINE_BYTES else data[: data.rfind(b"\n", 0, MAX_LINE_BYTES) + 1]
-    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", begin), SEEN)]
+    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", begin), MAX_LAYOUT_LINES)]
     for mark in "\t;,":
         rows = [[cell.strip(' "') for cell in text.split(mark)] for _, text in lines]
         keys = [row[0].casefold() for row in rows]
@@ -202,10 +202,12 @@ def seconds_of_clock(texts: Sequence[str | None]) -> Array:
     for row, text in enumerate(texts):
         if text is not None and (match := CLOCK.fullmatch(text.strip())):
             seconds = 3600.0 * int(match["h"]) + 60.0 * int(match["m"]) + float(match["s"].replace(",", "."))
-            found[row] = DAY * _day(match["day"]) + seconds
+            found[row] = SECONDS_PER_DAY * _day(match["day"]) + seconds
     there = np.isfinite(found)
     if there.any():
-        later = np.cumsum(np.where(np.diff(found[there], prepend=found[there][0]) < -0.5 * DAY, DAY, 0.0))
+        later = np.cumsum(
+            np.where(np.diff(found[there], prepend=found[there][0]) < -0.5 * SECONDS_PER_DAY, SECONDS_PER_DAY, 0.0)
+        )
         found[there] += later - found[there][0]
     return found
 

@@ -17,7 +17,16 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import RefusedFile, read_regular
-from strainwave.files.labels import MAX_NAME, Content, Label, Source, check_names, labels_of, seconds_since_first, unreadable
+from strainwave.files.labels import (
+    MAX_NAME,
+    ColumnSource,
+    Content,
+    Label,
+    check_names,
+    labels_of,
+    seconds_since_first,
+    unreadable,
+)
 from strainwave.files.text_layout import (
     CLOCK,
     MAX_LINE_BYTES,
@@ -41,7 +50,7 @@ TITLE = "# title: "
 
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
-_SEEN = 1000  # rows that tell what a column holds
+_MAX_CONTENT_ROWS = 1000  # rows that determine the content of a column
 MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells are texts before they are numbers
 
 
@@ -192,7 +201,7 @@ class CsvTable:
     left_out: Sequence[str] = ()
     is_scope: bool = False
 
-    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """The columns wanted; a cell that is no number is refused with its place."""
         import pyarrow
 
@@ -208,14 +217,14 @@ class CsvTable:
 
     @property
     def contents(self) -> list[Content]:
-        """What the first rows hold, where anything is written in them."""
+        """Return the content of each column by the cells of the first rows that are not empty."""
         seen: list[list[str]] = [[] for _ in self.labels]
-        for line, text in islice(self._rows(), _SEEN):
+        for line, text in islice(self._rows(), _MAX_CONTENT_ROWS):
             for cells, cell in zip(seen, self._cells(line, text), strict=False):
                 cells.append(cell.strip(" \t"))
         return [_content([cell for cell in cells if cell not in NOTHING]) for cells in seen]
 
-    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds since the first; and what was left out.
 
         A last row that ends too early is left out: its writer was stopped.
@@ -262,7 +271,7 @@ class CsvTable:
             yield line, [cell.strip(" \t") for cell in cells]
 
     def place(self, row: int) -> str:
-        """Where a row of numbers stands in the file."""
+        """Return the line of a row of numbers in the file, in words."""
         line, _ = next(islice(self._rows(), row, None))
         return f"line {line}"
 
@@ -273,7 +282,11 @@ class CsvTable:
             raise ValueError(f"{self.file} line {line}: a quoted cell must end with its quote, on the same line")
 
     def _parse(
-        self, sources: Sequence[Source], decimal_mark: str, nothing: Sequence[str] = (), dates: Sequence[Source] = ()
+        self,
+        sources: Sequence[ColumnSource],
+        decimal_mark: str,
+        nothing: Sequence[str] = (),
+        dates: Sequence[ColumnSource] = (),
     ) -> dict[str, Array]:
         """The columns as Arrow reads them: nan for what means nothing, seconds for dates."""
         import pyarrow
@@ -300,17 +313,19 @@ class CsvTable:
         found = {name: table.column(key) for name, key in keys.items()}
         return {name: _seconds(column) if name in seconds else column.to_numpy() for name, column in found.items()}
 
-    def _date_type(self, source: Source) -> pyarrow.DataType:
+    def _date_type(self, source: ColumnSource) -> pyarrow.DataType:
         """A time stamp, with the zone, if the first one has one; a text, where it is none that Arrow reads."""
         import pyarrow
 
-        cells = (self._cells(line, text)[source.position].strip(" \t") for line, text in islice(self._rows(), _SEEN))
+        cells = (
+            self._cells(line, text)[source.position].strip(" \t") for line, text in islice(self._rows(), _MAX_CONTENT_ROWS)
+        )
         written = next(cell for cell in cells if cell not in NOTHING)
         if not _DATE.fullmatch(written):
             return pyarrow.string()
         return pyarrow.timestamp("ns", "UTC" if re.search(r"(?:Z|[+-]\d\d:?\d\d)$", written) else None)
 
-    def _fault(self, sources: Sequence[Source], nothing: Sequence[str] = ()) -> str | None:
+    def _fault(self, sources: Sequence[ColumnSource], nothing: Sequence[str] = ()) -> str | None:
         """The first row or cell that cannot be read."""
         marks = "." if self.delimiter == "," else ".,"
         for line, text in self._rows():
@@ -357,7 +372,7 @@ def _content(cells: Sequence[str]) -> Content:
 
 
 def _seconds(column: pyarrow.ChunkedArray) -> Array:
-    """Of dates or times of day, since the first that is written."""
+    """Return the seconds of dates or times of day since the first one."""
     import pyarrow
 
     if pyarrow.types.is_string(column.type):
@@ -366,7 +381,7 @@ def _seconds(column: pyarrow.ChunkedArray) -> Array:
 
 
 def _quotation_fault(text: memoryview, delimiter: str) -> int | None:
-    """Where the first cell begins that a quote opens, and none closes before the next delimiter or line end."""
+    """Return the place of the first quote that is not closed before the next delimiter or line end; None if there is none."""
     end = rb"[\n%b]" % re.escape(delimiter.encode())
     other = rb"[^\n%b]" % re.escape(delimiter.encode())
     quoted_cell = rb'(?<!%b)"(?:[^"\n]++|"")*+"(?=%b|\Z)' % (other, end)

@@ -1,4 +1,4 @@
-"""What is assumed of a strain wave gear whose maker does not say it: the rules of docs/reference/catalogue.md.
+"""Assumptions for figures that the maker of a strain wave gear does not state: the rules of docs/reference/catalogue.md.
 
 Two principles. A typical unit takes half of what the maker bounds. Similar gears of one lubricant have torque, stiffness and
 viscous torque that grow with the cube of the size, and an inertia that grows with its fifth power. `size` is that of the
@@ -15,9 +15,9 @@ ARCMIN = radians(1.0 / 60.0)
 UNITS_SPREAD = 0.3  # of individual gears about the catalogue's stiffness (Harmonic Drive AG)
 ELEMENTS = (2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)  # stiffness of the Maxwell elements over k1: they slip at w/4, w/2 and w
 DAMPING_RATIO = 0.02
-STARTING = 5.764e-4  # N.m: times size³ over ratio; geometric mean of CSF-17-100 and CSF-25-50
+STARTING_TORQUE = 5.764e-4  # N.m: times size³ over ratio; geometric mean of CSF-17-100 and CSF-25-50
 STARTING_SPREAD = 0.2  # what the rule misses its own two figures by
-VISCOUS = 3.492e-4  # N.m.s/rad: of size 20 at 20 degC, from the no-load running torque of CPL-20-160
+VISCOUS_FRICTION = 3.492e-4  # N.m.s/rad: of size 20 at 20 degC, from the no-load running torque of CPL-20-160
 VISCOUS_SPREAD = 0.5  # assumed: one gear alone was at hand
 ANY_SIZE, ANY_SIZE_SPREAD = (
     25.0,
@@ -57,7 +57,7 @@ ACCURACY = ((17.0, (2.0, 1.2, 1.0)), (32.0, (1.5, 1.0, 0.8)), (float("inf"), (1.
 
 
 def law(name: str, ratio: float) -> Law:
-    """How a figure grows with the size, in the group of the ratio."""
+    """Return the growth of a figure with the size, in the group of the ratio."""
     return LAWS[name][group(ratio)]
 
 
@@ -78,12 +78,12 @@ def transmission_accuracy(size: float, ratio: float) -> float:
 
 def starting_torque(size: float, ratio: float) -> float:
     """Torque that starts the wave generator [N.m]: at the output it grows like the torque capacity."""
-    return STARTING * size**3 / ratio
+    return STARTING_TORQUE * size**3 / ratio
 
 
 def viscous(size: float) -> float:
     """Viscous friction of the wave generator [N.m.s/rad] at 20 degC."""
-    return VISCOUS * (size / 20.0) ** 3
+    return VISCOUS_FRICTION * (size / 20.0) ** 3
 
 
 def damping(k1: float, ratio: float, inertia: float) -> float:
@@ -93,7 +93,7 @@ def damping(k1: float, ratio: float, inertia: float) -> float:
 
 @dataclass(frozen=True)
 class Divided:
-    """What a maker states of a whole gear, divided between its spring and its hysteresis.
+    """Figures of a whole gear, divided between its spring and its hysteresis.
 
     Attributes:
         k1: first slope of the spring [N.m/rad]
@@ -110,7 +110,7 @@ class Divided:
 
     @classmethod
     def of(cls, k1: float, t1: float, t2: float, loss: float) -> Divided:
-        """Of secant K1 up to T1, and the bound on the hysteresis loss; docs/reference/catalogue.md derives it.
+        """Divide secant K1 up to T1 and the bound on the hysteresis loss; docs/reference/catalogue.md derives it.
 
         The gear reaches T1 at the twist T1/K1 when it is loaded for the first time, and its loop is half as wide as the bound.
 
@@ -126,5 +126,5 @@ class Divided:
 
 
 def mean_size(values: dict[str, float], ratio: float) -> float:
-    """The size that figures speak for: the geometric mean of what each says."""
+    """Return the geometric mean of the sizes by each figure."""
     return exp(sum(log(law(name, ratio).size(value)) for name, value in values.items()) / len(values))

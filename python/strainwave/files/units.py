@@ -58,7 +58,7 @@ _DEFINITIONS = (
     "pixel = [pixel] = px",  # of an image
 )
 
-_LONGEST = 100  # characters of a unit: a bound for the work that a text from outside can cause
+_MAX_UNIT_CHARACTERS = 100  # a bound for the work that a text from outside can cause
 
 _CHARACTERS = str.maketrans(
     {"°": "deg", "\u2032": "arcmin", "\u2033": "arcsec", "Ω": "Ohm", "\u2126": "Ohm", "µ": "u", "\u03bc": "u"}
@@ -80,7 +80,7 @@ _OF_ARC = re.compile(
 )
 _PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s"}  # as the data sheets of sensors write them
 
-# What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
+# Counts of an encoder with the counts of one revolution: counts/16384, inc/4096/s.
 _COUNTED = re.compile(
     r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII | re.IGNORECASE
 )
@@ -176,7 +176,7 @@ def _turning(unit: pint.Unit, other: pint.Unit) -> pint.Unit:
 
 
 def _reason(source: pint.Unit, target: pint.Unit) -> str:
-    """Why a frequency is no angular speed; nothing for other units."""
+    """Return the reason why a frequency is no angular speed; empty for other units."""
     if [unit.dimensionality for unit in (source, target)] == [_parse(unit).dimensionality for unit in ("1/s", "rad/s")]:
         return ": it may count revolutions or radians; write rev/s or rad/s"
     return ""
@@ -259,8 +259,8 @@ def check(unit: str) -> str:
             raise ValueError(f"unit {quoted(unit)}: the rated value must be larger than 0")
         return f"{'%' if _SHARES[share[1]] == 1e-2 else 'permille'} of {share[2]} {check(share[3])}"
     standard = _spelling(_parse(unit))
-    if len(standard) > _LONGEST:
-        raise ValueError(f"unit {quoted(unit)} has more than {_LONGEST} characters in standard spelling")
+    if len(standard) > _MAX_UNIT_CHARACTERS:
+        raise ValueError(f"unit {quoted(unit)} has more than {_MAX_UNIT_CHARACTERS} characters in standard spelling")
     return standard
 
 
@@ -308,8 +308,8 @@ def _text(unit: str) -> str:
 
 
 def _parse(unit: str) -> pint.Unit:
-    if len(_text(unit)) > _LONGEST:
-        raise ValueError(f"unit {quoted(unit)} has {len(unit)} characters; at most {_LONGEST} are allowed")
+    if len(_text(unit)) > _MAX_UNIT_CHARACTERS:
+        raise ValueError(f"unit {quoted(unit)} has {len(unit)} characters; at most {_MAX_UNIT_CHARACTERS} are allowed")
     return _parsed(unit)
 
 

@@ -10,19 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.budget import Budget, RefusedFile
+from strainwave.files.budget import ReadBudget, RefusedFile
 from strainwave.files.labels import check_names, label_of
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
 
-MANY = 100  # columns of a matrix: more are no channels
-DEPTH = 6  # of structures in structures: a bound for the work that a file from outside can cause
-NUMBERS_OF_SCOPE = ".signals.values"  # as Simulink saves what it shows, with the time beside it
+MAX_MATRIX_COLUMNS = 100  # more columns are no channels
+MAX_NESTING = 6  # structures in structures: a bound for the work that a file from outside can cause
+NUMBERS_OF_SCOPE = ".signals.values"  # as Simulink saves a scope, with a series of the time
 
 
 class Unreadable(NamedTuple):
-    """What stands in a file, but only the program reads that wrote it."""
+    """A variable of a file that only the program can read that wrote it."""
 
     what: str
 
@@ -33,12 +33,12 @@ def object_of_matlab(kind: str) -> Unreadable:
     return Unreadable(f"an object of MATLAB ({kind}), which MATLAB alone reads: {save}")
 
 
-def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: Budget) -> ArrayTable:
+def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: ReadBudget) -> ArrayTable:
     """The series that are of the length most of them have.
 
     A series is a variable, or a field of a structure, as `data.q`; a matrix holds several, `q_1`, `q_2` …, and one without a
     name `column_1`, `column_2` … Of structures that are alike, as of several runs, the longest is taken. Series of another
-    length are told of and left out.
+    length are left out with a remark.
 
     Raises:
         ValueError: there is no series of numbers, or the series take more than the budget allows
@@ -65,7 +65,9 @@ def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: Budget) ->
     return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles)
 
 
-def _series(name: str, value: Any, left_out: list[str], budget: Budget, depth: int = DEPTH) -> Iterator[tuple[str, Array]]:
+def _series(
+    name: str, value: Any, left_out: list[str], budget: ReadBudget, depth: int = MAX_NESTING
+) -> Iterator[tuple[str, Array]]:
     """The series that a variable holds."""
     budget.take_node()
     budget.take_bytes(len(name), "the names of its variables")
@@ -82,7 +84,9 @@ def _series(name: str, value: Any, left_out: list[str], budget: Budget, depth: i
         yield from _matrix(name.removesuffix(NUMBERS_OF_SCOPE), value, budget)
 
 
-def _several(name: str, values: Sequence[Any], left_out: list[str], budget: Budget, depth: int) -> Iterator[tuple[str, Array]]:
+def _several(
+    name: str, values: Sequence[Any], left_out: list[str], budget: ReadBudget, depth: int
+) -> Iterator[tuple[str, Array]]:
     """The series in a list: of structures that are alike the longest, of signals each by its label, else each by its number."""
     structures = [each for each in values if isinstance(each, Mapping)]
     if len(structures) > 1 and len({tuple(each) for each in structures}) == 1 and "values" not in structures[0]:
@@ -100,7 +104,7 @@ def _several(name: str, values: Sequence[Any], left_out: list[str], budget: Budg
             yield from _series(name if len(values) == 1 else f"{name}_{number}", each, left_out, budget, depth)
 
 
-def _matrix(name: str, value: Any, budget: Budget) -> Iterator[tuple[str, Array]]:
+def _matrix(name: str, value: Any, budget: ReadBudget) -> Iterator[tuple[str, Array]]:
     """The series that an array of numbers holds."""
     array = np.asarray(value)
     if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size == 0:
@@ -109,8 +113,8 @@ def _matrix(name: str, value: Any, budget: Budget) -> Iterator[tuple[str, Array]
         budget.take_bytes(8 * array.size, "its numbers")
     matrix = np.atleast_2d(array.astype(float, copy=False))
     columns = matrix.T if matrix.shape[0] < matrix.shape[1] else matrix
-    budget.take_bytes(min(columns.shape[1], MANY) * len(name), "the names of its columns")
+    budget.take_bytes(min(columns.shape[1], MAX_MATRIX_COLUMNS) * len(name), "the names of its columns")
     if columns.shape[1] == 1:
         yield name or "column_1", columns[:, 0]
-    elif columns.shape[1] <= MANY:
+    elif columns.shape[1] <= MAX_MATRIX_COLUMNS:
         yield from ((f"{name or 'column'}_{number}", columns[:, number - 1]) for number in range(1, columns.shape[1] + 1))

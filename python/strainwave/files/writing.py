@@ -1,4 +1,4 @@
-"""Files that are whole or not there at all. docs/reference/files.md says what is promised of them."""
+"""Atomic writing of files: whole or not there at all. docs/reference/files.md states the guarantees."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from uuid import uuid4
 
 from strainwave.messages import one_line
 
-DRAFT = ".strainwave-"  # how the names of files begin that are still being written
-written: list[Path] = []  # folders and files that hold results of the command of this process by now, told at an interrupt
+DRAFT = ".strainwave-"  # beginning of the names of files that are still being written
+written: list[Path] = []  # folders and files with results of this process' command, listed at an interrupt
 
 
 @contextmanager
@@ -26,7 +26,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
     A link is followed. A device or a FIFO is written to as it is.
 
     Raises:
-        OSError: the file cannot be written; says which, and why
+        OSError: the file cannot be written; the message names it and the reason
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -42,12 +42,12 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
 
 
 def write_all(contents: Mapping[Path, str | bytes]) -> None:
-    """Writes texts or bytes to files, all or none: every one is complete beside its place before the first is put there.
+    """Write texts or bytes to files, all or none: all are complete under other names before the first replaces its target.
 
     Who else writes to the same folders in this way waits, so that the files of two writers are not mixed.
 
     Raises:
-        OSError: a file cannot be written; says which, and why
+        OSError: a file cannot be written; the message names it and the reason
     """
     with ExitStack() as stack:
         drafts = {}
@@ -71,7 +71,7 @@ def write_folder(folder: Path, contents: Mapping[str, str | bytes]) -> None:
         contents: by the path of the file in the folder
 
     Raises:
-        OSError: folder or file cannot be written; says which, and why
+        OSError: folder or file cannot be written; the message names it and the reason
     """
     heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
@@ -90,7 +90,7 @@ def making(folder: Path) -> Iterator[None]:
     """Makes a folder and those above it; those that it made are taken away again where what follows fails.
 
     Raises:
-        OSError: the folder cannot be made; says why
+        OSError: the folder cannot be made; the message gives the reason
     """
     new: list[Path] = []
     try:
@@ -101,7 +101,7 @@ def making(folder: Path) -> Iterator[None]:
         except FileExistsError:
             raise FileExistsError(one_line(f"{folder} is a file where a folder is to be made; give another name")) from None
         except OSError as error:
-            raise _said(f"{folder} cannot be made", error) from None
+            raise _explained(f"{folder} cannot be made", error) from None
         yield
     except BaseException:
         for each in new:
@@ -132,8 +132,8 @@ def remove_drafts(folder: Path) -> None:
 
 
 @dataclass(frozen=True)
-class _Beside:
-    """A file that is written beside its place."""
+class _Draft:
+    """A file that is written under another name in its folder."""
 
     file: BinaryIO
     target: Path
@@ -152,7 +152,7 @@ class _Beside:
 
 @dataclass(frozen=True)
 class _Through:
-    """What takes bytes as they come."""
+    """Writer that passes bytes on as they come."""
 
     file: BinaryIO
 
@@ -164,7 +164,7 @@ class _Through:
 
 
 @contextmanager
-def _draft(path: Path) -> Iterator[_Beside | _Through]:
+def _draft(path: Path) -> Iterator[_Draft | _Through]:
     _check_name(path)
     target = Path(os.path.realpath(path))
     try:
@@ -183,7 +183,7 @@ def _draft(path: Path) -> Iterator[_Beside | _Through]:
         try:
             if found is not None:
                 _adopt(file, found)
-            yield _Beside(file, target)
+            yield _Draft(file, target)
         finally:
             Path(file.name).unlink(missing_ok=True)
 
@@ -196,7 +196,7 @@ def _check_name(path: Path) -> None:
 
 
 def _stream(path: Path, found: os.stat_result) -> BinaryIO | None:
-    """What stands at a path, to be written to as it is; nothing if it is a regular file."""
+    """Open a device or FIFO at a path for writing; None if the path is a regular file."""
     for descriptor in (1, 2):  # a shell's redirection must not be replaced under its hands
         with suppress(OSError):  # closed
             if os.path.samestat(found, os.fstat(descriptor)):
@@ -248,14 +248,14 @@ def _locked(folder: Path, how: int) -> Iterator[None]:
 
 @contextmanager
 def _named(path: str | Path) -> Iterator[None]:
-    """Says of what goes wrong which file was to be written."""
+    """Add the name of the file to an error of writing."""
     try:
         yield
     except OSError as error:
-        raise _said(f"{path} cannot be written", error) from None
+        raise _explained(f"{path} cannot be written", error) from None
 
 
-def _said(what: str, error: OSError) -> OSError:
-    said = type(error)(one_line(f"{what}: {error.strerror or error}"))
-    said.errno = error.errno  # for whoever asks for it: the message stays as it is
-    return said
+def _explained(what: str, error: OSError) -> OSError:
+    explained = type(error)(one_line(f"{what}: {error.strerror or error}"))
+    explained.errno = error.errno  # for a caller that reads it: the message stays as it is
+    return explained

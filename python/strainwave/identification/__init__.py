@@ -1,1 +1,1 @@
-"""Identification: what measurements say of a gear, and how sure they are."""
+"""Identification: parameters of a gear from measurements, with their uncertainty."""

@@ -118,7 +118,7 @@ def identify(
 
     Raises:
         TypeError: `files` are no paths, or `mapping` is no mapping
-        ValueError: no file, or none that can be used; a file that cannot be used beside others is refused in its result
+        ValueError: no file, or none that can be used; among others, an unusable file is refused in its result
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -163,7 +163,7 @@ def checks_of(start: GearSet, file: Recognised) -> tuple[Check, ...]:
 
 def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[CombinedParameter]) -> tuple[Check, ...]:
     """Return the checks of all files, and of what they determine against the start set and each other."""
-    failed = {each.name for each in results if each.failed}  # these numbers are in doubt already
+    failed = {each.name for each in results if each.failed}  # a check of these numbers has failed already
     return (
         *(check for each in results for check in each.checks), *_nothing_determined(results),
         *with_start_set(start, parameters, failed), *between_files(parameters, results),
@@ -366,7 +366,7 @@ def with_means(known: GearSoFar, parameters: Sequence[CombinedParameter]) -> Gea
                 continue
             try:
                 gear = gear_set.gear.replace({path.removeprefix("gear."): each.estimate.value})
-            except ValueError:  # a mean that the law does not allow beside its other numbers
+            except ValueError:  # a mean that the law does not allow with its other numbers
                 continue
             source = Entry(source=f"identified from the {each.taken_from}", uncertainty=each.estimate.sigma)
             gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, path: source})

@@ -152,7 +152,7 @@ def _asked(question: str, remaining: Sequence[_Reading]) -> str:
         return question
     ways = " or ".join(f"{each.options} ({_described(each)}: {_percent(each)})" for each in remaining)
     head, _, _ = question.partition("; give it")
-    return one_line(f"{head}: the fit does not decide between readings, so say which: {ways}")
+    return one_line(f"{head}: the fit does not decide between readings; select one by {ways}")
 
 
 def _options_of(file: Recognised) -> str:

@@ -15,7 +15,7 @@ from strainwave.messages import one_line
 from strainwave.native import folder as store
 from strainwave.native.compilers import MAX_COMPILE_SECONDS, Compiler, candidates, find_compiler, flags_for
 from strainwave.native.folder import Record, cache_folder
-from strainwave.native.kernel import INCLUDE, Kernel
+from strainwave.native.kernel import INCLUDE_FOLDER, Kernel
 from strainwave.native.private import check_private, make_private
 
 _failed: set[Kernel] = set()  # in this process: none is tried again
@@ -115,10 +115,10 @@ def clear() -> int:
 
 def _shipped(kernel: Kernel) -> Path | None:
     """Return the kernel that the package carries; whoever could change the package itself may have written it."""
-    if not store.SHIPPED.is_dir():
+    if not store.SHIPPED_KERNELS.is_dir():
         return None
     owners = {os.geteuid(), 0, Path(_core.__file__).stat().st_uid}
-    return store.read(store.SHIPPED, kernel.shipped_key(), owners)
+    return store.read(store.SHIPPED_KERNELS, kernel.shipped_key(), owners)
 
 
 def _cached(folder: Path, kernel: Kernel, compilers: Iterable[Compiler]) -> Path | None:
@@ -140,7 +140,7 @@ def _compile(kernel: Kernel, compiler: Compiler, folder: Path, key: str, instruc
     with store.draft(folder) as draft:
         source = draft / "kernel.cpp"
         source.write_text(kernel.source, "utf-8")
-        shared = compiler.build(source, (*flags_for(instruction_set), f"-I{INCLUDE}"))
+        shared = compiler.build(source, (*flags_for(instruction_set), f"-I{INCLUDE_FOLDER}"))
         content = shared.read_bytes()
     seconds = time.perf_counter() - began
     record = Record(kernel.drive, kernel.job, compiler.name, seconds, time.time(), len(content), sha256(content).hexdigest())

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave.native.folder import cache_folder
-from strainwave.native.kernel import INCLUDE, headers_digest
+from strainwave.native.kernel import INCLUDE_FOLDER, headers_digest
 from strainwave.native.private import make_private
 from strainwave.native.static_type import Scalar, static_type
 
@@ -64,7 +64,7 @@ def machine_code(drive: Drive, scalar: Scalar, architecture: str) -> Any:
         raise ImportError(MISSING_PACKAGES) from None
     text = source(drive, scalar)
     options = ProgramOptions(
-        std="c++20", arch=architecture, fma=False, device_as_default_execution_space=True, include_path=[str(INCLUDE)]
+        std="c++20", arch=architecture, fma=False, device_as_default_execution_space=True, include_path=[str(INCLUDE_FOLDER)]
     )
     folder = cache_folder()
     if folder is None:

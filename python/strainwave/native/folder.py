@@ -24,7 +24,7 @@ OFF = "off"
 MAX_CACHE_BYTES = 256_000_000  # of all kernels in the cache
 MAX_DRAFT_SECONDS = 86_400.0  # age of what a killed process left, after which it is removed
 LOCK_POLL_SECONDS = 0.05
-SHIPPED = Path(_core.__file__).parent / "kernels"
+SHIPPED_KERNELS = Path(_core.__file__).parent / "kernels"  # folder
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def tidy(folder: Path, keep: str) -> None:
 
 @contextmanager
 def draft(folder: Path) -> Iterator[Path]:
-    """Make a folder for the files of one compilation beside the kernels, and remove it."""
+    """Make a folder for the files of one compilation in the folder of the kernels, and remove it."""
     with TemporaryDirectory(prefix=DRAFT, dir=folder, ignore_cleanup_errors=True) as name:
         yield Path(name)
 

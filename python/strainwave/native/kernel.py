@@ -10,7 +10,7 @@ from pathlib import Path
 from strainwave import _core
 from strainwave.native.compilers import Compiler, flags_for
 
-INCLUDE = Path(_core.__file__).parent / "include"
+INCLUDE_FOLDER = Path(_core.__file__).parent / "include"  # of the physics headers
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Kernel:
 @cache
 def headers_digest() -> str:
     """Return the digest of the names and contents of all headers."""
-    paths = sorted(INCLUDE.rglob("*.hpp"))
-    return _digest(*(f"{path.relative_to(INCLUDE).as_posix()}\n{path.read_text('utf-8')}" for path in paths))
+    paths = sorted(INCLUDE_FOLDER.rglob("*.hpp"))
+    return _digest(*(f"{path.relative_to(INCLUDE_FOLDER).as_posix()}\n{path.read_text('utf-8')}" for path in paths))
 
 
 def _digest(*texts: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, inf, log, pi, sqrt
 
-from strainwave.orders.lines import Line
+from strainwave.orders.lines import SpectrumLine
 
 RATIOS = range(30, 401)  # of strain wave gears
 USUAL_RATIOS = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # that makers offer, with either spline fixed
@@ -29,7 +29,7 @@ MIN_NEIGHBOUR_SHARE = 0.1  # probability of the neighbour over that of a ratio, 
 
 
 @dataclass(frozen=True)
-class Candidate:
+class RatioCandidate:
     """A ratio that the lines may come from.
 
     Attributes:
@@ -48,7 +48,7 @@ def lowest_usable(resolution: float) -> float:
     return max(MIN_LINE_ORDER, MIN_LINE_PERIODS * resolution)
 
 
-def usable_lines(lines: Sequence[Line], resolution: float) -> list[Line]:
+def usable_lines(lines: Sequence[SpectrumLine], resolution: float) -> list[SpectrumLine]:
     """Return the lines from which a ratio may be found: of this joint, strong, and too fast for the motion of an arm.
 
     Lines of other joints and of time are left out. So are lines that may be those of time or of another joint, unless a line of
@@ -61,7 +61,7 @@ def usable_lines(lines: Sequence[Line], resolution: float) -> list[Line]:
     return [each for each in fast if each.evidence >= MIN_RELATIVE_EVIDENCE * strongest]
 
 
-def candidates(lines: Sequence[Line], resolution: float, highest: float) -> tuple[Candidate, ...]:
+def candidates(lines: Sequence[SpectrumLine], resolution: float, highest: float) -> tuple[RatioCandidate, ...]:
     """Return the most probable ratios whose multiples the order lines of a joint are.
 
     The probability of a ratio follows from Bayes' rule. A line is a wave order or an order of the motor with its prior share,
@@ -85,15 +85,15 @@ def candidates(lines: Sequence[Line], resolution: float, highest: float) -> tupl
     best = max(score for score, _ in scores.values())
     total = sum(exp(score - best) for score, _ in scores.values()) + exp(log(NO_COMB_PRIOR) - best)
     ranked = sorted(scores, key=lambda ratio: -scores[ratio][0])[:MAX_CANDIDATES]
-    return tuple(Candidate(ratio, exp(scores[ratio][0] - best) / total, scores[ratio][1]) for ratio in ranked)
+    return tuple(RatioCandidate(ratio, exp(scores[ratio][0] - best) / total, scores[ratio][1]) for ratio in ranked)
 
 
-def conclusive(found: Sequence[Candidate]) -> tuple[int, ...]:
+def conclusive(found: Sequence[RatioCandidate]) -> tuple[int, ...]:
     """Return the ratio that the candidates determine, or two neighbours: one gear with either spline fixed; else none.
 
-    >>> conclusive([Candidate(101, 0.6, ()), Candidate(100, 0.3, ()), Candidate(50, 0.05, ())])
+    >>> conclusive([RatioCandidate(101, 0.6, ()), RatioCandidate(100, 0.3, ()), RatioCandidate(50, 0.05, ())])
     (100, 101)
-    >>> conclusive([Candidate(44, 0.5, ()), Candidate(22, 0.3, ())])
+    >>> conclusive([RatioCandidate(44, 0.5, ()), RatioCandidate(22, 0.3, ())])
     ()
     """
     if not found:
@@ -108,7 +108,7 @@ def conclusive(found: Sequence[Candidate]) -> tuple[int, ...]:
 
 
 def _explained(
-    ratio: int, lines: Sequence[Line], resolution: float, range_of_logarithms: float
+    ratio: int, lines: Sequence[SpectrumLine], resolution: float, range_of_logarithms: float
 ) -> tuple[float, tuple[tuple[float, float], ...]]:
     """Return the logarithm of the likelihood of a ratio over that of accident, and the order of each line that it explains."""
     total, matched = 0.0, []

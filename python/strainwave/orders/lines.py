@@ -27,7 +27,7 @@ SWIFT_WEIGHT = 0.5  # weight [1] of a sample that counts as moving
 
 
 @dataclass(frozen=True)
-class Part:
+class LinePart:
     """Part of a line that grows with something.
 
     Attributes:
@@ -44,14 +44,14 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Line:
+class SpectrumLine:
     """A line in the spectrum of a series.
 
     Attributes:
         kind: `order` repeats with the angle, `time` with the time (mains, a resonance, a beat of the sampling), `joint` with
             the angle of another joint; `either` if the record does not separate the angle from another explanation
         joint: name of the other joint of a `joint` line, else empty
-        rivals: explanations of an `either` line beside the angle: `time`, or names of joints
+        rivals: other explanations of an `either` line than the angle: `time`, or names of joints
         order: per revolution of the shaft whose angle it is, of a `joint` line per revolution of that joint; of a time line at
             the usual speed
         order_sigma: its standard deviation by noise; a line whose phase changes with the speed, as near a resonance, moves by
@@ -77,7 +77,7 @@ class Line:
     wave_backward: complex = complex("nan")
     sigma: float = 0.0
     per_input: float = float("nan")
-    parts: tuple[Part, ...] = ()
+    parts: tuple[LinePart, ...] = ()
 
     @property
     def forward(self) -> float:
@@ -113,7 +113,7 @@ class LineSearch:
         tested: lines of all spectra
     """
 
-    lines: tuple[Line, ...]
+    lines: tuple[SpectrumLine, ...]
     merged: int
     orders: Spectrum
     floor: Floor
@@ -142,7 +142,7 @@ def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) ->
         lowest, highest: order [1]
         allowed: probability of a false alarm, over all lines tested together
     """
-    kept: list[Line] = []
+    kept: list[SpectrumLine] = []
     left = moving.series
     for _ in range(MAX_LINES):
         spectra = _spectra(moving, left, lowest, highest)
@@ -159,7 +159,7 @@ def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) ->
     return LineSearch(ranked, len(kept) - len(own), spectra.over_angle[0], spectra.floor, left, spectra.tested)
 
 
-def _same(moving: Moving, line: Line, stronger: Line) -> bool:
+def _same(moving: Moving, line: SpectrumLine, stronger: SpectrumLine) -> bool:
     """True if a line only shows that a stronger one varies with speed or load."""
     if (line.kind == "time") != (stronger.kind == "time") or line.joint != stronger.joint:
         return False
@@ -168,7 +168,7 @@ def _same(moving: Moving, line: Line, stronger: Line) -> bool:
     return abs(line.order - stronger.order) * _shaft(moving, line).revolutions < MERGE_PERIODS
 
 
-def _shaft(moving: Moving, line: Line) -> Shaft:
+def _shaft(moving: Moving, line: SpectrumLine) -> Shaft:
     return next(each for each in moving.shafts if each.name == line.joint)
 
 
@@ -187,7 +187,7 @@ def _spectra(moving: Moving, left: Array, lowest: float, highest: float, floor: 
     return _Spectra(floor, tuple(over_angle), time_spectrum_of(weighted, weight, floor, slowest))
 
 
-def _strongest(moving: Moving, spectra: _Spectra) -> Line | None:
+def _strongest(moving: Moving, spectra: _Spectra) -> SpectrumLine | None:
     """Return the line that noise makes with the least probability, with what it may repeat with; none without an order."""
     if not len(spectra.over_angle[0].place):
         return None
@@ -210,7 +210,7 @@ def _strongest(moving: Moving, spectra: _Spectra) -> Line | None:
 
 def _peak_line(
     moving: Moving, shaft: Shaft | None, spectrum: Spectrum, spectra: _Spectra, among: NDArray[np.bool_] | None = None
-) -> Line:
+) -> SpectrumLine:
     """Return the highest peak of a spectrum over the angle of a shaft, or over time without one."""
     place, evidence = _peak(spectrum, among)
     alarm = float(spectrum.false_alarm(evidence, spectra.tested))
@@ -219,7 +219,7 @@ def _peak_line(
     sigma = 1.0 / (np.sqrt(2.0 * max(evidence, 1e-300)) * max(spread_of(along.angle, moving.weight), 1e-300))
     order, frequency = (tau * place / usual, place) if shaft is None else (place, place * usual / tau)
     kind: Kind = "time" if shaft is None else "joint" if shaft.name else "order"
-    return Line(kind, "" if shaft is None else shaft.name, (), order, float(sigma), frequency, evidence, alarm)
+    return SpectrumLine(kind, "" if shaft is None else shaft.name, (), order, float(sigma), frequency, evidence, alarm)
 
 
 def _peak(spectrum: Spectrum, among: NDArray[np.bool_] | None = None) -> tuple[float, float]:
@@ -239,7 +239,7 @@ def _peak(spectrum: Spectrum, among: NDArray[np.bool_] | None = None) -> tuple[f
     return place + shift * float(spectrum.place[1] - spectrum.place[0]), height - 0.25 * (left - right) * shift
 
 
-def _passing(moving: Moving, line: Line, spectra: _Spectra) -> list[Line]:
+def _passing(moving: Moving, line: SpectrumLine, spectra: _Spectra) -> list[SpectrumLine]:
     """Return the highest peak of every other spectrum at frequencies at which the line passes."""
     step = 2.0 / len(moving.series)
     low = high = line.frequency
@@ -267,7 +267,7 @@ def _speeds(moving: Moving, shaft: Shaft) -> tuple[float, float, float]:
     return low, usual, high
 
 
-def _overlap(moving: Moving, line: Line, other: Line, floor: Floor) -> float:
+def _overlap(moving: Moving, line: SpectrumLine, other: SpectrumLine, floor: Floor) -> float:
     """Return the largest squared canonical correlation of the waves of two lines under the noise."""
     bases = []
     for each in (line, other):
@@ -276,7 +276,7 @@ def _overlap(moving: Moving, line: Line, other: Line, floor: Floor) -> float:
     return float(np.linalg.norm(bases[0].T @ bases[1], 2) ** 2)
 
 
-def waves(moving: Moving, line: Line) -> list[Array]:
+def waves(moving: Moving, line: SpectrumLine) -> list[Array]:
     """Return the shapes of a line: cosine and minus sine over angle or time, each direction by itself."""
     if line.kind == "time":
         phase = tau * line.frequency * np.arange(len(moving.series))
@@ -290,7 +290,7 @@ def waves(moving: Moving, line: Line) -> list[Array]:
     return shapes
 
 
-def refitted(moving: Moving, lines: Sequence[Line], floor: Floor) -> tuple[list[Line], Array]:
+def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tuple[list[SpectrumLine], Array]:
     """Fit all lines together. Return them with their amplitudes, and the series without them."""
     shapes = [waves(moving, line) for line in lines]
     flat = np.stack([wave for each in shapes for wave in each], axis=1)

@@ -87,7 +87,7 @@ def orders_found(
         return OrdersFound(name, found, own)
     if effort is None:
         raise ValueError(
-            f"orders need two angles, input_angle and output_angle, or a torque or current beside one angle; there are "
+            f"orders need two angles, input_angle and output_angle, or one angle and a torque or current; there are "
             f"{listed(recording.names)}"
         )
     turning, angle, known, remarks = with_angle(recording, side, rate)

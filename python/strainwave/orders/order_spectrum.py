@@ -86,7 +86,7 @@ def order_amplitudes(recording: Recording, column: str, order: ArrayLike, *, ang
     Raises:
         TypeError: an argument is not of its kind
         ValueError: there is no such column, an order is not positive, the shaft turns back, samples are more than half a cycle
-            apart, or there are fewer revolutions than it takes to tell two orders from each other: 1 / |their difference|
+            apart, or there are fewer revolutions than two orders need to be resolved: 1 / |their difference|
 
     >>> import strainwave as sw
     >>> theta = np.linspace(0.0, 100 * np.pi, 5000)
@@ -207,7 +207,7 @@ def bearing_orders(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: there are fewer than three balls, a diameter is not positive, the balls do not fit beside each other on the
+        ValueError: there are fewer than three balls, a diameter is not positive, the balls do not fit side by side on the
             circle, or the angle lies outside of [0, pi/2)
 
     >>> import strainwave as sw
@@ -265,7 +265,7 @@ def _check_separated(wanted: Array, revolutions: int, angle: str) -> None:
         if needed > revolutions * (1.0 + MAX_ROUNDING):
             two = f"orders {low:g} and {high:g}" if low else f"order {high:g} and the mean"
             raise ValueError(
-                f"to tell {two} from each other takes {needed:.6g} revolutions of {angle}, the recording has {revolutions}; "
+                f"to resolve {two} takes {needed:.6g} revolutions of {angle}, the recording has {revolutions}; "
                 "record longer, or leave one out"
             )
 

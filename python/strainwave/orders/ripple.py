@@ -13,8 +13,17 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed
-from strainwave.orders.comb import RATIOS, Candidate, candidates, conclusive, lowest_usable, usable_lines
-from strainwave.orders.lines import MERGE_PERIODS, MIN_PERIODS, Line, LineSearch, Part, find_lines, waves, weighed_fit
+from strainwave.orders.comb import RATIOS, RatioCandidate, candidates, conclusive, lowest_usable, usable_lines
+from strainwave.orders.lines import (
+    MERGE_PERIODS,
+    MIN_PERIODS,
+    LinePart,
+    LineSearch,
+    SpectrumLine,
+    find_lines,
+    waves,
+    weighed_fit,
+)
 from strainwave.orders.smooth_part import Moving, shaft_of
 from strainwave.orders.turning import Evenly
 
@@ -59,8 +68,8 @@ class Ripple(ComparedByFields):
     column: str
     side: Side
     unit: str
-    lines: tuple[Line, ...]
-    candidates: tuple[Candidate, ...]
+    lines: tuple[SpectrumLine, ...]
+    candidates: tuple[RatioCandidate, ...]
     concluded: tuple[int, ...]
     ratio: float | None
     revolutions: float
@@ -189,7 +198,7 @@ def _check_sampled(shaft: Moving, record: Evenly, side: Side, size: float | None
         )
 
 
-def _line(line: Line, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None) -> Line:
+def _line(line: SpectrumLine, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None) -> SpectrumLine:
     """Return a line with its frequency in Hz, its order of the input, and its parts."""
     by_ratio = np.nan if size is None or line.joint else line.order / size
     return replace(
@@ -200,7 +209,7 @@ def _line(line: Line, shaft: Moving, found: LineSearch, record: Evenly, side: Si
     )
 
 
-def _parts(line: Line, shaft: Moving, found: LineSearch) -> tuple[Part, ...]:
+def _parts(line: SpectrumLine, shaft: Moving, found: LineSearch) -> tuple[LinePart, ...]:
     """Regress a line on what it may grow with: nothing, direction, load, speed squared (physics of the current signature)."""
     weight = shaft.weight
     share = weight / max(float(np.sqrt(np.mean(weight**2))), 1e-300)
@@ -227,7 +236,7 @@ def _parts(line: Line, shaft: Moving, found: LineSearch) -> tuple[Part, ...]:
         pair, within = coefficients[2 * k : 2 * k + 2], covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2]
         evidence = float(pair @ np.asarray(np.linalg.pinv(within)) @ pair)
         alarm = min(1.0, len(found.lines) * len(growing) * float(np.exp(-0.5 * evidence)))
-        parts.append(Part(name, float(np.hypot(*pair)), float(np.sqrt(0.5 * np.trace(within))), alarm))
+        parts.append(LinePart(name, float(np.hypot(*pair)), float(np.sqrt(0.5 * np.trace(within))), alarm))
     return tuple(parts)
 
 
@@ -293,8 +302,10 @@ def _joints(names: Sequence[str]) -> str:
     return f"joint {names[0]}" if len(names) == 1 else f"joints {listed(names)}"
 
 
-def _ratio_remarks(found: LineSearch, likely: Sequence[Candidate], revolutions: float, top: float, shaft: Moving) -> list[str]:
-    """Return what to know of the ratio: why none is concluded, or which one beside it is possible."""
+def _ratio_remarks(
+    found: LineSearch, likely: Sequence[RatioCandidate], revolutions: float, top: float, shaft: Moving
+) -> list[str]:
+    """Return remarks on the ratio: why none is concluded, or which other one is possible."""
     remarks = []
     slow = [line for line in found.lines if line.kind in ("order", "either") and line.order < lowest_usable(1.0 / revolutions)]
     if slow:

@@ -76,7 +76,7 @@ class Regressed:
 
 
 @dataclass(frozen=True)
-class Problem:
+class StageProblem:
     """Series of a record to be compared, all evenly in time.
 
     Args:
@@ -121,7 +121,7 @@ class _Lines:
     loads: Complex
 
     @classmethod
-    def of(cls, problem: Problem) -> _Lines:
+    def of(cls, problem: StageProblem) -> _Lines:
         count = len(problem.error)
         frequency = np.fft.rfftfreq(count)
         kept = (frequency > 0.0) & (frequency < MAX_FREQUENCY)

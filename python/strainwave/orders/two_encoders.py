@@ -22,7 +22,7 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_remarks
-from strainwave.orders.stage import MAX_FREQUENCY, Problem, Regressed
+from strainwave.orders.stage import MAX_FREQUENCY, Regressed, StageProblem
 from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredValue:
     """Value with its standard deviation, in a unit."""
 
     value: float
@@ -91,10 +91,10 @@ class TransmissionError(ComparedByFields):
 
     ratio: Ratio
     orders: tuple[ErrorOrder, ...]
-    lost_motion: Measured | None
-    windup: Measured | None
-    natural_frequency: Measured | None
-    damping_ratio: Measured | None
+    lost_motion: MeasuredValue | None
+    windup: MeasuredValue | None
+    natural_frequency: MeasuredValue | None
+    damping_ratio: MeasuredValue | None
     noise: float
     revolutions: float
     curves: Recording
@@ -168,7 +168,7 @@ def transmission_error(
     found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
-    lost = Measured(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
+    lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
     frequency, damping = _stage_numbers(found, pair.record, every)
     remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen)]
     if not pair.reverses:
@@ -234,7 +234,7 @@ def _regressed(
 ) -> tuple[Regressed, int]:
     """Return the regression, and the number of neighbours averaged in each sample that is compared."""
     every = min(-(-len(pair.input) // MAX_COMPARED), _mean_of(pair.fastest))
-    problem = Problem(
+    problem = StageProblem(
         angle=_means(pair.input / ratio, every),
         error=_means(pair.input / ratio - pair.output, every),
         orders=np.stack([_means(each, every) for each in shapes], axis=1)
@@ -279,7 +279,7 @@ def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: fl
         yield ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
 
 
-def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) -> Measured | None:
+def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) -> MeasuredValue | None:
     """Return the twist per torque or current, fitted with direction, speed and acceleration of the input."""
     if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
         return None
@@ -289,19 +289,19 @@ def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) ->
     speed = pair.speed
     acceleration = smooth_speed(speed, reach)
     loads = np.stack([driven, direction(speed), speed, acceleration], axis=1)
-    found = Problem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
-    return Measured(
+    found = StageProblem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
+    return MeasuredValue(
         float(found.values[0]), float(np.sqrt(found.covariance[0, 0])), f"rad/({unit})" if "." in unit else f"rad/{unit}"
     )
 
 
-def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[Measured | None, Measured | None]:
+def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[MeasuredValue | None, MeasuredValue | None]:
     if found.stage is None or not record.timed:
         return None, None
     hertz = found.stage.frequency / (tau * record.step * every)
     return (
-        Measured(hertz, hertz * found.spread[0], "Hz"),
-        Measured(found.stage.damping, found.stage.damping * found.spread[1], "1"),
+        MeasuredValue(hertz, hertz * found.spread[0], "Hz"),
+        MeasuredValue(found.stage.damping, found.stage.damping * found.spread[1], "1"),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from strainwave import typeset
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, RUNS, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT, RUNS
 from strainwave.files import gear_file
 from strainwave.report import figures
 from strainwave.report.page import render
@@ -74,7 +74,7 @@ def _or_none(value: float, unit: str) -> str:
 
 
 def removed(found: Compensated) -> Iterator[str]:
-    """Yield for each effect what its model removes or adds, beside the model of all other effects."""
+    """Yield for each effect the change by its model, if the models of all other effects are present."""
     setting, figure = found.tried[0].candidate.setting, found.goal.judged_by
     present = tuple(effect for effect in EFFECTS if found.model_of((effect,), setting) is not None)
     whole = found.model_of(present, setting)
@@ -228,7 +228,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "remarks": found.remarks,
             "members": found.members,
             "picture_shows": f"Error of the {'torque' if found.goal.name == 'torque' else 'output'}",
-            "picture": figures.inline(lambda canvas: _errors(canvas, found), (WIDTH, 3.0), "errors", _title(found)),
+            "picture": figures.inline(lambda canvas: _errors(canvas, found), (FIGURE_WIDTH, 3.0), "errors", _title(found)),
         },
         provenance,
     )

@@ -8,7 +8,7 @@ from importlib import metadata
 from math import isfinite
 from typing import Any
 
-from strainwave.diagnose.baseline import Change
+from strainwave.diagnose.baseline import OrderChange
 from strainwave.diagnose.diagnosis import Diagnosis, OrderAgainstNoise, RunDiagnosis
 from strainwave.diagnose.steady_run import ARCMINUTE
 from strainwave.report import diagnose_figures as plots
@@ -102,7 +102,7 @@ def _run_facts(found: RunDiagnosis) -> dict[str, str]:
     return facts
 
 
-def _change(each: Change, unit: str) -> dict[str, str]:
+def _change(each: OrderChange, unit: str) -> dict[str, str]:
     return {
         "order": number(each.order, 5),
         "direction": each.direction,
@@ -250,7 +250,7 @@ def _results(found: Diagnosis) -> dict[str, Any]:
 
 
 def _misalignment(found: RunDiagnosis) -> tuple[str, ...]:
-    """Return the misalignment in words, which begin with its doubts; empty if none was asked for."""
+    """Return the misalignment in words, its warnings first; empty if none was asked for."""
     if found.geometry is None:
         return ()
     return (f"misalignment: {found.geometry.words().removesuffix('.')}",)
@@ -264,7 +264,7 @@ def _misalignment_results(found: RunDiagnosis) -> dict[str, Any] | None:
         "words": found.geometry.words(),
         "m": [end.m for end in found.geometry.ends],
         "size_interval": found.geometry.size_interval,
-        "doubts": found.geometry.doubts,
+        "contradictions": found.geometry.contradictions,
     }
 
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from strainwave.diagnose.baseline import Comparison
+from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.diagnosis import Diagnosis, WaveRipple
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.report import figures
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ DIRECTIONS = (("forward", "model", "o", -0.12), ("backward", "earlier", "s", 0.1
 MAX_CHANGES = 24  # that are drawn
 
 
-def changes_figure(comparison: Comparison, unit: str, name: str) -> str:
+def changes_figure(comparison: BaselineComparison, unit: str, name: str) -> str:
     """Return the figure of the amplitudes of a recording over its orders, with the band that is no alarm."""
     drawn = sorted(comparison.changes[:MAX_CHANGES], key=lambda each: each.order)
     orders = sorted({each.order for each in drawn})
@@ -40,7 +40,7 @@ def changes_figure(comparison: Comparison, unit: str, name: str) -> str:
         axes.set_xticks(range(len(orders)), [f"{order:.5g}" for order in orders], rotation=60)
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.0), name, "Amplitudes of the recording and what the baseline allows")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.0), name, "Amplitudes of the recording and what the baseline allows")
 
 
 def load_figure(wave: WaveRipple, unit: str, name: str) -> str:
@@ -61,7 +61,7 @@ def load_figure(wave: WaveRipple, unit: str, name: str) -> str:
         marks.label_axes(axes, "amplitude", unit, "size of the load", unit)
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 2.6), name, "Ripple of the wave generator over the load")
+    return figures.inline(draw, (FIGURE_WIDTH, 2.6), name, "Ripple of the wave generator over the load")
 
 
 def condition_figure(found: Diagnosis, hours: Sequence[float], name: str) -> str:
@@ -86,4 +86,4 @@ def condition_figure(found: Diagnosis, hours: Sequence[float], name: str) -> str
         marks.label_axes(axes, "indicator", "1", "hours of operation" if timed else "recording", "h" if timed else "1")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 2.6), name, "Health indicator")
+    return figures.inline(draw, (FIGURE_WIDTH, 2.6), name, "Health indicator")

@@ -1,4 +1,4 @@
-"""Errors of a model beside those of simpler ones, as pages and terminals show them."""
+"""Errors of a model and of simpler ones, as pages and terminals show them."""
 
 from __future__ import annotations
 

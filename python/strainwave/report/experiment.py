@@ -1,4 +1,4 @@
-"""Simulated experiments as a report shows them: what a model does under a command, beside published figures."""
+"""Simulated experiments in a report: the response of a model to a command, with published figures."""
 
 from __future__ import annotations
 
@@ -71,6 +71,6 @@ class SimulatedExperiment:
 
     @property
     def comparable(self) -> bool:
-        """Whether command and response are of one unit, so that their difference is an error."""
+        """True if command and response have one unit, so that their difference is an error."""
         first = self.runs[0][1]
         return first.unit(self.command) == first.unit(self.response)

@@ -12,7 +12,7 @@ from strainwave import typeset
 from strainwave.export.exported import Exported
 from strainwave.files.recording import Recording
 from strainwave.report.rig_files import results_json
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 NUMBERS_FILE = "export.json"
@@ -45,13 +45,13 @@ def _table_lines(table: Recording) -> Iterator[str]:
         yield f"({len(shown)} of {len(table)} rows)"
 
 
-def loss_words(loss: Loss) -> str:
+def loss_words(loss: ExportLoss) -> str:
     """Return a loss in one sentence.
 
-    >>> words = loss_words(Loss("loss per cycle", 0.001, 0.001, "J", 0.1, "a torsion loop to 100 N.m"))
+    >>> words = loss_words(ExportLoss("loss per cycle", 0.001, 0.001, "J", 0.1, "a torsion loop to 100 N.m"))
     >>> print(words.replace(NO_BREAK_SPACE, " "))
     loss per cycle: 1 % (1 mJ), over a torsion loop to 100 N.m
-    >>> words = loss_words(Loss("ripple", 0.001, 0.003, "N.m", 0.1, "a turn of the input", "friction"))
+    >>> words = loss_words(ExportLoss("ripple", 0.001, 0.003, "N.m", 0.1, "a turn of the input", "friction"))
     >>> print(words.replace(NO_BREAK_SPACE, " "))
     ripple: 1 % of the friction (1 mN·m, at most 3 mN·m), over a turn of the input
     """

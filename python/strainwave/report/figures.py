@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 from strainwave import Drive
 from strainwave.drawing import marks
-from strainwave.drawing.style import DARK, LIGHT, RUNS, STYLE, WIDTH
+from strainwave.drawing.style import DARK, FIGURE_WIDTH, LIGHT, RUNS, STYLE
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.simulation.signals import outputs
 
@@ -49,11 +49,11 @@ def experiment(simulated: SimulatedExperiment, name: str) -> str:
         marks.label_axes(below, "response − command" if comparable else "command", command_unit, "time", "s")
         marks.legend(figure, response)
 
-    return inline(draw, (WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
+    return inline(draw, (FIGURE_WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
 
 
 def output_name(column: str) -> str:
-    """What a column of a simulation is called in words."""
+    """Return the name of a column of a simulation in words."""
     known = outputs(Drive())
     return known[column].doc if column in known else column.replace("_", " ")
 

@@ -34,7 +34,7 @@ from strainwave.report.provenance import Provenance
 from strainwave.typeset import fixed, interval, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 MIN_WIDENED = 1.05  # factor of the standard deviation of a mean, from which on it is stated
-DIGITS_BESIDE_SPREAD = 4  # of a number beside the scatter of individual gears
+DIGITS_WITH_SPREAD = 4  # of a number that is followed by the scatter of individual gears
 
 
 def identify_report(
@@ -229,7 +229,7 @@ def _start(start: GearSet, estimate: FileEstimate) -> str:
     if entry is None:
         return number(value)
     if entry.spread is not None:
-        return f"{number(value, DIGITS_BESIDE_SPREAD)} ± {number(100.0 * entry.spread, 2)} %"
+        return f"{number(value, DIGITS_WITH_SPREAD)} ± {number(100.0 * entry.spread, 2)} %"
     return number(value) if entry.uncertainty is None else uncertain(value, entry.uncertainty)
 
 
@@ -341,7 +341,7 @@ def _sections(found: Identified, given: Mapping[str, float]) -> Iterator[dict[st
         }
 
 
-# ---- Files beside each other, and experiments --------------------------------------------------------------------------
+# ---- Comparison of files, and experiments --------------------------------------------------------------------------------
 
 
 def _comparisons(found: Identified) -> Iterator[tuple[str, str]]:
@@ -356,16 +356,16 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, str]]:
         yield part.removeprefix("gear.").replace("_", " ").capitalize(), plots.comparison(rows, f"comparison-{place}")
 
 
-def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
+def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.EstimateRow]:
     taken, mean = each.estimate, len(each.mean_of) > 1
     scale = 1.0 if taken.is_phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
     title = f"mean of {len(each.mean_of)} files" if mean else each.source
-    yield plots.Row(title, 0.0, 100.0 * taken.sigma / scale, "value taken")
+    yield plots.EstimateRow(title, 0.0, 100.0 * taken.sigma / scale, "value taken")
     for name in [each.source, *each.others] if mean else each.others:
         other = each.of_file(name)
         agrees = "agrees" if name in each.mean_of else "not counted"
         look = plots.BEYOND if name in each.contradicts else "copy of another" if name in copies else agrees
-        yield plots.Row(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
+        yield plots.EstimateRow(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
 
 
 def _experiments(experiments: Sequence[SimulatedExperiment]) -> Iterator[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Figures of an identification: the estimates of each file beside each other, and each file measured against modelled."""
+"""Figures of an identification: the estimates of all files, and each file measured against modelled."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.picture_plot import (
@@ -41,7 +41,7 @@ LOOKS = {  # of a file in a comparison: mark, colour, whether filled
 
 
 @dataclass(frozen=True)
-class Row:
+class EstimateRow:
     """The estimate of one file, against the value taken.
 
     Attributes:
@@ -57,7 +57,7 @@ class Row:
     look: str
 
 
-def comparison(numbers: Sequence[tuple[str, Sequence[Row]]], name: str) -> str:
+def comparison(numbers: Sequence[tuple[str, Sequence[EstimateRow]]], name: str) -> str:
     """Draw the estimates of each file, each with its interval of 95 %.
 
     Args:
@@ -89,18 +89,18 @@ def comparison(numbers: Sequence[tuple[str, Sequence[Row]]], name: str) -> str:
         _looks_legend(figure, axes, every)
 
     return figures.inline(
-        draw, (WIDTH, 0.75 + ROW_HEIGHT * count), name, "Each parameter by each file, with its interval of 95 %"
+        draw, (FIGURE_WIDTH, 0.75 + ROW_HEIGHT * count), name, "Each parameter by each file, with its interval of 95 %"
     )
 
 
-def _reach(rows: Sequence[Row]) -> float:
+def _reach(rows: Sequence[EstimateRow]) -> float:
     """Return the end of the axis, beyond all values and most of their intervals [%]."""
     values = max(abs(row.off) for row in rows)
     ends = np.quantile([abs(row.off) + NINETY_FIVE * row.sigma for row in rows], WHOLE_QUANTILE, method="higher")
     return 1.15 * max(values, float(ends), 1e-6)
 
 
-def _interval(axes: Axes, row: Row, place: int) -> None:
+def _interval(axes: Axes, row: EstimateRow, place: int) -> None:
     mark, colour, filled = LOOKS[row.look]
     half = NINETY_FIVE * row.sigma
     axes.plot([row.off - half, row.off + half], [place, place], "-", color=LIGHT[colour], linewidth=1.4, solid_capstyle="butt")
@@ -108,7 +108,7 @@ def _interval(axes: Axes, row: Row, place: int) -> None:
     axes.plot([row.off], [place], mark, color=LIGHT[colour], markersize=4.4, **style)
 
 
-def _looks_legend(figure: Figure, axes: Axes, rows: Sequence[Row]) -> None:
+def _looks_legend(figure: Figure, axes: Axes, rows: Sequence[EstimateRow]) -> None:
     for look, (mark, colour, filled) in LOOKS.items():
         if any(row.look == look for row in rows):
             style: dict[str, Any] = {"markerfacecolor": LIGHT[colour] if filled else "none", "markeredgecolor": LIGHT[colour]}
@@ -130,7 +130,7 @@ def file_figure(result: FileResult, picture: Picture, name: str) -> str:
         marks.legend(figure, draw_picture(figure, picture))
 
     title = f", {picture.title}" if picture.title else ""
-    return figures.inline(draw, (WIDTH, 3.9), name, f"Measured against modelled, {result.name}{title}")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.9), name, f"Measured against modelled, {result.name}{title}")
 
 
 def overview(loop: Picture, table: Picture) -> str:

@@ -9,17 +9,24 @@ from typing import Any
 
 from strainwave.files.recording import Recording
 from strainwave.report import influence_figures as plots
-from strainwave.report.influence_claims import ARCMIN, Entry, counts, entries, life, over_size, steps_and_falls
-from strainwave.report.influence_trends import bent_words, chance, change_of, told_of
+from strainwave.report.influence_claims import (
+    InfluenceClaim,
+    counts,
+    entries,
+    life,
+    over_size,
+    steps_and_falls,
+)
+from strainwave.report.influence_trends import bent_words, chance, change_of, trend_words
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
 from strainwave.rig.influence.influence import OWN, SPECIMEN, Influence, Sweep
 from strainwave.rig.influence.series import FACTORS, QUANTITIES
-from strainwave.rig.influence.trend import SHUFFLES, Trend
-from strainwave.typeset import fixed, number, quantity
+from strainwave.rig.influence.trend import SHUFFLE_COUNT, Trend
+from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number, quantity
 
-LINE = 110  # letters of a line on a terminal
+LETTERS_PER_LINE = 110  # on a terminal
 
 
 def influence_report(found: Influence, provenance: Provenance | None = None) -> str:
@@ -53,7 +60,7 @@ def influence_report(found: Influence, provenance: Provenance | None = None) -> 
                 plots.amplitude_figure(found.amplitude[SPECIMEN], "amplitude-specimen"),
             ],
             "levels": [
-                _level_table(f"{found.gear_set.name}, at the output", found.amplitude[OWN], ARCMIN, "′"),
+                _level_table(f"{found.gear_set.name}, at the output", found.amplitude[OWN], ARCMIN_PER_RADIAN, "′"),
                 _level_table("Document T’s gear, at the input", found.amplitude[SPECIMEN], degrees(1.0), "°"),
             ],
             "ratio_figure": plots.ratio_figure(found.rows),
@@ -71,7 +78,7 @@ def influence_report(found: Influence, provenance: Provenance | None = None) -> 
             if series is None
             else [plots.series_figure(series, found.trends, name) for name in FACTORS if name in series.varied],
             "trends": [_trend_row(each) for each in found.trends],
-            "shuffles": SHUFFLES,
+            "shuffles": SHUFFLE_COUNT,
             "numbers": list(numbers({"": found.gear_set})),
             "note": found.gear_set.note,
         },
@@ -80,7 +87,7 @@ def influence_report(found: Influence, provenance: Provenance | None = None) -> 
 
 
 def summary(found: Influence) -> str:
-    """What was found, as lines of text."""
+    """Return the results as lines of text."""
     table, age = entries(found), life(found)
     lines = [f"{found.gear_set.name}: loops up to {quantity(found.torque, 'N.m', 3)} at the output"]
     lines += [", ".join(f"{count} {verdict}" for verdict, count in counts(table))]
@@ -89,9 +96,9 @@ def summary(found: Influence) -> str:
     return "\n".join(lines)
 
 
-def _entry_lines(entry: Entry) -> Iterator[str]:
-    yield from textwrap.wrap(f"{entry.parameter}, {entry.regime}: “{entry.words}”", LINE)
-    inside = textwrap.TextWrapper(LINE, initial_indent="  ", subsequent_indent="  ")
+def _entry_lines(entry: InfluenceClaim) -> Iterator[str]:
+    yield from textwrap.wrap(f"{entry.parameter}, {entry.regime}: “{entry.words}”", LETTERS_PER_LINE)
+    inside = textwrap.TextWrapper(LETTERS_PER_LINE, initial_indent="  ", subsequent_indent="  ")
     yield from inside.wrap(f"{entry.verdict}: {entry.answer}")
     if entry.measured:
         yield from inside.wrap(f"measured, {entry.measured_verdict}: {' '.join(entry.measured)}")
@@ -151,9 +158,9 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
     return {
         "quantity": QUANTITIES[trend.quantity][0],
         "factor": FACTORS[trend.factor].words,
-        "words": f"{change_of(trend)}{bent_words(trend)}" if isfinite(trend.slope.value) else told_of(trend),
+        "words": f"{change_of(trend)}{bent_words(trend)}" if isfinite(trend.slope.value) else trend_words(trend),
         "p": chance(trend.slope.p).removeprefix("= "),
         "corrected": chance(trend.corrected).removeprefix("= "),
         "shuffled": chance(trend.shuffled).removeprefix("= "),
-        "significant": "significant" if trend.significant else "not told",
+        "significant": "significant" if trend.significant else "not significant",
     }

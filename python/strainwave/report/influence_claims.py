@@ -1,4 +1,4 @@
-"""What document T's Table 3 says, each in its words, and what the models and measured series say of it."""
+"""Entries of document T's Table 3, each in its words, with the answers of the models and of measured series."""
 
 from __future__ import annotations
 
@@ -26,21 +26,20 @@ from strainwave.report.influence_trends import (
     UNDECIDABLE,
     by_series,
     percent,
-    told_of,
+    trend_words,
 )
 from strainwave.rig.influence import influence as study
 from strainwave.rig.influence.influence import OWN, SPECIMEN, CatalogueRow, Influence, Sweep, power
-from strainwave.typeset import fixed, number, quantity
+from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number, quantity
 
 Array = NDArray[np.float64]
 
 FAR_BELOW = 0.5  # ratio of stiffnesses: "remains low relative to", where document T speaks of an order of magnitude
 FIRST_SHARED_RATIO = 80  # ratio from which on the catalogue states one stiffness of a size for all ratios
-ARCMIN = 180.0 * 60.0 / np.pi
 
 
 @dataclass(frozen=True)
-class Entry:
+class InfluenceClaim:
     """A statement of Table 3, whether it holds, and why.
 
     Attributes:
@@ -60,7 +59,7 @@ class Entry:
     measured: tuple[str, ...] = ()
 
 
-def entries(found: Influence) -> list[Entry]:
+def entries(found: Influence) -> list[InfluenceClaim]:
     """All statements of the table, row by row."""
     rules: list[tuple[str, str, str, Callable[[Influence], tuple[str, str]]]] = [
         (TORQUE, HIGH, "Generally increases with preload, but may saturate.", _torque_high),
@@ -126,21 +125,21 @@ def entries(found: Influence) -> list[Entry]:
         ),
     ]
     return [
-        Entry(parameter, regime, words, *rule(found), *by_series(found, parameter, regime))
+        InfluenceClaim(parameter, regime, words, *rule(found), *by_series(found, parameter, regime))
         for parameter, regime, words, rule in rules
     ]
 
 
-def life(found: Influence) -> Entry | None:
-    """What a series over the age of units says; document T leaves it to future work."""
-    told = [each for each in found.trends if each.factor in ("cycles", "hours")]
-    if not told:
+def life(found: Influence) -> InfluenceClaim | None:
+    """Return the claim about the age of units, which document T leaves to future work; None without such a series."""
+    trends = [each for each in found.trends if each.factor in ("cycles", "hours")]
+    if not trends:
         return None
-    changed = [each for each in told if each.significant and not each.together_with]
+    changed = [each for each in trends if each.significant and not each.together_with]
     verdict = CONFIRMED if changed else UNDECIDABLE
     words = "Future work may focus on … correlating the measured parameters with long-term wear and performance degradation."
     answer = "Document T measured nothing of it, and no model of this package wears."
-    return Entry(LIFE, "All", words, UNDECIDABLE, answer, verdict, tuple(map(told_of, told)))
+    return InfluenceClaim(LIFE, "All", words, UNDECIDABLE, answer, verdict, tuple(map(trend_words, trends)))
 
 
 # ---- Torque level ----------------------------------------------------------------------------------------------------
@@ -148,7 +147,7 @@ def life(found: Influence) -> Entry | None:
 
 def usual(sweep: Sweep, name: str) -> Array:
     """A figure over the torques that document T’s sweep is taken to span."""
-    return np.asarray(sweep[name][sweep.levels >= study.USUAL * sweep.levels[-1] * (1.0 - 1e-9)])
+    return np.asarray(sweep[name][sweep.levels >= study.LOWEST_SHARE * sweep.levels[-1] * (1.0 - 1e-9)])
 
 
 def _rises(values: Array) -> bool:
@@ -162,10 +161,10 @@ def _torque_high(found: Influence) -> tuple[str, str]:
     verdict = CONFIRMED if _rises(high) else CONTRADICTED
     law = found.amplitude[SPECIMEN]["high_stiffness"][-1]
     return verdict, (
-        f"From {percent(study.USUAL)} of {nm(found.torque)} on, the unloading slope goes from {stiff(high[0])} to "
+        f"From {percent(study.LOWEST_SHARE)} of {nm(found.torque)} on, the unloading slope goes from {stiff(high[0])} to "
         f"{stiff(high[-1])}, its power of the torque falling from {number(float(local.max()), 2)} to "
         f"{number(float(local[-1]), 2)}, while in the smallest loop, of {nm(sweep.levels[0])}, it is "
-        f"{stiff(sweep['high_stiffness'][0])}, and document T’s row, one torque, tells one slope only ({stiff(law)})."
+        f"{stiff(sweep['high_stiffness'][0])}, and document T’s row, one torque, gives one slope only ({stiff(law)})."
     )
 
 
@@ -176,7 +175,7 @@ def _torque_low(found: Influence) -> tuple[str, str]:
     parts = [_rises(low), ratio < FAR_BELOW]
     verdict = CONFIRMED if all(parts) else IN_PART if any(parts) else CONTRADICTED
     return verdict, (
-        f"From {percent(study.USUAL)} to all of {nm(found.torque)} the loading slope goes from {stiff(low[0])} to "
+        f"From {percent(study.LOWEST_SHARE)} to all of {nm(found.torque)} the loading slope goes from {stiff(low[0])} to "
         f"{stiff(low[-1])}, which is {number(ratio, 2)} of the unloading slope there; document T’s gear has "
         f"{number(other, 2)}."
     )
@@ -186,13 +185,14 @@ def _torque_area(found: Influence) -> tuple[str, str]:
     sweep, tested = found.amplitude[OWN], found.amplitude[SPECIMEN]
     if sweep["area"].max() == 0.0:
         return UNDECIDABLE, f"{_LOSSLESS} up to {nm(found.torque)}; loops of it at three torques would decide."
-    slope = sweep.exponent("area", study.USUAL * found.torque)
+    slope = sweep.exponent("area", study.LOWEST_SHARE * found.torque)
     still, other = found.lossless[OWN], found.lossless[SPECIMEN]
     begin = f"Nothing is lost up to {quantity(still, 'N.m', 4)}; the" if still > 0.0 else "The"
     return CONFIRMED if _rises(usual(sweep, "area")) else CONTRADICTED, (
         f"{begin} area grows with the power {number(slope.value, 3)} ± {number(slope.half_width, 2)} of the torque from "
-        f"{percent(study.USUAL)} of {nm(found.torque)} on; document T’s gear loses nothing up to {quantity(other, 'N.m', 4)} "
-        f"and no more than {quantity(float(tested['area'].max()), 'J', 4)} once its soft range is used up."
+        f"{percent(study.LOWEST_SHARE)} of {nm(found.torque)} on; document T’s gear loses nothing up to "
+        f"{quantity(other, 'N.m', 4)} and no more than {quantity(float(tested['area'].max()), 'J', 4)} once its soft range is "
+        "used up."
     )
 
 
@@ -242,7 +242,7 @@ def over_size(rows: tuple[CatalogueRow, ...], ratio: int, name: str) -> tuple[fl
 def _ratio_low(found: Influence) -> tuple[str, str]:
     knee, half = over_size(found.rows, 100, "t1")
     stiffness, other = over_size(found.rows, 100, "k1")
-    turns = [ARCMIN * row.t1 / row.k1 for row in found.rows if row.ratio == 100]
+    turns = [ARCMIN_PER_RADIAN * row.t1 / row.k1 for row in found.rows if row.ratio == 100]
     return CONFIRMED if knee - half > 0.0 else CONTRADICTED, (
         f"The soft first range of the catalogue ends at T₁ ~ size^({fixed(knee, 2)} ± {fixed(half, 2)}) with "
         f"K₁ ~ size^({fixed(stiffness, 2)} ± {fixed(other, 2)}), so it scales as a torque, while as an angle it is "
@@ -251,7 +251,7 @@ def _ratio_low(found: Influence) -> tuple[str, str]:
 
 
 def _ratio_width(found: Influence) -> tuple[str, str]:
-    bounds = {row.ratio: 2.0 * ARCMIN * row.width for row in sorted(found.rows, key=lambda row: row.ratio)}
+    bounds = {row.ratio: 2.0 * ARCMIN_PER_RADIAN * row.width for row in sorted(found.rows, key=lambda row: row.ratio)}
     low, rest = bounds[min(bounds)], {round(value, 1) for ratio, value in bounds.items() if ratio != min(bounds)}
     return UNDECIDABLE, (
         f"The maker states only bounds, {number(low, 2)}′ at ratio {min(bounds)} and "
@@ -292,7 +292,7 @@ def _yielding(_: Influence) -> tuple[str, str]:
 
 
 def loss_factor(sweep: Sweep) -> float:
-    """Of the largest loop: area over 2 pi times the energy of a spring from its middle to its peak."""
+    """Return the loss factor of the largest loop: area over 2 pi times a spring's energy from its middle to its peak."""
     peak = sweep.levels[-1]
     return float(sweep["area"][-1] / (np.pi * peak**2 / sweep["stiffness"][-1]))
 
@@ -302,8 +302,8 @@ def _damping(found: Influence) -> tuple[str, str]:
     here = f"{percent(study.LOSS_FACTOR / own)} of this gear’s loop and " if own > 0.0 else ""
     return UNDECIDABLE, (
         f"A loss factor of steel of {number(study.LOSS_FACTOR, 1)} (order of magnitude) would make {here}"
-        f"{percent(study.LOSS_FACTOR / tested)} of document T’s, which no loop tells from friction; loops too small to slip "
-        "would decide."
+        f"{percent(study.LOSS_FACTOR / tested)} of document T’s, which no loop separates from friction; loops too small to "
+        "slip would decide."
     )
 
 
@@ -397,7 +397,7 @@ def _warm_area(found: Influence) -> tuple[str, str]:
 
 
 def _at(sweep: Sweep, level: float) -> int:
-    """Where a level stands in a sweep."""
+    """Return the index of a level in a sweep."""
     return int(np.argmin(np.abs(sweep.levels - level)))
 
 
@@ -414,7 +414,7 @@ def nm(value: float) -> str:
     return quantity(float(value), "N.m")
 
 
-def counts(found: list[Entry]) -> Iterator[tuple[str, int]]:
-    """How many entries have each verdict, by the models."""
+def counts(found: list[InfluenceClaim]) -> Iterator[tuple[str, int]]:
+    """Return the count of claims with each verdict, by the models."""
     for verdict in (CONFIRMED, IN_PART, CONTRADICTED, UNDECIDABLE):
         yield verdict, sum(each.verdict == verdict for each in found)

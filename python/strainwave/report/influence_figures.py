@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.report import figures
 from strainwave.report.influence_claims import by_size
 from strainwave.rig.influence.cycle import Cycle
 from strainwave.rig.influence.influence import CatalogueRow, Sweep
 from strainwave.rig.influence.series import FACTORS, QUANTITIES, Series
 from strainwave.rig.influence.trend import Trend
-from strainwave.typeset import quantity
+from strainwave.typeset import ARCMIN_PER_RADIAN, quantity
 from strainwave.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
@@ -26,9 +26,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ARCMIN = 180.0 * 60.0 / np.pi
-LARGE = 0.02  # rad: wider loops are drawn in degrees, narrower in minutes of arc
-SMOOTH = 100  # points of the line of a law
+MAX_WIDTH_IN_ARCMIN = 0.02  # rad: wider loops are drawn in degrees, narrower ones in minutes of arc
+LAW_POINTS = 100  # of the line of a law
 MARKS = (("measured", "o"), ("model", "s"), ("held-out", "^"), ("earlier", "D"), ("ink", "v"), ("muted", "P"))
 
 
@@ -46,11 +45,11 @@ def loops_figure(loops: Sequence[Cycle], name: str) -> str:
         marks.label_axes(axes, f"torque on the {where}", "N.m", f"angle of the {where} [{unit}]", "1")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.4), name, "Torsion loops of several torques")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.4), name, "Torsion loops of several torques")
 
 
 def _angles(largest: float) -> tuple[float, str]:
-    return (degrees(1.0), "°") if largest > LARGE else (ARCMIN, "′")
+    return (degrees(1.0), "°") if largest > MAX_WIDTH_IN_ARCMIN else (ARCMIN_PER_RADIAN, "′")
 
 
 def amplitude_figure(sweep: Sweep, name: str) -> str:
@@ -81,7 +80,7 @@ def amplitude_figure(sweep: Sweep, name: str) -> str:
         marks.label_axes(slopes, "stiffness", "N.m/rad", "largest torque", "N.m")
         marks.legend(figure, slopes)
 
-    return figures.inline(draw, (WIDTH, 5.4), name, "Area, width and stiffness of loops over their largest torque")
+    return figures.inline(draw, (FIGURE_WIDTH, 5.4), name, "Area, width and stiffness of loops over their largest torque")
 
 
 def ratio_figure(rows: tuple[CatalogueRow, ...]) -> str:
@@ -103,7 +102,7 @@ def ratio_figure(rows: tuple[CatalogueRow, ...]) -> str:
         input_.set_xlabel("ratio")
         marks.legend(figure, output)
 
-    return figures.inline(draw, (WIDTH, 4.4), "ratio", "First stiffness of catalogue gears over the ratio, by size")
+    return figures.inline(draw, (FIGURE_WIDTH, 4.4), "ratio", "First stiffness of catalogue gears over the ratio, by size")
 
 
 def preload_figure(sweep: Sweep, peak: float, friction: float) -> str:
@@ -120,7 +119,7 @@ def preload_figure(sweep: Sweep, peak: float, friction: float) -> str:
         for axes in (area, width):
             axes.set_ylim(bottom=0.0)
 
-    return figures.inline(draw, (WIDTH, 3.6), "preload", "Area and width of the loop over the friction at the input")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.6), "preload", "Area and width of the loop over the friction at the input")
 
 
 def temperature_figure(sweep: Sweep) -> str:
@@ -139,7 +138,7 @@ def temperature_figure(sweep: Sweep) -> str:
             axes.set_ylim(bottom=0.0)
         marks.legend(figure, slopes)
 
-    return figures.inline(draw, (WIDTH, 3.8), "temperature", "Area and slopes of the loop over the temperature")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.8), "temperature", "Area and slopes of the loop over the temperature")
 
 
 def series_figure(series: Series, trends: Sequence[Trend], factor: str) -> str:
@@ -161,7 +160,7 @@ def series_figure(series: Series, trends: Sequence[Trend], factor: str) -> str:
         panels[-1].set_xlabel(f"{FACTORS[factor].words} {_in_brackets(unit)}".strip())
         marks.legend(figure, panels[0])
 
-    size = (WIDTH, 1.0 + 1.5 * len(quantities))
+    size = (FIGURE_WIDTH, 1.0 + 1.5 * len(quantities))
     return figures.inline(draw, size, f"series-{factor}", f"Measured quantities over {FACTORS[factor].words}")
 
 
@@ -170,7 +169,7 @@ def _trend(trends: Sequence[Trend], factor: str, name: str) -> Trend:
 
 
 def _moved(trend: Trend, to: Array, about: Array) -> Array:
-    """What a trend does to a quantity as its factor moves away from the middle of `about`: added, or to its logarithm."""
+    """Return the change of a quantity, or of its logarithm, by a trend as its factor moves away from the middle of `about`."""
     there, middle = (np.log(to), np.log(about).mean()) if trend.law == "power" else (to, about.mean())
     slope = trend.slope.value if np.isfinite(trend.slope.value) else 0.0
     return np.asarray(slope * (there - middle))
@@ -195,7 +194,7 @@ def _line(axes: Axes, trend: Trend, x: Array, shown: Array, values: Array) -> No
     """The trend through the middle of the points."""
     if not np.isfinite(trend.slope.value):
         return
-    reach = np.linspace(x.min(), x.max(), SMOOTH)
+    reach = np.linspace(x.min(), x.max(), LAW_POINTS)
     effect = _moved(trend, reach, x)
     line = values.mean() + effect if trend.law == "linear" else np.exp(np.log(values).mean() + effect)
     axes.plot(reach + (shown[0] - x[0]), line, color=LIGHT["ink"], linestyle="-" if trend.significant else ":")

@@ -1,4 +1,4 @@
-"""What a measured series says of an entry of document T's Table 3, in words."""
+"""Words on the trends of a measured series, for the entries of document T's Table 3."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def by_series(found: Influence, parameter: str, regime: str) -> tuple[str, tuple
     ]
     if not speaking:
         return "", ()
-    return _verdict(speaking), tuple(told_of(trend) for trend, _ in speaking)
+    return _verdict(speaking), tuple(trend_words(trend) for trend, _ in speaking)
 
 
 def _verdict(speaking: list[tuple[Trend, int]]) -> str:
@@ -55,23 +55,23 @@ def _verdict(speaking: list[tuple[Trend, int]]) -> str:
     return IN_PART if len(holds) == 2 else CONFIRMED if True in holds else CONTRADICTED
 
 
-def told_of(trend: Trend) -> str:
+def trend_words(trend: Trend) -> str:
     """A trend in one sentence, with its interval and its probabilities."""
     name, factor = QUANTITIES[trend.quantity][0], FACTORS[trend.factor]
     if not np.isfinite(trend.slope.value):
         return (
-            f"{name}: {factor.words} changed along with {_factors(trend.together_with)}, so their effects cannot be told apart."
+            f"{name}: {factor.words} changed along with {_factors(trend.together_with)}, so their effects cannot be separated."
         )
     change = change_of(trend)
-    found = f"{name} {change}" if trend.significant else f"{name}: no effect of {factor.words} told; it {change}"
+    found = f"{name} {change}" if trend.significant else f"{name}: no significant effect of {factor.words}; it {change}"
     others = [chance(p).removeprefix("= ") for p in (trend.corrected, trend.shuffled)]
     tests = f"p {chance(trend.slope.p)}; {others[0]} for all tests together; {others[1]} by shuffling; {trend.points} loops"
-    doubt = f"; changed along with {_factors(trend.together_with)}, whose effect it may be" if trend.together_with else ""
-    return f"{found} ({tests}){doubt}{bent_words(trend)}."
+    warning = f"; changed along with {_factors(trend.together_with)}, whose effect it may be" if trend.together_with else ""
+    return f"{found} ({tests}){warning}{bent_words(trend)}."
 
 
 def bent_words(trend: Trend) -> str:
-    """What repeated conditions say against the law, if they do."""
+    """Return the evidence of repeated conditions against the law in words; empty if there is none."""
     if not trend.bent:
         return ""
     scattered = f"loops at equal conditions scatter less than they lie from this law (p {chance(trend.misfit)})"

@@ -23,7 +23,7 @@ from strainwave.messages import one_line
 Row = Sequence[str]
 MIN_CORRELATION = 0.5  # smaller ones are not listed
 NO_FREQUENCY = 1e-7  # relative frequency or damping ratio [1] that counts as none: double zeros have the root of the rounding
-ROUNDING = 1e-12  # of the largest value of a column [1]: smaller values are rounding
+ROUNDING_SHARE = 1e-12  # of the largest value of a column [1]: smaller values are rounding
 
 
 def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> str:
@@ -71,7 +71,7 @@ def difference_table(found: Sequence[Difference]) -> str:
     rows = [("", "first", "second", "unit", "change")]
     for each in found:
         change = "" if each.change is None else f"{100.0 * each.change:+.3g} %"
-        rows.append((each.path, *each.told, "" if each.unit == "1" else each.unit, change))
+        rows.append((each.path, *each.texts, "" if each.unit == "1" else each.unit, change))
     return "\n".join(aligned(rows, "<>><>"))
 
 
@@ -86,7 +86,7 @@ def range_table(recording: Recording) -> str:
     for name in recording.names:
         if name != "time":
             values = recording[name]
-            noise = ROUNDING * np.abs(values).max()
+            noise = ROUNDING_SHARE * np.abs(values).max()
             shown = (f"{0.0 if abs(each) < noise else each:.5g}" for each in (values.min(), values.max(), values[-1]))
             rows.append((name, recording.unit(name), *shown))
     return "\n".join(aligned(rows, "<<>>>"))

@@ -13,16 +13,16 @@ from strainwave.diagnose.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.diagnose.inversion import COMBINE
 from strainwave.report import misalignment_drawings as drawings
 from strainwave.report import misalignment_figures as plots
-from strainwave.report.misalignment_claims import ARCMIN, Claim, arcmin, claims, frequency, microns, percent, silence
+from strainwave.report.misalignment_claims import Claim, arcmin, claims, frequency, microns, percent, silence
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
 from strainwave.studies import misalignment as study
-from strainwave.studies.misalignment import Levels, MisalignmentStudy, Recovery
-from strainwave.typeset import fixed, number, quantity, uncertain
+from strainwave.studies.misalignment import MisalignmentStudy, Recovery, SweepLevels
+from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number, quantity, uncertain
 
-LINE = 110  # letters of a line on a terminal
-LEAST = 1e-3  # of a table, in its units
+LETTERS_PER_LINE = 110  # on a terminal
+MIN_TABLE_VALUE = 1e-3  # in the units of the table
 
 
 def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None = None) -> str:
@@ -47,8 +47,8 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
             "claims": claims(found),
             "cards": _cards(found),
             "drawings": [Markup(drawings.wave_generator(law.major_radius, law.minor_radius)), Markup(drawings.angles())],
-            "scales": [number(times, 2) for times in drawings.scales(law.major_radius, law.minor_radius, study.BESIDE)],
-            "beside": microns(study.BESIDE),
+            "scales": [number(times, 2) for times in drawings.scales(law.major_radius, law.minor_radius, study.USUAL_E1)],
+            "eccentricity": microns(study.USUAL_E1),
             "pure_figure": plots.pure_figure(found.pure),
             "pure": found.pure,
             "fits": list(_fits(found)),
@@ -67,7 +67,7 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
             ),
             "recoveries": [_recovered(each) for each in found.recoveries],
             "injected": _injected(found),
-            "trials": study.TRIALS,
+            "trials": study.NOISE_TRIALS,
             "records": {plots.SEEN[column]: _noise(column, noise) for column, noise in study.RECORDS.items()},
             "measured": None if found.measured is None else found.measured.title,
             "measured_figure": "" if found.measured is None else plots.measured_figure(found, found.measured),
@@ -80,13 +80,13 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
 
 
 def summary(found: MisalignmentStudy) -> str:
-    """What the study found, as lines of text."""
+    """Return the results of the study as lines of text."""
     lines = [*_ramp_lines(found), "", *_level_lines(found), "", *_recovery_lines(found), "", *_claim_lines(found)]
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")  # what a terminal shows is also searched and copied
 
 
 def setting(found: MisalignmentStudy) -> dict[str, str]:
-    """What was run, in words."""
+    """Return the settings of the study in words."""
     ramp = found.ramp
     return {
         "Drive": found.gear_set.name,
@@ -109,7 +109,7 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
         {
             "eyebrow": "At the flap",
             "headline": f"±{arcmin(float(levels.column('e1', 'output_swing')[row]))}",
-            "text": f"with the wave generator {microns(study.BESIDE)} off centre and the loop closed on the output; "
+            "text": f"with the wave generator {microns(study.USUAL_E1)} off centre and the loop closed on the output; "
             f"±{arcmin(float(found.levels[study.USUAL, INPUT].column('e1', 'output_swing')[row]))} with the loop on the motor "
             "encoder.",
         },
@@ -120,7 +120,7 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
             "Hz and multiples. It grows in proportion to the misalignment.",
         },
         {
-            "eyebrow": "What one ramp tells",
+            "eyebrow": "From one ramp",
             "headline": f"{uncertain(recovery.best.size / study.MICRON, recovery.best.half_widths[0] / study.MICRON)} µm",
             "text": f"from the current, where {microns(hypot(*recovery.m))} were put in (95 %). Eccentricity and tilt times "
             "offset are one number, and the wave generator's own misalignment on its shaft is none.",
@@ -141,7 +141,7 @@ def _fits(found: MisalignmentStudy) -> Iterator[dict[str, str]]:
         }
 
 
-def _level_table(levels: Levels) -> dict[str, Any]:
+def _level_table(levels: SweepLevels) -> dict[str, Any]:
     rows = []
     for sweep in study.BOTH_LOOPS:
         name = study.SWEEPS[sweep][0]
@@ -151,23 +151,23 @@ def _level_table(levels: Levels) -> dict[str, Any]:
     return {"title": f"{plots.WORDS[levels.combine]}, loop on the {LOOPS[levels.loop]}", "rows": rows}
 
 
-def _row(levels: Levels, sweep: str, place: int) -> list[str]:
+def _row(levels: SweepLevels, sweep: str, place: int) -> list[str]:
     def at(name: str) -> float:
         return float(levels.column(sweep, name)[place])
 
     return [
-        _small(ARCMIN * at("error_swing"), 3),
+        _small(ARCMIN_PER_RADIAN * at("error_swing"), 3),
         _small(at("torque_swing"), 3),
         fixed(at("torque_peak"), 3),
         _small(1e3 * at("current_swing"), 3),
         fixed(at("current_peak"), 3),
-        _small(ARCMIN * at("output_swing"), 2),
+        _small(ARCMIN_PER_RADIAN * at("output_swing"), 2),
     ]
 
 
 def _small(value: float, digits: int) -> str:
     """A number of a column; of one that nobody would measure, that it is so small."""
-    return number(value, digits) if value >= LEAST or value == 0.0 else f"< {LEAST:g}"
+    return number(value, digits) if value >= MIN_TABLE_VALUE or value == 0.0 else f"< {MIN_TABLE_VALUE:g}"
 
 
 def _misfit(value: float) -> str:
@@ -182,7 +182,7 @@ def _silent_rows(found: MisalignmentStudy) -> Iterator[list[str]]:
         "h": "h with β₂",
         "e2": "e₂ alone",
         "alpha": "α₂ alone",
-        "e2 beside e1": "e₂ beside e₁",
+        "e2 with e1": "e₂ with e₁",
     }
     for sweep, words in names.items():
         name, values, _ = study.SWEEPS[sweep]
@@ -229,8 +229,8 @@ def _noise(column: str, noise: float) -> str:
 
 
 def _ramp_lines(found: MisalignmentStudy) -> Iterator[str]:
-    said = setting(found)
-    yield f"{said['Drive']}: {said['Ramp']}, wave generator at {said['Wave generator']}, order 2 at {said['Order 2']}"
+    words = setting(found)
+    yield f"{words['Drive']}: {words['Ramp']}, wave generator at {words['Wave generator']}, order 2 at {words['Order 2']}"
 
 
 def _level_lines(found: MisalignmentStudy) -> Iterator[str]:
@@ -262,5 +262,5 @@ def _claim_lines(found: MisalignmentStudy) -> Iterator[str]:
 
 
 def _wrapped(claim: Claim) -> Iterator[str]:
-    yield from textwrap.wrap(f"{claim.verdict}: {claim.words}", LINE)
-    yield from textwrap.wrap(claim.answer, LINE, initial_indent="  ", subsequent_indent="  ")
+    yield from textwrap.wrap(f"{claim.verdict}: {claim.words}", LETTERS_PER_LINE)
+    yield from textwrap.wrap(claim.answer, LETTERS_PER_LINE, initial_indent="  ", subsequent_indent="  ")

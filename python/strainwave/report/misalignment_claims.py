@@ -1,4 +1,4 @@
-"""What document A claims, each in its words, and what the study says of it."""
+"""Claims of document A, each in its words, with the answer of the study."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from strainwave.diagnose.actuator_ramp import INPUT, OUTPUT
 from strainwave.files.recording import Recording
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
-from strainwave.typeset import fixed, number, quantity, uncertain
+from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number, quantity, uncertain
 
-ARCMIN = 180.0 * 60.0 / np.pi
 CONFIRMED, IN_PART, CORRECTED = "confirmed", "confirmed in part", "corrected"
-LEVEL = 1  # of the sweep of e_1: 20 um
+E1_LEVEL = 1  # index into the sweep of e_1: 20 um
 
 
 class Claim(NamedTuple):
-    """What document A says, whether it holds, and why."""
+    """A claim of document A, the verdict, and the reason."""
 
     words: str
     verdict: str
@@ -46,7 +45,7 @@ def claims(found: MisalignmentStudy) -> list[Claim]:
 
 def arcmin(angle: float, digits: int = 2) -> str:
     """An angle [rad] in minutes of arc."""
-    return f"{number(ARCMIN * angle, digits)}′"
+    return f"{number(ARCMIN_PER_RADIAN * angle, digits)}′"
 
 
 def microns(length: float, digits: int = 3) -> str:
@@ -60,7 +59,7 @@ def percent(share: float, digits: int = 2) -> str:
 
 
 def recovery_of(found: MisalignmentStudy, column: str, combine: str) -> Recovery:
-    """What was recovered from a column, with a `combine`."""
+    """Return the recovery from a column, with a `combine`."""
     return next(each for each in found.recoveries if each.column == column and each.law.combine == combine)
 
 
@@ -87,13 +86,13 @@ def slowest_and_tightest(found: MisalignmentStudy, loop: str) -> float:
 
 
 def frequency(found: MisalignmentStudy, order: float = 2.0) -> float:
-    """Of an order, in the time of the study [Hz]."""
+    """Return the frequency of an order in the study [Hz]."""
     return order * found.ramp.turning / (2.0 * np.pi)
 
 
 def ripple(spectrum: Recording) -> float:
     """Root mean square of what is faster than the load over the stroke, of a spectrum through a Hann window."""
-    counted = spectrum["order"] > study.SLOW
+    counted = spectrum["order"] > study.MIN_ORDER
     return float(np.sqrt(np.sum(spectrum["amplitude"][counted] ** 2) / 3.0))
 
 
@@ -107,13 +106,13 @@ def same_size(found: MisalignmentStudy, column: str) -> float:
     """The effect of a tilt over that of an eccentricity of the same size of m."""
     levels = found.levels[study.USUAL, OUTPUT]
     sizes = levels.column("e1", "housing_eccentricity")
-    tilted = float(found.law.offset) * np.tan(levels.column("beta", "housing_tilt_x")[LEVEL])
+    tilted = float(found.law.offset) * np.tan(levels.column("beta", "housing_tilt_x")[E1_LEVEL])
     there = np.exp(np.interp(np.log(tilted), np.log(sizes), np.log(levels.column("e1", column))))
-    return float(levels.column("beta", column)[LEVEL] / there)
+    return float(levels.column("beta", column)[E1_LEVEL] / there)
 
 
 def largest_ratio(found: MisalignmentStudy) -> float:
-    """How far the torque with the shown tilt leaves that without, over the torque at that moment, at the most."""
+    """Return the largest change of the torque by the shown tilt, over the torque at that moment [1]."""
     runs = [found.ramp.settled(found.shown[OUTPUT][tilt])["torque"] for tilt in (0.0, study.SHOWN_TILT)]
     return float(np.max(np.abs(runs[1] - runs[0]) / np.maximum(np.abs(runs[0]), 1e-3 * np.abs(runs[0]).max())))
 
@@ -137,26 +136,26 @@ def _detected(found: MisalignmentStudy) -> Claim:
         "One vector can: from the motor current of one ramp |m| = "
         f"{uncertain(best.size / study.MICRON, best.half_widths[0] / study.MICRON)} µm (95 %), where "
         f"{number(hypot(*recovery.m) / study.MICRON, 4)} µm were put in. m is e₁ plus the tilt β times the offset h: the two "
-        "cannot be told apart. e₂ and α alone leave no trace.",
+        "cannot be separated. e₂ and α alone leave no trace.",
     )
 
 
 def _radial(found: MisalignmentStudy) -> Claim:
-    printed = study.BESIDE / float(found.law.pitch_radius)
+    printed = study.USUAL_E1 / float(found.law.pitch_radius)
     return Claim(
         "“e_WG,mis = θ_e,mis r_g ≅ θ_e r_g”",
         CORRECTED,
-        f"The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g (E-A4). {microns(study.BESIDE)} "
-        f"are {arcmin(-study.BESIDE * found.per_error(), 3)}, not {arcmin(printed, 3)}.",
+        f"The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g (E-A4). "
+        f"{microns(study.USUAL_E1)} are {arcmin(-study.USUAL_E1 * found.per_error(), 3)}, not {arcmin(printed, 3)}.",
     )
 
 
 def _constant(found: MisalignmentStudy) -> Claim:
-    constant = float(np.mean(found.law.replace(generator_eccentricity=study.BESIDE, combine="max").error(np.zeros(1))))
+    constant = float(np.mean(found.law.replace(generator_eccentricity=study.USUAL_E1, combine="max").error(np.zeros(1))))
     return Claim(
         "“a constant component, related to clearance, and a variable one, related to misalignment and tooth machining error”",
         IN_PART,
-        f"Misalignment has a constant part, too: e₂ = {microns(study.BESIDE)} alone shifts the output by "
+        f"Misalignment has a constant part, too: e₂ = {microns(study.USUAL_E1)} alone shifts the output by "
         f"{arcmin(abs(constant))} for good, and nothing that repeats. The setting of zero takes it away. "
         "That of a clearance is constant only while the torque keeps its sign (E-A15).",
     )
@@ -197,7 +196,7 @@ def _steady(found: MisalignmentStudy) -> Claim:
 
 
 def _flap(found: MisalignmentStudy) -> Claim:
-    moved = [float(found.levels[study.USUAL, side].column("e1", "output_swing")[LEVEL]) for side in (OUTPUT, INPUT)]
+    moved = [float(found.levels[study.USUAL, side].column("e1", "output_swing")[E1_LEVEL]) for side in (OUTPUT, INPUT)]
     gain = found.ramp.gain
     ideal = percent(float(study.share_by_ideal_loop(frequency(found), gain)))
     best = [slowest_and_tightest(found, side) for side in (OUTPUT, INPUT)]
@@ -205,7 +204,7 @@ def _flap(found: MisalignmentStudy) -> Claim:
         "“Because the position control loop operates to minimize the relative error the effect of the kinematic error on the "
         "flap surface angular position is negligible”",
         IN_PART,
-        f"It is small: ±{arcmin(moved[0])} of {number(degrees(found.ramp.stroke), 3)}° at e₁ = {microns(study.BESIDE)}. The "
+        f"It is small: ±{arcmin(moved[0])} of {number(degrees(found.ramp.stroke), 3)}° at e₁ = {microns(study.USUAL_E1)}. The "
         f"loop has a small part in that: on the motor encoder it is ±{arcmin(moved[1])}. Order 2 comes at "
         f"{number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let "
         f"{ideal} pass. On average over the ramp {percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} "
@@ -227,7 +226,7 @@ def _noisy(found: MisalignmentStudy) -> Claim:
 
 def _figure_3b(found: MisalignmentStudy) -> Claim:
     levels = found.levels[study.USUAL, OUTPUT]
-    torque, error = (float(levels.column("beta", name)[LEVEL]) for name in ("torque_swing", "error_swing"))
+    torque, error = (float(levels.column("beta", name)[E1_LEVEL]) for name in ("torque_swing", "error_swing"))
     return Claim(
         "Figure 3.b: “the differences between the nominal torque and the one in the presence only of angular deviations” in "
         "the text, “angular deviation misalignment kinematic error” in the caption",
@@ -265,12 +264,12 @@ def _greater(found: MisalignmentStudy) -> Claim:
     torque, current = (levels.column("e1", name) for name in ("torque_peak", "current_peak"))
     half = found.passing[OUTPUT].table
     fast = (half["duration"] == half["duration"].min()) & np.isclose(half["position_gain"], found.ramp.gain)
-    quick = float(half["torque_swing"][fast][0] / levels.column("e1", "torque_swing")[LEVEL])
+    quick = float(half["torque_swing"][fast][0] / levels.column("e1", "torque_swing")[E1_LEVEL])
     return Claim(
         "“oscillating torques which are instantaneously significantly greater than the nominal ones”",
         IN_PART,
-        f"A does not say how large its misalignment is. Here the peak is {percent(torque[LEVEL] - 1.0)} above the nominal one "
-        f"in torque and {percent(current[LEVEL] - 1.0)} in current at e₁ = {microns(sizes[LEVEL])}, "
+        f"A does not state its misalignment. Here the peak is {percent(torque[E1_LEVEL] - 1.0)} above the nominal one "
+        f"in torque and {percent(current[E1_LEVEL] - 1.0)} in current at e₁ = {microns(sizes[E1_LEVEL])}, "
         f"{percent(torque[-1] - 1.0)} and {percent(current[-1] - 1.0)} at {microns(sizes[-1])}. At a single moment the torque "
         f"is up to {percent(largest_ratio(found))} off with a tilt of {number(degrees(study.SHOWN_TILT), 2)}°. In half the "
         f"time the swing is {number(quick, 2)} times as large.",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.report import figures
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 AXIS: dict[str, Any] = {"color": LIGHT["muted"], "linewidth": 0.8, "linestyle": (0, (9, 2, 1.5, 2))}
 STILL, TURNING = LIGHT["measured"], LIGHT["model"]
 RADIUS, FLATTER = 1.0, 0.82  # half axes of the wave generator as drawn
-RING = 1.0  # pitch circle of the circular spline as drawn: the lobes of a straight wave generator touch it
+PITCH_RADIUS = 1.0  # of the circular spline as drawn: the lobes of a straight wave generator touch it
 SHIFT, WAY, TURN = 0.17, np.radians(35.0), np.radians(65.0)  # e_1, beta_1 and theta as drawn
 
 
@@ -49,7 +49,7 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
         _note(
             axes,
             "circular spline,\npitch circle",
-            RING * _unit(np.radians(-28.0)),
+            PITCH_RADIUS * _unit(np.radians(-28.0)),
             xytext=(1.24, -0.86),
             color=STILL,
             arrowprops=_leader(STILL),
@@ -79,11 +79,11 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
         _frame(axes, (-1.7, 1.7), (-1.4, 1.5))
 
     title = "A misaligned wave generator in the circular spline, seen along the shaft"
-    return figures.inline(draw, (WIDTH, 3.8), "wave-generator", title)
+    return figures.inline(draw, (FIGURE_WIDTH, 3.8), "wave-generator", title)
 
 
 def scales(major_radius: float, minor_radius: float, eccentricity: float) -> tuple[float, float]:
-    """How many times too large ellipticity and eccentricity [m] stand in the drawing, relative to the radius."""
+    """Return the magnifications of ellipticity and eccentricity [m] in the drawing, relative to the radius."""
     flatness = (major_radius - minor_radius) / major_radius
     return (RADIUS - FLATTER) / flatness, SHIFT / (eccentricity / major_radius)
 
@@ -97,7 +97,7 @@ def angles() -> str:
         _side(figure.add_subplot(above[1, 0]), "X", "β₂", "α₂")
         _side(figure.add_subplot(above[1, 1]), "Y", "β₃", "α₃")
 
-    return figures.inline(draw, (WIDTH, 5.4), "angles", "Eccentricities and angular deviations of the wave generator")
+    return figures.inline(draw, (FIGURE_WIDTH, 5.4), "angles", "Eccentricities and angular deviations of the wave generator")
 
 
 def _plan(axes: Axes) -> None:
@@ -157,7 +157,7 @@ def _side(axes: Axes, across: str, housing: str, generator: str) -> None:
 def _ring(axes: Axes) -> None:
     """The circular spline: its pitch circle and the rim behind the teeth."""
     way = np.linspace(0.0, 2.0 * np.pi, 361)
-    for radius, width in ((RING, 1.3), (1.12, 0.7)):
+    for radius, width in ((PITCH_RADIUS, 1.3), (1.12, 0.7)):
         axes.plot(radius * np.cos(way), radius * np.sin(way), color=STILL, linewidth=width)
 
 
@@ -208,7 +208,7 @@ def _ray(axes: Axes, centre: Array, way: float, length: float, style: dict[str, 
 
 
 def _angle(axes: Axes, centre: Array, start: float, stop: float, radius: float, name: str, colour: str) -> None:
-    """An arc with an arrow head at its end, and its name beside its middle."""
+    """Draw an arc with an arrow head at its end, and its name at its middle."""
     way = np.linspace(start, stop, 40)
     x, y = centre[:, None] + radius * np.array([np.cos(way), np.sin(way)])
     axes.plot(x, y, color=colour, linewidth=0.9)

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from strainwave.diagnose.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.files.recording import Recording
 from strainwave.report import figures
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
 from strainwave.studies.pure_error import PureError
-from strainwave.typeset import number
+from strainwave.typeset import ARCMIN_PER_RADIAN, number
 from strainwave.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
@@ -26,9 +26,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ARCMIN = 180.0 * 60.0 / np.pi
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-DETAIL = 2.0  # turns of the input that a detail shows
+DETAIL_TURNS = 2.0  # turns of the input that a detail shows
 STRAIGHT: dict[str, Any] = {"color": LIGHT["ink"], "linewidth": 1.0}
 TILTED: tuple[dict[str, Any], ...] = (
     {"color": LIGHT["earlier"], "linestyle": ":", "linewidth": 1.2},
@@ -58,19 +57,19 @@ def pure_figure(pure: PureError) -> str:
     def draw(figure: Figure) -> None:
         error, rest = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
         measured = "measured" if pure.source else "curve, assumed"
-        error.plot(turn, ARCMIN * pure.curve, color=LIGHT["measured"], linewidth=2.6, alpha=0.6, label=measured)
+        error.plot(turn, ARCMIN_PER_RADIAN * pure.curve, color=LIGHT["measured"], linewidth=2.6, alpha=0.6, label=measured)
         for kind in kinds:
             style = {"color": SHARING[kind]["color"] if kind != "single" else LIGHT["held-out"]}
             line: dict[str, Any] = {"linestyle": "-" if kind == pure.best else "--", "linewidth": 1.2, **style}
-            error.plot(turn, ARCMIN * pure.fits[kind].curve, label=f"fitted, {WORDS[kind]}", **line)
-            rest.plot(turn, ARCMIN * (pure.curve - pure.fits[kind].curve), **line)
+            error.plot(turn, ARCMIN_PER_RADIAN * pure.fits[kind].curve, label=f"fitted, {WORDS[kind]}", **line)
+            rest.plot(turn, ARCMIN_PER_RADIAN * (pure.curve - pure.fits[kind].curve), **line)
         rest.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
         marks.label_axes(error, "pure kinematic error [arcmin]", "1")
         marks.label_axes(rest, "curve − fitted [arcmin]", "1", "input angle [°]", "1")
         rest.set_xticks(np.arange(0.0, 361.0, 60.0) + turn[0])
         marks.legend(figure, error)
 
-    return figures.inline(draw, (WIDTH, 4.0), "pure-error", "Pure kinematic error over a turn of the input")
+    return figures.inline(draw, (FIGURE_WIDTH, 4.0), "pure-error", "Pure kinematic error over a turn of the input")
 
 
 def ramp_figure(found: MisalignmentStudy) -> str:
@@ -91,7 +90,7 @@ def ramp_figure(found: MisalignmentStudy) -> str:
         marks.label_axes(axes[2], "output angle − command", "rad", "time", "s")
         marks.legend(figure, axes[0])
 
-    return figures.inline(draw, (WIDTH, 5.0), "ramp", "Torque, current and error of the output over the ramp")
+    return figures.inline(draw, (FIGURE_WIDTH, 5.0), "ramp", "Torque, current and error of the output over the ramp")
 
 
 def difference_figure(found: MisalignmentStudy) -> str:
@@ -109,7 +108,7 @@ def difference_figure(found: MisalignmentStudy) -> str:
             turns = run["input_angle"] / (2.0 * np.pi)
             last = _detail(turns)
             torque.plot(turns[last], there["torque"][last], label=f"tilt {tilt_words(tilt)}", **style)
-            error.plot(turns[last], ARCMIN * run["kinematic_error"][last], **style)
+            error.plot(turns[last], ARCMIN_PER_RADIAN * run["kinematic_error"][last], **style)
         marks.label_axes(whole, "difference of the torque, whole ramp", "N.m", "time", "s")
         marks.label_axes(torque, "difference of the torque, last two turns", "N.m")
         marks.label_axes(error, "pure kinematic error [arcmin], same turns", "1", "turns of the input", "1")
@@ -117,12 +116,12 @@ def difference_figure(found: MisalignmentStudy) -> str:
         marks.legend(figure, torque)
 
     title = "Differences of the torque and kinematic error, for three tilts of the input shaft"
-    return figures.inline(draw, (WIDTH, 5.6), "differences", title)
+    return figures.inline(draw, (FIGURE_WIDTH, 5.6), "differences", title)
 
 
 def _detail(turns: Array) -> NDArray[np.bool_]:
     way = np.abs(turns)
-    chosen: NDArray[np.bool_] = way >= way[-1] - DETAIL
+    chosen: NDArray[np.bool_] = way >= way[-1] - DETAIL_TURNS
     return chosen
 
 
@@ -148,7 +147,7 @@ def level_figure(found: MisalignmentStudy) -> str:
             _decades(axes.yaxis)
         marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (WIDTH, 3.3), "levels", "Swing of torque and current over the misalignment")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.3), "levels", "Swing of torque and current over the misalignment")
 
 
 def _plain(axis: Axis) -> None:
@@ -184,7 +183,7 @@ def spectrum_figure(found: MisalignmentStudy) -> str:
     def draw(figure: Figure) -> None:
         panels = figure.subplots(3, 1, sharex=True)
         for axes, (column, (words, unit)) in zip(panels, names.items(), strict=True):
-            scale = ARCMIN if unit == "arcmin" else 1.0
+            scale = ARCMIN_PER_RADIAN if unit == "arcmin" else 1.0
             straight, tilted = found.spectra[column]
             label = f"tilt {tilt_words(study.SHOWN_TILT)}"
             axes.plot(tilted["order"], scale * tilted["amplitude"], color=LIGHT["model"], linewidth=1.0, label=label)
@@ -196,14 +195,14 @@ def spectrum_figure(found: MisalignmentStudy) -> str:
             text, of = ("order, per turn of the input", "1") if last else ("", "1")
             marks.label_axes(axes, f"amplitude, {words} [{typeset_unit(unit)}]", "1", text, of)
             _decades(axes.yaxis)
-            axes.set_xticks(range(int(study.HIGHEST) + 1))
+            axes.set_xticks(range(int(study.MAX_ORDER) + 1))
         marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (WIDTH, 5.2), "spectra", "Order spectra of torque, current and output angle")
+    return figures.inline(draw, (FIGURE_WIDTH, 5.2), "spectra", "Order spectra of torque, current and output angle")
 
 
 def flap_figure(found: MisalignmentStudy) -> str:
-    """What the output does with a tilt beyond what it does without, with the loop on either shaft, beside the error put in."""
+    """Draw the change of the output by a tilt, with the loop on either shaft, and the simulated error."""
     largest = study.SHOWN_TILTS[-1]
 
     def draw(figure: Figure) -> None:
@@ -213,17 +212,23 @@ def flap_figure(found: MisalignmentStudy) -> str:
         last = _detail(turns)
         put_in = -run["kinematic_error"]
         label = "the whole error, reversed"
-        axes.plot(turns[last], ARCMIN * (put_in - put_in[last].mean())[last], color=LIGHT["ink"], linewidth=0.9, label=label)
+        axes.plot(
+            turns[last],
+            ARCMIN_PER_RADIAN * (put_in - put_in[last].mean())[last],
+            color=LIGHT["ink"],
+            linewidth=0.9,
+            label=label,
+        )
         for side, colour, line in ((OUTPUT, "model", "-"), (INPUT, "measured", "--")):
             there = study.difference(found.ramp, found.shown[side], largest, "output_angle")
-            turned, moved = there["input_angle"] / (2.0 * np.pi), ARCMIN * there["output_angle"]
+            turned, moved = there["input_angle"] / (2.0 * np.pi), ARCMIN_PER_RADIAN * there["output_angle"]
             end = _detail(turned)
             style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "label": f"loop on the {LOOPS[side]}"}
             axes.plot(turned[end], moved[end] - moved[end].mean(), **style)
         marks.label_axes(axes, "output angle, difference [arcmin]", "1", "turns of the input", "1")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 2.9), "flap", "Output angle with a tilt less that without, by loop")
+    return figures.inline(draw, (FIGURE_WIDTH, 2.9), "flap", "Output angle with a tilt less that without, by loop")
 
 
 def passing_figure(found: MisalignmentStudy) -> str:
@@ -253,11 +258,11 @@ def passing_figure(found: MisalignmentStudy) -> str:
         _plain(panels[1].xaxis)
         marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (WIDTH, 4.6), "passing", "Share of the kinematic error that reaches the output")
+    return figures.inline(draw, (FIGURE_WIDTH, 4.6), "passing", "Share of the kinematic error that reaches the output")
 
 
 def recovery_figure(recoveries: Mapping[str, Recovery]) -> str:
-    """What records with different noise tell of m, the ellipse of the first, and the truth."""
+    """Draw the estimates of m from records with different noise, the ellipse of the first, and the true value."""
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(1, len(recoveries), squeeze=False)[0]
@@ -275,7 +280,7 @@ def recovery_figure(recoveries: Mapping[str, Recovery]) -> str:
             axes.locator_params(nbins=4)
         marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (WIDTH, 3.2), "recovery", "Misalignment recovered from records of a ramp")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.2), "recovery", "Misalignment recovered from records of a ramp")
 
 
 def _ellipse(recovery: Recovery, sign: float) -> Array:
@@ -310,4 +315,4 @@ def measured_figure(found: MisalignmentStudy, measured: Recording) -> str:
             marks.label_axes(axes, *names[name], *(("time", "s") if last else ()))
         marks.legend(figure, panels[0])
 
-    return figures.inline(draw, (WIDTH, 1.0 + 1.5 * len(there)), "measured-ramp", "Measured and simulated ramp")
+    return figures.inline(draw, (FIGURE_WIDTH, 1.0 + 1.5 * len(there)), "measured-ramp", "Measured and simulated ramp")

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.orders.lines import Line
+from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.measured import OrdersFound
 from strainwave.orders.ripple import Ripple
 from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
@@ -28,7 +28,7 @@ from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 MAX_LINE_LETTERS = 110  # on a terminal
 STRIP_LETTERS = 72  # of a spectrum on a terminal
 STRIP_HEIGHTS = " ▁▂▃▄▅▆▇█"
-MICRORADIAN = 1e-6  # rad
+RAD_PER_MICRORADIAN = 1e-6
 
 
 def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = None) -> str:
@@ -79,7 +79,7 @@ def _error(error: TransmissionError, name: str) -> dict[str, Any]:
             {
                 "order": number(each.order),
                 "shaft": each.shaft,
-                "amplitude": uncertain(each.amplitude / MICRORADIAN, each.amplitude_sigma / MICRORADIAN),
+                "amplitude": uncertain(each.amplitude / RAD_PER_MICRORADIAN, each.amplitude_sigma / RAD_PER_MICRORADIAN),
                 "phase": uncertain(each.phase, each.phase_sigma),
                 "alarm": _chance(each.false_alarm),
                 "state": "significant" if each.significant else "within noise",
@@ -110,7 +110,7 @@ def _facts(ripple: Ripple) -> dict[str, str]:
     return facts
 
 
-def _line(line: Line, ripple: Ripple) -> dict[str, str]:
+def _line(line: SpectrumLine, ripple: Ripple) -> dict[str, str]:
     order = uncertain(line.order, line.order_sigma) if line.kind in ("order", "either") else ""
     return {
         "kind": _kind(line),
@@ -125,7 +125,7 @@ def _line(line: Line, ripple: Ripple) -> dict[str, str]:
     }
 
 
-def _kind(line: Line) -> str:
+def _kind(line: SpectrumLine) -> str:
     """Return what a line repeats with, in words."""
     others = ["time" if name == "time" else f"joint {name}" for name in line.rivals]
     if line.kind == "joint":
@@ -133,12 +133,12 @@ def _kind(line: Line) -> str:
     return f"{' or '.join(['order', *others] if line.kind == 'either' else [line.kind])} line"
 
 
-def line_words(line: Line) -> str:
+def line_words(line: SpectrumLine) -> str:
     """Return a line of a spectrum in words, as `order line 2.00`."""
     return f"{_kind(line)}{_place(line)}"
 
 
-def line_numbers(line: Line) -> dict[str, Any]:
+def line_numbers(line: SpectrumLine) -> dict[str, Any]:
     """Return the numbers of a line by name, as results.json contains them."""
     names = (
         "kind", "joint", "rivals", "order", "order_sigma", "per_input", "frequency", "amplitude", "forward", "backward",
@@ -147,7 +147,7 @@ def line_numbers(line: Line) -> dict[str, Any]:
     return {name: getattr(line, name) for name in names}
 
 
-def _parts(line: Line, of: str) -> Iterator[str]:
+def _parts(line: SpectrumLine, of: str) -> Iterator[str]:
     """Yield the parts of a line, the largest first; parts that noise explains are left out."""
     words = {"constant": "constant", "direction": "with the direction", "load": "with the load"}
     for part in sorted(line.parts, key=lambda each: -each.amplitude):
@@ -188,7 +188,7 @@ def _error_lines(error: TransmissionError) -> Iterator[str]:
         yield f"  kinematic error, over {number(error.revolutions, 4)} revolutions of the input:"
     for each in error.orders:
         if each.significant:
-            amplitude = uncertain(each.amplitude / MICRORADIAN, each.amplitude_sigma / MICRORADIAN)
+            amplitude = uncertain(each.amplitude / RAD_PER_MICRORADIAN, each.amplitude_sigma / RAD_PER_MICRORADIAN)
             yield f"    {_order_words(each)}: {amplitude} µrad, phase {uncertain(each.phase, each.phase_sigma)} rad"
     if missing := [number(each.order, 5) for each in error.orders if not each.significant]:
         yield f"    within noise: orders {', '.join(missing)}"
@@ -240,7 +240,7 @@ def _concluded(ripple: Ripple) -> str:
     return f"{' or '.join(map(str, ripple.concluded))} ({number(100.0 * share, 3)} %)" if ripple.concluded else ""
 
 
-def _place(line: Line) -> str:
+def _place(line: SpectrumLine) -> str:
     """Return the order of a line, its frequency, or both if the record does not separate them; of another joint nothing."""
     order, frequency = uncertain(line.order, line.order_sigma), f"{number(line.frequency, 4)} Hz"
     if line.kind == "joint":

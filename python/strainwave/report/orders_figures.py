@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.orders.ripple import Ripple
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report import figures
@@ -44,7 +44,7 @@ def spectrum_figure(ripple: Ripple, name: str) -> str:
         marks.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.0), name, "Amplitude of ripple over its order")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.0), name, "Amplitude of ripple over its order")
 
 
 def map_figure(ripple: Ripple, name: str) -> str:
@@ -80,7 +80,7 @@ def map_figure(ripple: Ripple, name: str) -> str:
         marks.label_axes(axes, f"order per revolution of the {ripple.side}", "1")
         marks.label_axes(below, "speed", "rad/s", "time", "s")
 
-    return figures.inline(draw, (WIDTH, 3.6), name, "Amplitude of ripple over order and time")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.6), name, "Amplitude of ripple over order and time")
 
 
 def error_figure(error: TransmissionError, name: str) -> str:
@@ -101,7 +101,7 @@ def error_figure(error: TransmissionError, name: str) -> str:
         )
         marks.legend(figure, whole)
 
-    return figures.inline(draw, (WIDTH, 3.6), name, "Transmission error, kinematic error and residual")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.6), name, "Transmission error, kinematic error and residual")
 
 
 def turn_figure(error: TransmissionError, name: str) -> str:
@@ -121,4 +121,4 @@ def turn_figure(error: TransmissionError, name: str) -> str:
         marks.label_axes(axes, "kinematic error", "rad", "revolution of the input", "1")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 2.8), name, "Kinematic error over a revolution of the input")
+    return figures.inline(draw, (FIGURE_WIDTH, 2.8), name, "Kinematic error over a revolution of the input")

@@ -68,7 +68,7 @@ def write_results(
         runs, tables: by the name of the file without its ending
 
     Raises:
-        OSError: folder or file cannot be written; says which, and why
+        OSError: folder or file cannot be written; the message names it and the reason
     """
     with writing.making(folder):
         for name, run in (runs or {}).items():

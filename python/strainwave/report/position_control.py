@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
@@ -21,7 +21,7 @@ from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.studies import position_control as study
-from strainwave.studies.position_control import FULL, SIMPLIFIED, Experiment, Measured, PositionControl
+from strainwave.studies.position_control import FULL, SIMPLIFIED, CommandExperiment, MeasuredRun, PositionControl
 from strainwave.typeset import number, quantity, unit
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ MODELS: dict[str, dict[str, Any]] = {
 LEAST_OF_TABLE_4 = min(rms for rms, _, _ in study.TABLE_4.values())
 
 
-class Row(NamedTuple):
+class ExperimentRow(NamedTuple):
     """A row of the table of an experiment, ready to print."""
 
     label: str
@@ -47,7 +47,7 @@ class Row(NamedTuple):
     settling: str
 
 
-class Number(NamedTuple):
+class PrintedNumber(NamedTuple):
     """A number of a set, ready to print."""
 
     path: str
@@ -98,20 +98,23 @@ def position_control_report(found: PositionControl, provenance: Provenance | Non
 
 
 def summary(found: PositionControl) -> str:
-    """What the study found, as lines of text."""
+    """Return the results of the study as lines of text."""
     head = ("output angle", "rms [mrad]", "largest [mrad]", "correlation", "settles in [ms]")
-    table = [Row(*head)]
+    table = [ExperimentRow(*head)]
     for each in found.experiments:
-        table += [Row(each.title, "", "", "", ""), *(row._replace(label=f"  {row.label}") for row in rows(each))]
+        table += [ExperimentRow(each.title, "", "", "", ""), *(row._replace(label=f"  {row.label}") for row in rows(each))]
     if found.measured is not None:
         title = found.measured.recording.title
-        table += [Row(title, "", "", "", ""), *(row._replace(label=f"  {row.label}") for row in measured_rows(found.measured))]
+        table += [
+            ExperimentRow(title, "", "", "", ""),
+            *(row._replace(label=f"  {row.label}") for row in measured_rows(found.measured)),
+        ]
     widths = [max(len(row[column]) for row in table) for column in range(len(head))]
     lines = [_aligned(row, widths) for row in table]
     return "\n".join([*lines, *_answer(found)])
 
 
-def _aligned(row: Row, widths: list[int]) -> str:
+def _aligned(row: ExperimentRow, widths: list[int]) -> str:
     """The first cell to the left, the others to the right."""
     cells = zip(row[1:], widths[1:], strict=True)
     return "  ".join([f"{row.label:{widths[0]}}", *(f"{cell:>{width}}" for cell, width in cells)]).rstrip()
@@ -127,18 +130,26 @@ def _answer(found: PositionControl) -> Iterator[str]:
     yield "Table 4 of document P compares with measurements that were not published; it is not reproduced"
 
 
-def rows(experiment: Experiment) -> list[Row]:
-    """How each model follows the command, and how far they are apart."""
+def rows(experiment: CommandExperiment) -> list[ExperimentRow]:
+    """Return the agreement of each model with the command, and of the models with each other."""
     found = [
-        Row(f"{model} − command", *_agreed(experiment.tracking[model]), settling=_settling(experiment.settling[model]))
+        ExperimentRow(
+            f"{model} − command", *_agreed(experiment.tracking[model]), settling=_settling(experiment.settling[model])
+        )
         for model in (FULL, SIMPLIFIED)
     ]
-    return [*found, Row("full − simplified", *_agreed(experiment.between["output_angle"]), settling=_later(experiment))]
+    return [
+        *found,
+        ExperimentRow("full − simplified", *_agreed(experiment.between["output_angle"]), settling=_later(experiment)),
+    ]
 
 
-def measured_rows(measured: Measured) -> list[Row]:
-    """How far each model is from what was measured."""
-    return [Row(f"{model} − measured", *_agreed(agreement), settling="") for model, agreement in measured.agreement.items()]
+def measured_rows(measured: MeasuredRun) -> list[ExperimentRow]:
+    """Return the agreement of each model with the measured run."""
+    return [
+        ExperimentRow(f"{model} − measured", *_agreed(agreement), settling="")
+        for model, agreement in measured.agreement.items()
+    ]
 
 
 def _agreed(agreement: Any) -> tuple[str, str, str]:
@@ -155,8 +166,8 @@ def _settling(times: tuple[float, ...]) -> str:
     return " to ".join(dict.fromkeys(texts))
 
 
-def _later(experiment: Experiment) -> str:
-    """How much later the full model settles, where that differs most, in ms."""
+def _later(experiment: CommandExperiment) -> str:
+    """Return the largest difference in settling, full less simplified model, in ms."""
     pairs = zip(experiment.settling[FULL], experiment.settling[SIMPLIFIED], strict=True)
     differences = [full - simplified for full, simplified in pairs]
     return number(1e3 * max(differences, key=abs), 2) if differences else ""
@@ -203,7 +214,7 @@ def _at_output(found: PositionControl, stroke: float) -> str:
 
 
 def _stuck(found: PositionControl) -> float:
-    """How far the output may stop from where it should, as dry friction holds it against the spring [rad]."""
+    """Return the largest error at rest by dry friction at the output against the spring [rad]."""
     gear: Any = found.sets[SIMPLIFIED].gear
     return float(gear.friction_output.breakaway / gear.stiffness.k)
 
@@ -215,14 +226,14 @@ def _static(found: PositionControl) -> float:
 
 
 def _yield(found: PositionControl) -> float:
-    """How far the output gives way to friction of the motor at rest, under the controller [rad/(N.m)]."""
+    """Return the compliance of the output to friction of the motor at rest, under the controller [rad/(N.m)]."""
     drive: Any = found.sets[SIMPLIFIED].drive
     stiffness = drive.control.proportional * drive.motor.torque_constant / drive.motor.resistance
     return float(1.0 / (stiffness * drive.gear.kinematics.ratio))
 
 
 def _periodic_share(found: PositionControl) -> float:
-    """What the assumed periodic part changes of the stroke of a pulse, over what the error of the fit does, at the most."""
+    """Return the largest effect of the assumed periodic part on a pulse's stroke, over that of the error of the fit [1]."""
     pulses = found.by_pulse[study.USUAL_VOLTAGE]
     effect = pulses["full"] - pulses["without_periodic"]
     room = np.where(effect > 0.0, pulses["weaker"] - pulses["stroke"], pulses["stroke"] - pulses["stronger"])
@@ -239,8 +250,8 @@ def _pulses(found: PositionControl) -> Iterator[list[str]]:
         yield [number(stroke, 3), number(1e3 * pulses["width"][row], 3), *(number(share, 2) for share in shares)]
 
 
-def _resolved(experiment: Experiment) -> dict[str, str]:
-    """The error of Table 4 beside the difference of the two models."""
+def _resolved(experiment: CommandExperiment) -> dict[str, str]:
+    """Return the error of Table 4 and the difference of the two models."""
     published, apart = study.TABLE_4[experiment.name][0], experiment.between["output_angle"].rms
     return {
         "published": f"{number(1e3 * published)} mrad",
@@ -249,7 +260,7 @@ def _resolved(experiment: Experiment) -> dict[str, str]:
     }
 
 
-def _measured(measured: Measured) -> dict[str, Any]:
+def _measured(measured: MeasuredRun) -> dict[str, Any]:
     ends = None if measured.beyond is None else [number(end, 4) for end in measured.beyond]
     return {
         "name": measured.recording.title,
@@ -262,7 +273,7 @@ def _measured(measured: Measured) -> dict[str, Any]:
 # ---- Numbers and their sources ---------------------------------------------------------------------------------------
 
 
-def numbers(sets: Mapping[str, GearSet]) -> Iterator[Number]:
+def numbers(sets: Mapping[str, GearSet]) -> Iterator[PrintedNumber]:
     """Every number that is given, once where both models have the same from the same source."""
     given = {model: {each.path: each for each in _of_set(model, gear_set)} for model, gear_set in sets.items()}
     for path in dict.fromkeys(path for entries in given.values() for path in entries):
@@ -273,13 +284,13 @@ def numbers(sets: Mapping[str, GearSet]) -> Iterator[Number]:
             yield from found
 
 
-def _of_set(model: str, gear_set: GearSet) -> Iterator[Number]:
+def _of_set(model: str, gear_set: GearSet) -> Iterator[PrintedNumber]:
     for part in parts(Drive()):
         if (chosen := getattr(gear_set, part.name)) is not None:
             yield from _of_part(model, gear_set, part.name, chosen)
 
 
-def _of_part(model: str, gear_set: GearSet, path: str, part: Any) -> Iterator[Number]:
+def _of_part(model: str, gear_set: GearSet, path: str, part: Any) -> Iterator[PrintedNumber]:
     for field in parameters(part):
         place = f"{path}.{field.name}"
         several = field.kind == "sequence"
@@ -287,7 +298,7 @@ def _of_part(model: str, gear_set: GearSet, path: str, part: Any) -> Iterator[Nu
         if entry is not None and entry.source != NOT_GIVEN and not entry.source.startswith("assumed: the default"):
             values = np.atleast_1d(attrgetter(place)(gear_set))
             source = entry.source.removeprefix("assumed: ")
-            yield Number(place, _values(values), unit(field.unit), model, source, entry.assumed)
+            yield PrintedNumber(place, _values(values), unit(field.unit), model, source, entry.assumed)
     for inner in parts(part):
         yield from _of_part(model, gear_set, f"{path}.{inner.name}", getattr(part, inner.name))
 
@@ -303,7 +314,7 @@ def _values(values: Array) -> str:
 # ---- Figures ---------------------------------------------------------------------------------------------------------
 
 
-def experiment_figure(experiment: Experiment) -> str:
+def experiment_figure(experiment: CommandExperiment) -> str:
     """Command and response, their difference, the difference of the models, and the current, over time."""
     runs = experiment.runs
     first = runs[FULL]
@@ -324,14 +335,14 @@ def experiment_figure(experiment: Experiment) -> str:
         marks.legend(figure, response)
 
     title = f"{experiment.title}: output angle, its difference from the command, that of the models, and current over time"
-    return figures.inline(draw, (WIDTH, 6.2), experiment.name, title)
+    return figures.inline(draw, (FIGURE_WIDTH, 6.2), experiment.name, title)
 
 
 def _draw_run(axes: Axes, run: Recording, values: Array, model: str) -> None:
     marks.curve(axes, run.time, values, label=f"{model} friction", **MODELS[model])
 
 
-def measured_figure(measured: Measured) -> str:
+def measured_figure(measured: MeasuredRun) -> str:
     """A measured output angle and those of the models, and how far they are apart, over time."""
     recording = measured.recording
 
@@ -348,7 +359,7 @@ def measured_figure(measured: Measured) -> str:
         marks.label_axes(error, "simulated − measured", "rad", "time", "s")
         marks.legend(figure, response)
 
-    return figures.inline(draw, (WIDTH, 4.0), "measured", "Output angle measured and simulated, over time")
+    return figures.inline(draw, (FIGURE_WIDTH, 4.0), "measured", "Output angle measured and simulated, over time")
 
 
 def friction_figure(found: PositionControl) -> str:
@@ -371,11 +382,11 @@ def friction_figure(found: PositionControl) -> str:
         marks.label_axes(axes, "Coulomb friction of the motor", "N.m", "motor angle", "rad")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.2), "friction", "Coulomb friction over the motor angle")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.2), "friction", "Coulomb friction over the motor angle")
 
 
 def pulse_figure(found: PositionControl) -> str:
-    """How much further a pulse goes than with the simplified model, over the stroke."""
+    """Draw the excess of a pulse's stroke over that of the simplified model, over the stroke."""
     pulses = found.by_pulse[study.USUAL_VOLTAGE]
     stroke = pulses["stroke"]
 
@@ -394,11 +405,11 @@ def pulse_figure(found: PositionControl) -> str:
         marks.label_axes(axes, "stroke beyond that of the simplified model", "%", "stroke of the motor", "rad")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.6), "pulses", "Stroke of a pulse in open loop, by model")
+    return figures.inline(draw, (FIGURE_WIDTH, 3.6), "pulses", "Stroke of a pulse in open loop, by model")
 
 
 def control_figure(found: PositionControl) -> str:
-    """How far the output is from that of the simplified model under the controller, over the stroke."""
+    """Draw the difference of the output from the simplified model's under the controller, over the stroke."""
     moves = found.under_control
 
     def draw(figure: Figure) -> None:
@@ -416,7 +427,9 @@ def control_figure(found: PositionControl) -> str:
         marks.label_axes(axes, "rms difference of the output angle", "rad", "stroke of the motor", "rad")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.8), "control", "Difference of the models under the controller, over the stroke")
+    return figures.inline(
+        draw, (FIGURE_WIDTH, 3.8), "control", "Difference of the models under the controller, over the stroke"
+    )
 
 
 def _over_strokes(axes: Axes) -> None:

@@ -1,4 +1,4 @@
-"""Report of predictions: a verdict for each recording, its error beside other models, and what changed, as lines and a page."""
+"""Report of predictions: verdict of each recording, its error and those of other models, and changes, as lines and a page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from math import isfinite
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.results.changes import Change
+from strainwave.identification.results.changes import PartChange
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.prediction import Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
@@ -50,7 +50,7 @@ def _nothing_changed(found: Prediction) -> str:
     return "nothing changed significantly" if found.changes else "it does not determine whether anything changed"
 
 
-def change_in_words(change: Change) -> str:
+def change_in_words(change: PartChange) -> str:
     """Return a change as `1.31 ± 0.02 times that saved`."""
     if change.unit == "1":
         return f"{uncertain(change.value, change.sigma)} times that saved"

@@ -1,4 +1,4 @@
-"""How a report came to be."""
+"""Origin of a report."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BLOCK_BYTES = 2**20  # bytes read at a time
 
 @dataclass(frozen=True)
 class Provenance:
-    """How a report came to be.
+    """Origin of a report: date, command and files.
 
     Attributes:
         date: when, as the report shows it
@@ -41,7 +41,7 @@ class Provenance:
 
     @classmethod
     def of_this_command(cls, files: Iterable[Path]) -> Provenance:
-        """Of what the command line of this process makes now from these files.
+        """Return the origin of a report that the command line of this process makes now from these files.
 
         Raises:
             OSError: a file cannot be read

@@ -13,7 +13,6 @@ from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_numbers import sentence, stated
 from strainwave.report.rig_tables import (
-    ARCMIN,
     OF_REGIMES,
     TITLES,
     budget_parts,
@@ -28,9 +27,9 @@ from strainwave.report.rig_tables import (
 from strainwave.rig.analysis.analysis import table
 from strainwave.rig.analysis.lost_motion import LOST_MOTION
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.soft_spot import MULTIPLE
+from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO
 from strainwave.rig.reading.evaluation import Evaluation
-from strainwave.typeset import fixed, number
+from strainwave.typeset import ARCMIN_PER_DEGREE, fixed, number
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:
@@ -39,7 +38,7 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
     Args:
         found: the test
         provenance: how the report came to be, if that is to be shown
-        files: names of the files beside it
+        files: names of the files in its folder
 
     Returns:
         HTML; the same for the same arguments
@@ -71,7 +70,7 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
         "rows": [] if found.rig is None else rig_setup.rig_rows(found.rig),
         "rig": found.rig,
         "sources": list(source_rows(found)),
-        "multiple": number(MULTIPLE),
+        "multiple": number(SOFT_COMPLIANCE_RATIO),
         "files": files,
     }
     return render("rig.html.jinja", content | {"sections": _sections(content)}, provenance)
@@ -82,7 +81,7 @@ def _sections(content: dict[str, Any]) -> dict[str, str]:
         "table": "Stiffness and hysteresis",
         "loops": "Loops",
         "comparison": "Positions and units compared",
-        "catalogue": "Beside the catalogue",
+        "catalogue": "Comparison with the catalogue",
         "uncertainty": "Uncertainty",
         "photographs": "Photographs",
         "steps": "Steps",
@@ -148,7 +147,7 @@ def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
     widths = [row.hysteresis for row in rows]
     at_output = ""
     if (ratio := ratio_of(found)) is not None and (known := [each for each in widths if each is not None]):
-        low, high = (ARCMIN * degrees(pick(each.value for each in known)) / ratio for pick in (min, max))
+        low, high = (ARCMIN_PER_DEGREE * degrees(pick(each.value for each in known)) / ratio for pick in (min, max))
         at_output = f" Divided by the ratio of {number(ratio)}: {_range(low, high, 3)}′ at the output."
     yield _card("Hysteresis", widths, scale, unit, f"Widest separation of the branches at equal torque.{at_output}")
     energy = [each.area for each in found.analyses]
@@ -227,5 +226,5 @@ def summary(found: Evaluation) -> str:
     for each in found.comparisons:
         lines += ["", *(str(compared) for compared in each.quantities)]
     if open_questions := unknown(found):
-        lines += ["", "not determined, or in doubt:", *(f"  {line}" for line in open_questions)]
+        lines += ["", "not determined, or contradictory:", *(f"  {line}" for line in open_questions)]
     return "\n".join(lines)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.report import figures
 from strainwave.typeset import number
 
@@ -29,7 +29,7 @@ COLOURS = {
 
 
 @dataclass(frozen=True)
-class Branch:
+class DrawnRegime:
     """A regime of a loop, in the order measured.
 
     Attributes:
@@ -43,11 +43,11 @@ class Branch:
 
 
 @dataclass(frozen=True)
-class Width:
+class DrawnWidth:
     """A width of the loop, from one branch to the other.
 
     Attributes:
-        letter: beside the arrow
+        letter: at the arrow
         name: which
         angle: its two ends, in the unit of the figure
         torque: at which [N.m]
@@ -61,8 +61,8 @@ class Width:
 
 def loop_figure(
     whole: tuple[Array, Array],
-    branches: Sequence[Branch],
-    widths: Sequence[Width],
+    branches: Sequence[DrawnRegime],
+    widths: Sequence[DrawnWidth],
     names: tuple[str, str],
     output_arcmin: float | None,
     name: str,
@@ -94,7 +94,7 @@ def loop_figure(
             second.set_xlabel("divided by the ratio: at the output [arcmin]", color=LIGHT["muted"])
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 4.9 if output_arcmin is not None else 4.2), name, title)
+    return figures.inline(draw, (FIGURE_WIDTH, 4.9 if output_arcmin is not None else 4.2), name, title)
 
 
 def _times(factor: float) -> tuple[Callable[[ArrayLike], ArrayLike], Callable[[ArrayLike], ArrayLike]]:
@@ -102,7 +102,7 @@ def _times(factor: float) -> tuple[Callable[[ArrayLike], ArrayLike], Callable[[A
     return (lambda x: np.asarray(x) * factor), (lambda x: np.asarray(x) / factor)
 
 
-def _branch(axes: Axes, branch: Branch) -> None:
+def _branch(axes: Axes, branch: DrawnRegime) -> None:
     colour = LIGHT[COLOURS.get(branch.name, "ink")]
     few = len(branch.angle) <= marks.MAX_POINTS
     axes.plot(
@@ -128,7 +128,7 @@ def _unit(steps: Array) -> Array:
     return steps / extent if extent > 0.0 else steps
 
 
-def _dimension(axes: Axes, width: Width, share: float) -> None:
+def _dimension(axes: Axes, width: DrawnWidth, share: float) -> None:
     """A double arrow from one branch to the other, with its letter."""
     ink = LIGHT["ink"]
     start, stop = ((angle, width.torque) for angle in width.angle)
@@ -185,7 +185,7 @@ def stiffness_figure(curves: Sequence[StiffnessCurve], name: str, title: str) ->
         every[-1].set_xlabel("torque [N·m]")
         _common_legend(figure, every)
 
-    return figures.inline(draw, (WIDTH, 1.2 + 1.75 * len(panels)), name, title)
+    return figures.inline(draw, (FIGURE_WIDTH, 1.2 + 1.75 * len(panels)), name, title)
 
 
 def _stiffness(axes: Axes, curve: StiffnessCurve) -> None:
@@ -231,12 +231,12 @@ def _common_legend(figure: Figure, every: Sequence[Axes] | Any) -> None:
 
 @dataclass(frozen=True)
 class Pictures:
-    """What the photographs of a test were like, in their order.
+    """Quality of the photographs of a test, in their order.
 
     Attributes:
-        sigma: of the angle of each [arcsec], not-a-number where it told none
+        sigma: of the angle of each [arcsec], not-a-number if it gives none
         residual: rms distance of a marker's edge from the fitted curve [px], shape (n, 2), not-a-number likewise
-        limit: of the residual, beyond which a photograph is doubted [px], or None
+        limit: of the residual, beyond which a photograph has a warning [px], or None
     """
 
     sigma: Array
@@ -244,7 +244,7 @@ class Pictures:
 
 
 def quality_figure(pictures: Pictures, name: str, title: str) -> str:
-    """Uncertainty of the angle and fit of both markers, image by image; a line where an image told nothing."""
+    """Uncertainty of the angle and fit of both markers, image by image; a line if an image gives no angle."""
     image = np.arange(1, len(pictures.sigma) + 1)
     lost = image[np.isnan(pictures.sigma)]
 
@@ -265,11 +265,11 @@ def quality_figure(pictures: Pictures, name: str, title: str) -> str:
         marks.label_axes(residual, "rms distance of the edge from its fit [px]", "1", "image, in the order taken", "1")
         marks.legend(figure, residual)
 
-    return figures.inline(draw, (WIDTH, 3.4), name, title)
+    return figures.inline(draw, (FIGURE_WIDTH, 3.4), name, title)
 
 
 @dataclass(frozen=True)
-class Compared:
+class DrawnComparison:
     """One quantity over several loops.
 
     Attributes:
@@ -283,8 +283,8 @@ class Compared:
     half_widths: Array
 
 
-def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str, name: str, title: str) -> str:
-    """Quantities of several loops beside each other, each with its interval."""
+def comparison_figure(rows: Sequence[DrawnComparison], labels: Sequence[str], what: str, name: str, title: str) -> str:
+    """Draw quantities of several loops, each with its interval."""
     place = np.arange(len(labels))
 
     def draw(figure: Figure) -> None:
@@ -309,7 +309,7 @@ def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str
         every[-1].set_xlim(-0.5, len(labels) - 0.5)
         every[-1].set_xlabel(what)
 
-    return figures.inline(draw, (WIDTH, 0.6 + 0.95 * len(rows)), name, title)
+    return figures.inline(draw, (FIGURE_WIDTH, 0.6 + 0.95 * len(rows)), name, title)
 
 
 def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, str], name: str, title: str) -> str:
@@ -325,4 +325,4 @@ def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, s
         marks.label_axes(axes, names[1], "1", names[0], "1")
         marks.legend(figure, axes)
 
-    return figures.inline(draw, (WIDTH, 3.6), name, title)
+    return figures.inline(draw, (FIGURE_WIDTH, 3.6), name, title)

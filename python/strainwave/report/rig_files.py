@@ -1,4 +1,4 @@
-"""Files of a torsion test beside its report: loops, the angle of each photograph, and every number found."""
+"""Files of a torsion test in the folder of its report: loops, the angle of each photograph, and every number found."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What whoever stands at the rig sees while a test is being made: what to do next, and the loop as it grows."""
+"""Display for the operator during a test: what to do next, and the loop as it grows."""
 
 from __future__ import annotations
 
@@ -14,13 +14,11 @@ import numpy as np
 from strainwave.report.terminal_plot import loop_lines
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.running.guide import HELP, Look
-from strainwave.typeset import number
+from strainwave.typeset import ARCSEC_PER_DEGREE, number
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.text import Text
-
-ARCSEC = 3600.0
 
 
 @dataclass(frozen=True)
@@ -29,8 +27,8 @@ class Point:
 
     Attributes:
         name: of the photograph, or of the step
-        torque: on the shaft [N.m], or None if nothing tells it
-        look: what the photograph told
+        torque: on the shaft [N.m], or None if it is not known
+        look: angle of the photograph
         warnings: what makes it doubtful
     """
 
@@ -49,7 +47,7 @@ def point_line(point: Point) -> str:
     torque = "torque not known" if point.torque is None else f"{_signed(point.torque, 3)} N·m"
     if point.look.fault:
         return f"{point.name}  {torque}  NO ANGLE: {point.look.fault}"
-    angle = f"{_signed(degrees(point.look.angle), 4)}° ± {number(ARCSEC * degrees(point.look.sigma), 2)}″"
+    angle = f"{_signed(degrees(point.look.angle), 4)}° ± {number(ARCSEC_PER_DEGREE * degrees(point.look.sigma), 2)}″"
     doubtful = f"  DOUBTFUL: {'; '.join(point.warnings)}" if point.warnings else ""
     return f"{point.name}  {torque}  {angle}{doubtful}"
 
@@ -60,11 +58,11 @@ def _signed(value: float, places: int) -> str:
 
 def plot_lines(points: Sequence[Point], width: int, letters: str) -> list[str]:
     """The loop so far; the angle over the number of the photograph where the torque is not known."""
-    told = [point for point in points if not point.look.fault and point.torque is not None]
-    if len(told) < 2:
+    known = [point for point in points if not point.look.fault and point.torque is not None]
+    if len(known) < 2:
         return []
-    angle = np.array([point.look.angle for point in told])
-    return loop_lines(angle, np.array([point.torque for point in told], float), width, letters)
+    angle = np.array([point.look.angle for point in known])
+    return loop_lines(angle, np.array([point.torque for point in known], float), width, letters)
 
 
 def _typed() -> str:
@@ -74,12 +72,12 @@ def _typed() -> str:
 
 @dataclass
 class Terminal:
-    """Speaks with whoever stands at the rig, over a terminal or a pipe.
+    """Dialogue with the operator of the rig, over a terminal or a pipe.
 
     Attributes:
         console: where to
         steps: how many steps the test has
-        change: says what to lay on and take off for a step, given the one before it
+        change: returns which masses to add and remove for a step, given the one before it
         torque: on the shaft in a step [N.m]
         read: waits for an answer
     """
@@ -92,7 +90,7 @@ class Terminal:
     before: dict[int, Look] = field(default_factory=dict)
 
     def ask(self, step: Step, before: Step | None) -> str:
-        """Says what to lay on and take off, and waits."""
+        """Show which masses to add and remove, and wait."""
         if before is None or (step.position, step.unit) != (before.position, before.unit):
             self._tell(f"\n{_place(step)}", "bold")
             if before is None:
@@ -101,7 +99,7 @@ class Terminal:
         return self._read("Enter when it hangs still > ")
 
     def hint(self, words: str) -> str:
-        """Says what went wrong, and waits."""
+        """Show what went wrong, and wait."""
         self._tell(words, "yellow")
         return self._read("> ")
 

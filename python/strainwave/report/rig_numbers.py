@@ -9,8 +9,8 @@ from typing import NamedTuple
 from strainwave.rig.analysis.result import Result
 from strainwave.typeset import fixed, number
 
-DIGITS = 4  # of a value whose uncertainty is not known
-FINEST = 6  # digits of a value, however well it is known
+DEFAULT_DIGITS = 4  # of a value whose uncertainty is not known
+MAX_DIGITS = 6  # of a value, however small its uncertainty
 
 
 class Stated(NamedTuple):
@@ -18,7 +18,7 @@ class Stated(NamedTuple):
 
     Attributes:
         value: rounded to what its interval allows
-        interval: both ends, empty where nothing tells the uncertainty
+        interval: both ends, empty if the uncertainty is not known
     """
 
     value: str
@@ -42,11 +42,14 @@ def stated(found: Result | None, scale: float = 1.0) -> Stated:
         return Stated("—", "")
     value, low, high = (scale * each for each in (found.value, found.low, found.high))
     if not (isfinite(high - low) and high > low):
-        return Stated(number(value, DIGITS), f"{number(low, DIGITS)} to {number(high, DIGITS)}" if high > low else "")
+        return Stated(
+            number(value, DEFAULT_DIGITS),
+            f"{number(low, DEFAULT_DIGITS)} to {number(high, DEFAULT_DIGITS)}" if high > low else "",
+        )
     places = 1 - floor(log10(0.5 * (high - low)))
-    most = FINEST - 1 - floor(log10(max(abs(low), abs(high))))
-    if not -3 <= min(places, most) <= FINEST:
-        return Stated(number(value, FINEST), f"{number(low, FINEST)} to {number(high, FINEST)}")
+    most = MAX_DIGITS - 1 - floor(log10(max(abs(low), abs(high))))
+    if not -3 <= min(places, most) <= MAX_DIGITS:
+        return Stated(number(value, MAX_DIGITS), f"{number(low, MAX_DIGITS)} to {number(high, MAX_DIGITS)}")
     texts = [fixed(each, min(places, most)) for each in (value, low, high)]
     return Stated(texts[0], f"{texts[1]} to {texts[2]}" if texts[1] != texts[2] else f"± {number(0.5 * (high - low), 1)}")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from strainwave.report import rig_figures
-from strainwave.report.rig_figures import Branch, Compared, StiffnessCurve, Width
+from strainwave.report.rig_figures import DrawnComparison, DrawnRegime, DrawnWidth, StiffnessCurve
 from strainwave.report.rig_setup import pictures
 from strainwave.rig.analysis.analysis import LoopAnalysis
 from strainwave.rig.analysis.comparison import Comparison
@@ -18,18 +18,18 @@ from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.result import Result, student
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.evaluation import Evaluation
+from strainwave.typeset import ARCMIN_PER_DEGREE
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-ARCMIN = 60.0
-CLOSE = 0.03  # of the peak: two widths so near each other are drawn as one
+MIN_WIDTH_DISTANCE = 0.03  # share of the peak [1]: two widths closer than this are drawn as one
 FALLING = ("positive_unloading", "negative_loading")
 
 
 def angle_unit(loop: Loop) -> tuple[str, float]:
     """Return the unit of angles of the loaded shaft as printed, and the factor to it: degrees, at the output arcminutes."""
-    return ("°", degrees(1.0)) if loop.side == "input" else ("′", ARCMIN * degrees(1.0))
+    return ("°", degrees(1.0)) if loop.side == "input" else ("′", ARCMIN_PER_DEGREE * degrees(1.0))
 
 
 def _names(loop: Loop) -> tuple[str, str]:
@@ -45,7 +45,7 @@ def _markup(svg: str) -> Markup:
 def loop(analysis: LoopAnalysis, label: str, name: str, ratio: float | None) -> Markup:
     """Draw a loop with its regimes and widths."""
     measured, scale = analysis.loop, angle_unit(analysis.loop)[1]
-    output = ARCMIN / ratio if ratio and measured.side == "input" else None
+    output = ARCMIN_PER_DEGREE / ratio if ratio and measured.side == "input" else None
     whole = scale * measured.angle, measured.torque
     return _markup(
         rig_figures.loop_figure(
@@ -54,27 +54,27 @@ def loop(analysis: LoopAnalysis, label: str, name: str, ratio: float | None) -> 
     )
 
 
-def _branches(analysis: LoopAnalysis, scale: float) -> Iterator[Branch]:
+def _branches(analysis: LoopAnalysis, scale: float) -> Iterator[DrawnRegime]:
     for regime in analysis.cut.regimes:
         order = slice(None, None, -1) if regime.name in FALLING else slice(None)
-        yield Branch(regime.name.replace("_", " "), scale * regime.angle[order], regime.torque[order])
+        yield DrawnRegime(regime.name.replace("_", " "), scale * regime.angle[order], regime.torque[order])
 
 
-def _widths(analysis: LoopAnalysis, scale: float) -> Iterator[Width]:
+def _widths(analysis: LoopAnalysis, scale: float) -> Iterator[DrawnWidth]:
     """Return the widths of a loop; two at nearly the same torque as one."""
     falling, rising = analysis.cut.falling, analysis.cut.rising
     if falling is None or rising is None or analysis.hysteresis is None:
         return
     wide = analysis.hysteresis.torque
     at = [("a", "hysteresis", wide)]
-    if abs(wide) >= CLOSE * max(map(abs, analysis.peaks)):
+    if abs(wide) >= MIN_WIDTH_DISTANCE * max(map(abs, analysis.peaks)):
         at.append(("b", "at zero torque", 0.0))
     if analysis.lost_motion is not None and analysis.rated_torque is not None and not analysis.whole_angle:
         level = LOST_MOTION * analysis.rated_torque
         at += [("c", "lost motion", level), ("c", "", -level)]
     for letter, words, torque in at:
         ends = [scale * float(np.interp(torque, branch.torque, branch.angle)) for branch in (rising, falling)]
-        yield Width(letter, words, (ends[0], ends[1]), torque)
+        yield DrawnWidth(letter, words, (ends[0], ends[1]), torque)
 
 
 def stiffness(analysis: LoopAnalysis, label: str, name: str) -> Markup:
@@ -131,9 +131,9 @@ def comparison(found: Evaluation, compared: Comparison) -> Markup:
     return _markup(rig_figures.comparison_figure(rows, labels, what, f"comparison-{compared.by}", f"Compared by {compared.by}"))
 
 
-def _row(name: str, results: list[Result | None], scale: float) -> list[Compared]:
+def _row(name: str, results: list[Result | None], scale: float) -> list[DrawnComparison]:
     known = [each for each in results if each is not None]
     if len(known) < len(results):
         return []
     values = np.array([scale * each.value for each in known])
-    return [Compared(name, values, student(np.inf) * np.array([scale * each.random for each in known]))]
+    return [DrawnComparison(name, values, student(np.inf) * np.array([scale * each.random for each in known]))]

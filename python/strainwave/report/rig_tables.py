@@ -12,17 +12,16 @@ from strainwave.report import rig_plates
 from strainwave.report.rig_numbers import Stated, sentence, stated
 from strainwave.rig.analysis.analysis import DEFINITIONS, Definition, LoopAnalysis, table
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck
-from strainwave.rig.analysis.comparison import Compared, Comparison
+from strainwave.rig.analysis.comparison import ComparedQuantity, Comparison
 from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.soft_spot import MULTIPLE, words_on_band
+from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO, words_on_band
 from strainwave.rig.analysis.stiffness import closure_of_secants, soft_parts
 from strainwave.rig.reading.evaluation import Evaluation, budgets
 from strainwave.rig.torque.budget import Budget
-from strainwave.rig.virtual.printed import PEAK, TABLE_2
-from strainwave.typeset import fixed, number
+from strainwave.rig.virtual.printed import PEAK_TORQUE, TABLE_2
+from strainwave.typeset import ARCMIN_PER_DEGREE, fixed, number
 
-ARCMIN = 60.0
 OF_REGIMES = tuple(name.replace("_", " ") for name in NAMES)  # how remarks on one regime begin
 BAND = (0.1, 0.2)  # N.m: where document T saw its soft spot
 TITLES: dict[Definition, str] = {
@@ -50,7 +49,7 @@ def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]
         cells = [stated(getattr(row, name)) for name in NAMES]
         cells.append(stated(row.hysteresis, scale))
         if ratio is not None:
-            cells.append(stated(row.hysteresis, ARCMIN * degrees(1.0) / ratio))
+            cells.append(stated(row.hysteresis, ARCMIN_PER_DEGREE * degrees(1.0) / ratio))
         rows.append((label, cells))
     heads = [f"{name.replace('_', ' ').capitalize()} [N·m/rad]" for name in NAMES]
     heads.append(f"Total hysteresis [{unit}]")
@@ -62,8 +61,8 @@ def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]
 def document_rows() -> Iterator[list[str]]:
     """Document T's own table, how far it is from closed, and under which reading it is."""
     for position, (*slopes, width) in TABLE_2.items():
-        gap = degrees(closure_of_secants(slopes, PEAK))
-        parts = soft_parts(slopes, float(np.radians(width)), PEAK)
+        gap = degrees(closure_of_secants(slopes, PEAK_TORQUE))
+        parts = soft_parts(slopes, float(np.radians(width)), PEAK_TORQUE)
         signed = f"{gap:+.2f}°".replace("-", "−")
         yield [
             f"{position}°",
@@ -95,11 +94,11 @@ def loop_part(found: Evaluation, place: int) -> dict[str, Any]:
 
 
 def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[str, str, Stated, Stated, str]]:
-    """What, its definition, its value at the loaded shaft and at the output, and the unit."""
+    """Yield for each width its name, its definition, its value at the loaded shaft and at the output, and the unit."""
     unit, scale = rig_plates.angle_unit(analysis.loop)
 
     def angle(name: str, words: str, found: Result | None) -> tuple[str, str, Stated, Stated, str]:
-        at_output = stated(found, ARCMIN * degrees(1.0) / ratio) if ratio else Stated("", "")
+        at_output = stated(found, ARCMIN_PER_DEGREE * degrees(1.0) / ratio) if ratio else Stated("", "")
         return name, words, stated(found, scale), at_output, unit
 
     wide = analysis.hysteresis
@@ -153,7 +152,7 @@ def _soft_rows(analysis: LoopAnalysis) -> Iterator[list[str]]:
 
 
 def _band(analysis: LoopAnalysis) -> Iterator[str]:
-    """What there is of document T's soft spot, where the loop reaches so far."""
+    """Yield words on document T's soft spot, if the loop reaches that torque."""
     if analysis.loop.side != "input" or max(map(abs, analysis.peaks)) < BAND[0]:
         return
     for name in ("negative_loading", "positive_loading"):
@@ -161,7 +160,7 @@ def _band(analysis: LoopAnalysis) -> Iterator[str]:
             yield words_on_band(each, *BAND)
 
 
-# ---- Beside each other, and beside the catalogue ----------------------------------------------------------------------
+# ---- Comparison of loops, and with the catalogue ----------------------------------------------------------------------
 
 
 def comparison_part(found: Evaluation, comparison: Comparison) -> dict[str, Any]:
@@ -176,7 +175,7 @@ def comparison_part(found: Evaluation, comparison: Comparison) -> dict[str, Any]
     }
 
 
-def _compared(each: Compared, found: Evaluation) -> dict[str, Any]:
+def _compared(each: ComparedQuantity, found: Evaluation) -> dict[str, Any]:
     unit, scale = _in_print(each.unit, found)
     verdict, word = {
         True: ("they differ", "differ"),
@@ -195,7 +194,7 @@ def _compared(each: Compared, found: Evaluation) -> dict[str, Any]:
 
 
 def _to_spread(value: float, spread: float) -> str:
-    """A mean to the third digit of the spread of the means, which tells them apart."""
+    """Return a mean to the third digit of the spread of the means, which separates them."""
     return fixed(value, min(max(2 - floor(log10(spread)), 0), 6)) if spread > 0.0 else number(value, 4)
 
 
@@ -274,9 +273,8 @@ SOURCES = {
     "Centres of the markers: circle, or ellipse, fitted by distance to sub-pixel edges": "erratum E-T2",
     "Regression with errors in torque and angle": "York2004",
     "Differences between groups of repeated loops": "Welch1951",
-    f"Soft spot: local compliance beyond {number(MULTIPLE)} times that of the regime's regression, by more than chance": (
-        "a definition of this package; document T gives none"
-    ),
+    f"Soft spot: local compliance beyond {number(SOFT_COMPLIANCE_RATIO)} times that of the regime's regression, "
+    "by more than chance": "a definition of this package; document T gives none",
     "Hysteresis loss, lost motion": "catalogues: at zero torque after ± rated torque, and at ± 4 % of rated torque",
     "Uncertainty: the squares of independent contributions add up": "GUM (JCGM 100:2008), Eq. 10",
 }

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 PLOT_ROWS = 16  # of the plot, its axis not counted
 MIN_COLUMNS = 36  # columns of a terminal that a plot needs
-BRAILLE = 0x2800  # the empty sign; its dots are bits, two columns of four
+BRAILLE_BLANK = 0x2800  # code point of the empty sign; its dots are bits, two columns of four
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 SIGNS = "⣿·┤└─●°−"  # what a terminal must be able to show; plain letters take their place otherwise
 ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # ends of axes, times a power of ten
@@ -123,6 +123,6 @@ class _Canvas:
             bits = np.zeros((self.rows, self.columns), int)
             for column, row in self.dots:
                 bits[row // 4, column // 2] |= DOTS[column % 2][row % 4]
-            grid = [[chr(BRAILLE + bit) if bit else " " for bit in each] for each in bits.tolist()]
+            grid = [[chr(BRAILLE_BLANK + bit) if bit else " " for bit in each] for each in bits.tolist()]
             grid[self.last[1] // 4][self.last[0] // 2] = "●"
         return ["".join(row) for row in grid]

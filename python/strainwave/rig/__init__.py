@@ -4,7 +4,7 @@ What is here is what one calls, and what that gives back. The parts of a result,
 modules of the rooms: `bench`, `torque`, `running`, `vision`, `reading`, `analysis`, `influence` and `virtual`.
 """
 
-from strainwave.rig.analysis.analysis import LoopAnalysis, Row, analyse, table
+from strainwave.rig.analysis.analysis import LoopAnalysis, LoopSummary, analyse, table
 from strainwave.rig.analysis.comparison import Comparison, compare
 from strainwave.rig.analysis.regimes import cycles
 from strainwave.rig.analysis.result import Result
@@ -22,7 +22,7 @@ from strainwave.rig.loop import Loop
 from strainwave.rig.reading.measurement import TorsionTest, loops, read_test
 from strainwave.rig.reading.recorded import read_loop
 from strainwave.rig.running.plan import Plan, plan
-from strainwave.rig.running.plan_check import Finding, check
+from strainwave.rig.running.plan_check import Deviation, check
 from strainwave.rig.torque.budget import Budget, angle_budget, stiffness_budget, torque_budget
 from strainwave.rig.torque.torque import Torque, blank, torque_of
 from strainwave.rig.virtual.printed import printed_gear
@@ -39,17 +39,17 @@ __all__ = [
     "Camera",
     "Circle",
     "Comparison",
-    "Finding",
+    "Deviation",
     "Image",
     "Influence",
     "Loop",
     "LoopAnalysis",
+    "LoopSummary",
     "Marker",
     "Masses",
     "Plan",
     "Result",
     "Rig",
-    "Row",
     "Scene",
     "Series",
     "Step",

@@ -14,7 +14,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
 from strainwave.native import kernels
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
@@ -25,12 +25,12 @@ from strainwave.simulation.state import State
 Array = NDArray[np.float64]
 
 
-class Seen(NamedTuple):
-    """What a controller sees at an instant: the time, the command, and the drive through its sensors.
+class Observation(NamedTuple):
+    """Observation of a controller at an instant: the time, the command, and the drive through its sensors.
 
     Attributes:
         time: since the start of the run [s]
-        command, command_rate: what is commanded, in its unit, and its rate
+        command, command_rate: the command in its unit, and its rate
         input_angle, input_speed: of the input shaft [rad], [rad/s]
         output_angle, output_speed: of the output shaft [rad], [rad/s]
         current: of the motor [A]
@@ -53,7 +53,7 @@ class Seen(NamedTuple):
 
 def simulate_controlled(
     drive: Drive | GearSet,
-    controller: Callable[[Seen], float],
+    controller: Callable[[Observation], float],
     command: Scenario,
     dt: float = 2e-4,
     *,
@@ -77,8 +77,8 @@ def simulate_controlled(
 
     Args:
         drive: what is controlled, in open loop (`sw.control.OpenLoop`): then the motor takes the actuation
-        controller: called with what it sees, a `Seen`; returns the actuation, in the unit of the motor (voltage [V] of a DC
-            motor, current [A], torque [N.m])
+        controller: called with an `Observation`; returns the actuation, in the unit of the motor (voltage [V] of a DC motor,
+            current [A], torque [N.m])
         command: what the controller is to do over time, in a unit of its choice
         period: time from one call to the next [s]
         delay: time from a call to its effect [s], at most `period`
@@ -124,13 +124,13 @@ def simulate_controlled(
     excitation.check_laid_out(dt)
     course = Course.of(drive, excitation, recorded, dt, interval, actions)
     longest = course.time_grid.longest
-    course.check_steps(0.0, excitation.first()[TEMPERATURE])
+    course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     given = excitation.over(course.time_grid)
     with progressing(progress, len(given)) as shown:
         outputs, state = _run(course, state, given, actions, controller, shown)
     outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)
     check_meaning(course.time, recorded, outputs, remedy(longest))
-    course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE])
+    course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE_PLACE])
     warn_of_bristles(drive, longest)
     how = f"exponential Runge-Kutta, steps of {longest:g} s, a controller called every {period:g} s"
     run = course.run(outputs, state, how, unit)
@@ -143,7 +143,7 @@ def _run(
     state: Array,
     given: Array,
     actions: Array,
-    controller: Callable[[Seen], float],
+    controller: Callable[[Observation], float],
     shown: Callable[[int], None] | None,
 ) -> tuple[Array, Array]:
     """The outputs, shape (channels, samples), and the state at the end, from one action to the next.
@@ -177,9 +177,9 @@ def _run(
     return outputs, state
 
 
-def _asked(controller: Callable[[Seen], float], time: float, given: Array, measured: Array) -> float:
-    """What the controller returns at an instant [s]."""
-    seen = Seen(time, float(given[0]), float(given[1]), *measured.tolist())
+def _asked(controller: Callable[[Observation], float], time: float, given: Array, measured: Array) -> float:
+    """Return the actuation by the controller at an instant [s]."""
+    seen = Observation(time, float(given[0]), float(given[1]), *measured.tolist())
     return arguments.number(f"what the controller returns at t = {time:g} s", controller(seen))
 
 
@@ -190,7 +190,7 @@ def _commanded(course: Course, given: Array) -> Array:
 
 
 def _actions(duration: float, period: float, delay: float) -> Array:
-    """When the controller is called and when its result arrives, in turns [s]."""
+    """Return the instants at which the controller is called and at which its result arrives, in turns [s]."""
     check_acting(duration, period)
     calls = period * np.arange(int(duration / period) + 1)
     found: Array = np.stack([calls, calls + delay], axis=1).ravel()

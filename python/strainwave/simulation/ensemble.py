@@ -22,12 +22,12 @@ from strainwave.messages import listed, one_line, quoted
 from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
 from strainwave.simulation import signals
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import Known
 from strainwave.simulation.initial import known as initial_of
 from strainwave.simulation.resolution import (
-    COARSEST,
     FASTEST_ON_BRISTLES,
+    MAX_STEP_PHASE,
     diverged,
     fastest_part,
     remedy,
@@ -94,7 +94,7 @@ class Ensemble(ComparedByFields):
         return self.columns[name]
 
     def __len__(self) -> int:
-        """How many members."""
+        """Return the count of members."""
         return len(next(iter(self.columns.values())))
 
     def member(self, number: int) -> Recording:
@@ -139,10 +139,10 @@ class Ensemble(ComparedByFields):
 
     @staticmethod
     def read(folder: str | Path) -> Ensemble:
-        """What `simulate_to` wrote to a folder, every value checked against the digest that was written with it.
+        """Return the ensemble that `simulate_to` wrote to a folder; every value is checked against its digest.
 
         Raises:
-            ValueError: the folder holds no ensemble, one that was not finished, or files that are damaged; says which
+            ValueError: the folder holds no ensemble, an unfinished one, or damaged files, which the message names
         """
         files = EnsembleFolder.open(Path(folder))
         missing = [part for part in files.parts() if not files.has(part)]
@@ -156,7 +156,7 @@ class Ensemble(ComparedByFields):
 
     @staticmethod
     def read_partial(folder: str | Path) -> Ensemble:
-        """What is there of an ensemble that was not finished: each member keeps its number, and those that are missing fail.
+        """Return the members of an unfinished ensemble: each member keeps its number, and missing ones count as failed.
 
         Raises:
             ValueError: as `read`, or no member is there
@@ -185,7 +185,7 @@ def _read(files: EnsembleFolder) -> Ensemble:
 
 @dataclass(frozen=True, eq=False)
 class _Plan(ComparedByFields):
-    """What is asked for, checked."""
+    """Checked arguments of an ensemble."""
 
     drive: Drive
     excitation: Excitation
@@ -246,7 +246,7 @@ class _Plan(ComparedByFields):
 
     @property
     def units(self) -> dict[str, str]:
-        """Of the outputs that are recorded."""
+        """Return the units of the recorded outputs."""
         units = signals.units(self.drive, self.recorded.values())
         return {name: units[name] for name in self.recorded}
 
@@ -266,7 +266,7 @@ class _Plan(ComparedByFields):
             self.inputs,
             self.time_grid.samples[1:],
             channels,
-            COARSEST / self.time_grid.longest,
+            MAX_STEP_PHASE / self.time_grid.longest,
             self.threads,
             outputs,
             shown,
@@ -285,9 +285,9 @@ class _Plan(ComparedByFields):
     def failures(
         self, first: int, outputs: Array, ran: NDArray[np.bool_], twists: Array, fastest: Array, refusals: dict[int, str]
     ) -> dict[int, str]:
-        """Why members from `first` on have no result, as `simulate` would say it of each alone."""
+        """Return for each member from `first` on without a result the reason, in the words of `simulate`."""
         found = dict(refusals)
-        coarse = fastest > COARSEST / self.time_grid.longest
+        coarse = fastest > MAX_STEP_PHASE / self.time_grid.longest
         at_rest = coarse & (twists == 0.0)  # such members are not run
         sound = at_rest | ran
         for member in np.flatnonzero(~sound | coarse).tolist():
@@ -298,9 +298,9 @@ class _Plan(ComparedByFields):
         return dict(sorted(found.items()))
 
     def too_coarse(self, member: int, twist: float, fastest: float) -> str:
-        """Says that steps cannot follow what is as fast as that [rad/s] in a member."""
+        """Return the message that steps cannot follow a motion of this rate [rad/s] in a member."""
         drive = self.drive.replace({path: float(column[member]) for path, column in self.parameters.items()})
-        temperature = float(self.excitation.first()[TEMPERATURE])
+        temperature = float(self.excitation.first()[TEMPERATURE_PLACE])
         return too_coarse(self.time_grid.longest, twist, fastest, fastest_part(drive, twist, temperature, fastest))
 
 
@@ -320,7 +320,7 @@ def simulate_many(
     backend: Backend = "cpu",
     progress: bool = False,
 ) -> Ensemble:
-    """Runs a drive many times through one command, each time with other numbers, on all cores.
+    """Run a drive many times through one command, each time with other numbers, on all cores.
 
     Large ensembles compile a kernel, which takes several members to a vector register. The trajectories are those of `simulate`
     with its method "exponential", to the last bit, by a kernel or not, whatever the number of threads and the instruction set;
@@ -347,12 +347,12 @@ def simulate_many(
         TypeError: values that are no numbers, `threads` that is no whole number, and as `simulate`
         ValueError: a parameter that the drive does not have, values out of its range or of unequal number, an output that is
             not known, `threads` below 1, and as `simulate`
-        MemoryError: the outputs are too many; says how large they are
+        MemoryError: the outputs are too many; the message gives their size
         ImportError, OSError: the packages for a GPU are not installed, there is no GPU, or its driver reports an error
 
     Warns:
-        EnsembleWarning: members without result; `failures` of the ensemble says why, and their outputs are not-a-number. Or
-            members whose bristles are too stiff for `dt`
+        EnsembleWarning: members without result; `failures` of the ensemble gives the reasons, and their outputs are
+            not-a-number. Or members whose bristles are too stiff for `dt`
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -391,14 +391,13 @@ def simulate_to(
     backend: Backend = "cpu",
     progress: bool = False,
 ) -> Path:
-    """As `simulate_many`, but writes the members to files as they come: memory stays flat however many they are.
+    """Run an ensemble as `simulate_many`, and write the members to files as they come: memory stays flat for any count.
 
     Parquet files, for everything that reads a folder of them (pandas, polars, DuckDB; `Ensemble.read`). Those in samples/ have
     columns member, time [s] and the outputs, one row a sample; those in members/ have columns member, the parameters, and
     failure, empty where there was none. A part holds some thousand members and appears whole or not at all. plan.parquet, which
-    is written first, says what was asked for. So a run that was interrupted or killed, or whose disk was full, goes on where it
-    ended when it is asked for again: what is there is kept, the others are run, and all are the same bits as of one run on
-    this machine.
+    is written first, contains the arguments. A run that was interrupted or killed, or whose disk was full, continues when it is
+    called again: present members are kept, the others are run, and all are the same bits as of one run on this machine.
 
     Args:
         folder: where to write; must not exist, be empty, or hold the beginning of the same ensemble
@@ -409,9 +408,9 @@ def simulate_to(
         the folder
 
     Raises:
-        FileExistsError: the folder holds something else, or another ensemble; says what differs
+        FileExistsError: the folder contains something else, or another ensemble; the message names the difference
         BlockingIOError: another process is writing to the folder
-        OSError: a file cannot be written; says which, and why
+        OSError: a file cannot be written; the message names it and the reason
         TypeError, ValueError: as `simulate_many`
 
     Warns:
@@ -434,8 +433,8 @@ def simulate_to(
             if not files.has(part):
                 report = None if shown is None else lambda done, begun=part.first: shown(begun * plan.steps + done)
                 ensemble = plan.run(part.first, part.last, report)
-                told = {part.first + member: reason for member, reason in ensemble.failures.items()}
-                files.write(part, ensemble.time, ensemble.columns, told)
+                reasons = {part.first + member: reason for member, reason in ensemble.failures.items()}
+                files.write(part, ensemble.time, ensemble.columns, reasons)
             failures |= files.failures(part)
     _tell(failures, plan.members)
     return folder
@@ -492,7 +491,7 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
 
 
 def _limits(low: float, high: float) -> str:
-    """As the models tell theirs."""
+    """Return a range in the notation of the models."""
     lowest = "(-inf" if low == -np.inf else "(0" if low == SMALLEST else f"[{low:g}"
     return lowest + (", inf)" if high == np.inf else f", {high:g}]")
 
@@ -507,8 +506,8 @@ def _part_size(plan: _Plan) -> int:
 def _tell_of_bristles(dt: float, vibrations: Array) -> None:
     stiff = np.flatnonzero(dt * vibrations > FASTEST_ON_BRISTLES)
     if stiff.size:
-        told = f"{stiff.size} members have {too_stiff(dt, float(vibrations.max()))}"
-        warnings.warn(told, EnsembleWarning, stacklevel=4)
+        words = f"{stiff.size} members have {too_stiff(dt, float(vibrations.max()))}"
+        warnings.warn(words, EnsembleWarning, stacklevel=4)
 
 
 def _tell(failures: Mapping[int, str], members: int) -> None:

@@ -1,4 +1,4 @@
-"""What acts on a drive from outside over time."""
+"""Inputs of a drive over time."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from strainwave.simulation.time_grid import INPUTS, LONG_RUN, LONGER_STEPS, NEVE
 
 Array = NDArray[np.float64]
 ROOM_TEMPERATURE = 293.15  # K
-TEMPERATURE = 4  # place among the inputs
-STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
+TEMPERATURE_PLACE = 4  # among the inputs
+MAX_ADAPTIVE_STEP = 5e-3  # s
 PER_PERIOD = 5.0  # such steps in a period of an input, at the least
-END = 40.0  # bytes: where an adaptive step must end, found in a few goes
+BYTES_PER_END = 40.0  # memory for an instant at which an adaptive step must end (measured)
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """What acts on a drive from outside: the command, the input of its load, and the temperature of the gear [K]."""
+    """Inputs of a drive: the command, the input of its load, and the temperature of the gear [K]."""
 
     command: Scenario
     load: Scenario | float = 0.0
@@ -81,8 +81,10 @@ class Excitation:
         check_room("steps", self.command.duration / dt, STEP + INPUTS, LONG_RUN)
 
     def ends(self, instants: Array, most: int) -> Array:
-        """Where adaptive steps must end [s]: wherever an input jumps, at `instants`, at which a controller acts, and so often
-        that none is as long as a period of an input.
+        """Return the instants at which adaptive steps must end [s].
+
+        They are the jumps of the inputs, `instants`, at which a controller acts, and so many more that no step is as long as a
+        period of an input.
 
         Raises:
             ValueError: it takes more than `most` steps to come from one to the next
@@ -91,17 +93,21 @@ class Excitation:
         duration = self.command.duration
         waves = [wave for signal in self._scenarios for wave in signal.waves]
         fastest = max((abs(w.frequency + t * w.sweep) for w in waves for t in (0.0, duration)), default=0.0)
-        longest = 1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest)
+        longest = 1.0 / max(1.0 / MAX_ADAPTIVE_STEP, PER_PERIOD * fastest)
         if duration > most * longest:
             raise ValueError(
                 f"max_steps = {most} are too few for {duration:g} s: adaptive steps are {longest:.3g} s long at most, which "
                 f"makes {duration / longest:.3g} steps; allow more, or make several runs, each from the end of the one before"
             )
         check_instants(duration, longest, LONGER_STEPS)
-        check_room("steps", duration / longest + len(instants), END, LONG_RUN)
-        regular = grid(longest, duration, 1e-9 * STRETCH)
+        check_room("steps", duration / longest + len(instants), BYTES_PER_END, LONG_RUN)
+        regular = grid(longest, duration, 1e-9 * MAX_ADAPTIVE_STEP)
         ends = np.unique(np.concatenate([regular, instants, *(signal.breaks for signal in self._scenarios)]))
-        return ends[np.append(np.diff(ends) > 1e-9 * STRETCH * (duration > STRETCH), True)] if len(instants) else ends
+        return (
+            ends[np.append(np.diff(ends) > 1e-9 * MAX_ADAPTIVE_STEP * (duration > MAX_ADAPTIVE_STEP), True)]
+            if len(instants)
+            else ends
+        )
 
     def check_temperature(self, ends: Array) -> None:
         """Refuses a temperature that is not positive, at eight places between all `ends`."""
@@ -128,7 +134,7 @@ class Excitation:
         with room_for("steps", len(time_grid.instants), STEP + INPUTS, LONG_RUN):
             inputs = _core.inputs(*self.signals, time_grid.instants)
         if isinstance(self.temperature, Scenario):
-            check_temperature(float(inputs[:, :, TEMPERATURE].min()))
+            check_temperature(float(inputs[:, :, TEMPERATURE_PLACE].min()))
         return inputs
 
 

@@ -1,4 +1,4 @@
-"""Where a run begins: at rest, in a state of another run, or where a few quantities are known and the rest follows."""
+"""Initial state of a run: at rest, a state of another run, or a few known quantities from which the rest follows."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def beginning_numbers(drive: Drive, start: State | None, initial: Mapping[str, A
             quantities, or as `known`
     """
     if start is not None and initial is not None:
-        raise ValueError("a run begins at start or where initial says; give one of them")
+        raise ValueError("start and initial both determine the beginning of a run; give one of them")
     if start is not None:
         return start_of(drive, start).numbers
     given = known(drive, initial)

@@ -10,7 +10,7 @@ import numpy as np
 MAX_INSTANTS = 1e8  # steps or samples of one run or signal: 5.5 hours in steps of 0.2 ms
 MAX_ACTIONS = 1e7  # of a controller in one run: 10 000 s at 1 kHz
 MAX_BYTES = 8e9  # that steps or samples of one run may take
-ACTION = 120.0  # bytes: a sample of a controller, found in a few goes together with the instant at which its output arrives
+BYTES_PER_ACTION = 120.0  # memory for a sample of a controller with the instant at which its output arrives (measured)
 
 
 @contextmanager
@@ -74,4 +74,4 @@ period, or make several runs
             f"a controller with period = {period:g} s acts {duration / period:.3g} times in {duration:g} s; at most "
             f"{MAX_ACTIONS:g} times are allowed; take a longer period, or make several runs"
         )
-    check_room("samples of the controller", duration / period, ACTION, "take a longer period, or make several runs")
+    check_room("samples of the controller", duration / period, BYTES_PER_ACTION, "take a longer period, or make several runs")

@@ -1,4 +1,4 @@
-"""Whether steps were short enough, and whether what came out means anything."""
+"""Checks of a run: steps that are too long, and outputs without meaning."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from strainwave.messages import listed
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
-COARSEST = 1.0  # step times angular frequency of a drive's own motion
-FASTEST_ON_BRISTLES = 2.0  # step times angular frequency of a shaft on its bristles, beyond which fixed steps are in doubt
+MAX_STEP_PHASE = 1.0  # rad: step times angular frequency of a drive's own motion
+FASTEST_ON_BRISTLES = 2.0  # rad: step times angular frequency of a shaft on its bristles, beyond which fixed steps may be wrong
 MOTOR_FAULTS = ("phase_resistance_excess", "dead_time_voltage")
 LARGEST: float = _core.largest  # of all that is recorded
 
 
 def _meaningful(outputs: Array) -> NDArray[np.bool_]:
-    """Which numbers of a run mean anything: neither what is not a number nor what is out of all bounds."""
+    """Return a mask of the meaningful numbers of a run: neither not-a-number nor out of all bounds."""
     return np.abs(outputs) <= LARGEST
 
 
 def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
-    """Says when outputs, shape (names, samples), first mean nothing, and which; not when, where something else does."""
+    """Return the message that names the first output without meaning and its time; outputs of shape (names, samples)."""
     sound = _meaningful(outputs)
     where = int(np.argmin(sound.all(axis=0)))
     wrong = [name for name, is_sound in zip(names, sound[:, where], strict=True) if not is_sound]
@@ -41,7 +41,7 @@ def check_resolution(drive: Drive, dt: float, twist: float, temperature: float) 
     Before a run at rest, else many a step may be spent on events that mean nothing.
     """
     fastest = _core.max_rate(drive, twist, temperature)
-    if fastest * dt > COARSEST:
+    if fastest * dt > MAX_STEP_PHASE:
         raise FloatingPointError(too_coarse(dt, twist, fastest, fastest_part(drive, twist, temperature, fastest)))
 
 
@@ -50,12 +50,12 @@ def fine_enough(drive: Drive, dt: float, shortest: float) -> float:
 
     By halves, so that drives that differ little take the same steps.
     """
-    needed = COARSEST / _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
+    needed = MAX_STEP_PHASE / _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
     return dt if dt <= needed else max(dt * 0.5 ** np.ceil(np.log2(dt / needed)), shortest)
 
 
 def fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:
-    """Which part of a drive is as fast as that [rad/s]: the one without which it is slower."""
+    """Return the part of a drive that causes this rate [rad/s]: the one without which the drive is slower."""
     plain = Drive()
     without = {
         "a body within its gear": drive.replace(gear=drive.gear.replace(structure=plain.gear.structure)),
@@ -73,14 +73,14 @@ def _healthy(motor: Any) -> Any:
 
 
 def too_coarse(dt: float, twist: float, fastest: float, part: str) -> str:
-    """Says that steps of `dt` [s] cannot follow what a part does by itself, which would end in numbers that mean nothing.
+    """Return the message that steps of `dt` [s] cannot follow the motion of a part, so that the numbers would mean nothing.
 
     Of a vibration of angular frequency w the classical scheme diverges beyond dt w = 2.8, and loses a hundredth of the
     amplitude each step at 1.
     """
     return (
         f"dt = {dt:g} s is too coarse for this drive: {part} is as fast as a vibration of {fastest:.4g} rad/s "
-        f"at a twist of {twist:.3g} rad; take dt = {rounded_down(COARSEST / fastest):g} s or less"
+        f"at a twist of {twist:.3g} rad; take dt = {rounded_down(MAX_STEP_PHASE / fastest):g} s or less"
     )
 
 
@@ -90,7 +90,7 @@ def rounded_down(step: float) -> float:
 
 
 def too_stiff(dt: float, vibration: float) -> str:
-    """Says of bristles on which a shaft vibrates [rad/s] that fixed steps of `dt` [s] are in doubt."""
+    """Return the message that fixed steps of `dt` [s] may be wrong for a shaft that vibrates on its bristles [rad/s]."""
     return (
         f"bristles on which a shaft vibrates faster than steps of {dt:g} s can follow, at {vibration:.3g} rad/s; where it "
         f"comes to rest or turns round results may be wrong: "
@@ -106,5 +106,5 @@ def warn_of_bristles(drive: Drive, dt: float) -> None:
 
 
 def remedy(dt: float) -> str:
-    """What to do about a run that diverged."""
+    """Return the remedy for a run that diverged."""
     return f"take a smaller dt (now {dt:g} s) or check the parameters"

@@ -17,15 +17,15 @@ from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.native import kernels
 from strainwave.simulation import signals
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import beginning_numbers, known
 from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import TWIST, Output
 from strainwave.simulation.state import State
-from strainwave.simulation.threads import Told, side_by_side
-from strainwave.simulation.time_grid import CHUNK, LONG_RUN, LONGER_STEPS, STEP, TimeGrid, grid
+from strainwave.simulation.threads import StepCounter, side_by_side
+from strainwave.simulation.time_grid import LONG_RUN, LONGER_STEPS, STEP, STEPS_PER_CHUNK, TimeGrid, grid
 
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
@@ -60,7 +60,7 @@ class Run(Recording):
         method: str,
         unit: str | None = None,
     ) -> Run:
-        """Of outputs that mean something: to check them as any others takes a quarter of a call."""
+        """Make a run of checked outputs; a second check would take a quarter of a call."""
         units = signals.units(drive, recorded.values())
         if unit is not None and "command" in units:
             units["command"] = unit
@@ -100,11 +100,11 @@ def simulate(
     method: Method | None = None,
     progress: bool = False,
 ) -> Run:
-    """Runs a drive through a command and records what happens.
+    """Run a drive through a command and record its outputs.
 
     Steps end at every jump of the inputs. With set-valued friction they are cut at its events, located to rounding, so that
-    sticking is exact. Events are told by how a step ends: a side whose speed changes its sign and is back before the end is
-    taken to slide on, one that sets off and stops before to stick on.
+    sticking is exact. The end of a step determines its events: a side whose speed changes its sign and is back before the
+    end is taken to slide on, one that sets off and stops before to stick on.
 
     Args:
         drive: what is commanded; of a gear set its drive
@@ -132,16 +132,16 @@ def simulate(
         [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], what the motor shows of itself (a
         DC motor current [A] and voltage [V]), friction_input [N.m], friction_mesh [N.m], friction_output [N.m], load_torque
         [N.m], temperature [K], or of these what `record` names, each of shape (n,); the first sample is at t = 0. Its `end` is
-        the state at the end, its `method` says how steps were taken.
+        the state at the end, its `method` describes the steps.
 
     Raises:
         TypeError: an argument is not of its kind
         ValueError: an input or output that the drive does not have, `dt`, `sample` or `temperature` is not positive, an input
             lasts another time than `command`, `method` is not known, or the drive leaves the range in which one of its parts is
-            valid; says which, where and when
-        FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or what damps it; says when, and
-            what would do. Where bristles ask for adaptive steps, as `simulate_adaptively`
-        MemoryError: the steps or the samples are too many; says how large they are, and what to do
+            valid; the message names the part, the place and the time
+        FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or its damping; the message
+            gives the time and the remedy. Where bristles ask for adaptive steps, as `simulate_adaptively`
+        MemoryError: the steps or the samples are too many; the message gives their size and the remedy
 
     Warns:
         RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
@@ -182,13 +182,13 @@ def simulate(
         warn_of_ratings(model, run)
         return run
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
-        course.check_steps(0.0, excitation.first()[TEMPERATURE])
+        course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     taken = method or "exponential"
     kernels.prepare(drive, "simulate", len(time_grid.instants))
     outputs, first = course.beginning(state, excitation.first()), 1
     with progressing(progress, len(time_grid.instants) - 1) as shown:
         for number, chunk in enumerate(time_grid.chunks()):
-            report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
+            report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
             laid_out, keep = excitation.over(chunk), chunk.samples[1:]
             state = _core.simulate(
                 drive, state, chunk.instants, laid_out, keep, _core.Method[taken], course.channels, outputs, first, report
@@ -196,7 +196,7 @@ def simulate(
             first += int(np.count_nonzero(keep))
     check_meaning(course.time, recorded, outputs, remedy(time_grid.longest))
     if method != "rosenbrock":
-        course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE])
+        course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE_PLACE])
     warn_of_bristles(drive, time_grid.longest)
     run = course.run(outputs, state, f"{_named(taken, drive)}, steps of {time_grid.longest:g} s")
     warn_of_ratings(model, run)
@@ -204,14 +204,14 @@ def simulate(
 
 
 class Course(NamedTuple):
-    """What a run with steps of its own choice needs besides a state to begin in: the steps, and what is recorded.
+    """Arguments of a run with steps of its own choice, without its initial state: the steps, and the recorded outputs.
 
     Attributes:
         drive: what runs
         time_grid: steps and samples
         time: of the samples [s]
         recorded: the outputs that the recording has, by name
-        channels: theirs, and that of the twist, which tells whether steps were short enough
+        channels: theirs, and that of the twist, which determines whether steps were short enough
     """
 
     drive: Drive
@@ -266,7 +266,7 @@ def check_samples(duration: float, interval: float, columns: float) -> None:
 
 
 def channels_of(recorded: Mapping[str, Output]) -> list[int]:
-    """The channels of what is recorded, and of the twist, which tells whether steps were short enough."""
+    """Return the channels of the recorded outputs and of the twist, which determines whether steps were short enough."""
     found = [each.channel for each in recorded.values()]
     return found if TWIST in found else [*found, TWIST]
 
@@ -313,11 +313,11 @@ def simulate_adaptively(
     max_steps: int = 10_000_000,
     progress: bool = False,
 ) -> Run:
-    """Runs a drive through a command in steps as long as a tolerance allows.
+    """Run a drive through a command in steps as long as a tolerance allows.
 
     The steps are those of `simulate`'s exponential method. Each ends where a side stops, breaks away or turns round; two of
-    half the length tell its error. Samples lie anywhere within steps: there a step of part of the length gives the state, as
-    exactly as at the ends.
+    half the length estimate its error. Samples lie anywhere within steps: there a step of part of the length gives the state,
+    as exactly as at the ends.
 
     Args:
         drive, command, load_torque, temperature, inputs, start, initial, record, progress: as
@@ -330,7 +330,7 @@ def simulate_adaptively(
             states stick and slip, up to a millisecond
 
     Returns:
-        as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
+        as `simulate`; `method` contains the counts of steps and of those given up for shorter ones
 
     Warns:
         RatingWarning: as `simulate`
@@ -339,7 +339,8 @@ def simulate_adaptively(
         TypeError: as `simulate`
         ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `max_steps` lies below 1 or below what the
             duration takes in the longest steps, 5 ms each, and as `simulate`
-        FloatingPointError: the trajectory diverged, no step keeps the tolerance, or only more than `max_steps` do; says when
+        FloatingPointError: the trajectory diverged, no step keeps the tolerance, or more than `max_steps` would be needed; the
+            message gives the time
         MemoryError: as `simulate`
 
     >>> import strainwave as sw
@@ -393,7 +394,7 @@ def differentiate(
     Returns:
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
-    temperature = excitation.first()[TEMPERATURE]
+    temperature = excitation.first()[TEMPERATURE_PLACE]
     beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
     instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
     excitation.check_laid_out(dt if isinstance(samples, np.ndarray) else min(dt, samples))
@@ -404,8 +405,8 @@ def differentiate(
     with room_for("samples", len(time_grid.times), 8.0 * len(recorded) * (1 + len(numbers)), "sample less often"):
         beginning, kept = known(drive, initial), time_grid.samples[1:]
 
-        def run_by(group: list[int], told: Told) -> tuple[Array, Array]:
-            return _core.differentiate(drive, beginning, time_grid.instants, inputs, kept, group, told)
+        def run_by(group: list[int], counter: StepCounter) -> tuple[Array, Array]:
+            return _core.differentiate(drive, beginning, time_grid.instants, inputs, kept, group, counter)
 
         groups = [list(numbers[first : first + _core.slopes]) for first in range(0, max(len(numbers), 1), _core.slopes)]
         kernels.prepare(drive, "differentiate", kernels.DERIVATIVE_STEPS * len(groups) * len(time_grid.instants))
@@ -418,7 +419,7 @@ def differentiate(
 def recording(
     drive: Drive, time_grid: TimeGrid, recorded: Mapping[str, Output], outputs: Array, temperature: float
 ) -> Recording:
-    """What a run recorded that began at a temperature [K], shape (recorded, samples), the twist among it, if it is sound."""
+    """Return the recording of a checked run that began at a temperature [K]; outputs (recorded, samples) contain the twist."""
     time = time_grid.times
     check_meaning(time, recorded, outputs, remedy(time_grid.longest))
     check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]), temperature)

@@ -29,7 +29,7 @@ from strainwave.simulation.memory import check_instants, room_for
 
 Array = NDArray[np.float64]
 MAX_PULSES = 1e6  # of a pulse train
-SHORTEST = 1e-30  # s: a duration so short that its reciprocal and its square are still numbers
+MIN_DURATION = 1e-30  # s: so short that its reciprocal and its square are still finite
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ class Scenario:
 
         Raises:
             ValueError: `dt` is out of its range, or would make more than 1e8 samples; the unit is not known
-            MemoryError: the samples are too many; says how large they are
+            MemoryError: the samples are too many; the message gives their size
 
         >>> ramp(rate=2.0, duration=1.0).recording(dt=0.25, unit="rad")["command"]
         array([0. , 0.5, 1. , 1.5, 2. ])
@@ -395,7 +395,7 @@ def table(time: ArrayLike, value: ArrayLike) -> Scenario:
 
 
 def _duration(name: str, value: object) -> float:
-    return arguments.number(name, value, "s", "[)", low=SHORTEST)
+    return arguments.number(name, value, "s", "[)", low=MIN_DURATION)
 
 
 def _from(start: float, duration: float, level: float, slope: float) -> Scenario:

@@ -47,14 +47,14 @@ def pieces(
     wave_sweep: ArrayLike = (),
     wave_phase: ArrayLike = (),
 ) -> Scenario:
-    """Any scenario, as its pieces and waves: what no other kind can say.
+    """Return any scenario by its pieces and waves, also those that no other kind describes.
 
     Args:
         start, level, slope, duration: as `Scenario`
         wave_amplitude, wave_frequency, wave_sweep, wave_phase: of each wave, as `Wave`
 
     Raises:
-        ValueError: the waves are not told by equally many numbers, or as `Scenario`
+        ValueError: the lists of the waves differ in length, or as `Scenario`
 
     >>> float(pieces([0.0, 1.0], [0.0, 2.0], [1.0, 0.0], duration=2.0).value(0.5))
     0.5
@@ -89,14 +89,14 @@ DIFFERENCES = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC
 
 @dataclass(frozen=True)
 class ScenarioFile:
-    """What a run does: its command, what else acts on the drive, and how it starts.
+    """Scenario of a run: its command, the other inputs of the drive, and its initial values.
 
     Args:
         command: as `simulate` takes it
         inputs: the other inputs, by name, as `simulate` takes them
         initial: known quantities at the start, by name, as `simulate` takes them; at rest if there are none
         name: what it is called, one line of text
-        note: what else is to be said
+        note: free text
 
     Raises:
         TypeError: an argument is not of its kind
@@ -169,7 +169,7 @@ class ScenarioFile:
 
     @staticmethod
     def read(path: str | Path, drive: Drive | GearSet) -> ScenarioFile:
-        """Read what a drive is to do from a TOML, CSV or Parquet file.
+        """Read the scenario of a drive from a TOML, CSV or Parquet file.
 
         In TOML a signal is a number, or a table whose `kind` is a function of `sw.scenario` and whose other entries are its
         arguments; several tables are added. Numbers are in SI units, or written with theirs::
@@ -191,8 +191,8 @@ class ScenarioFile:
         In CSV and Parquet the columns `time` and `command`, and one for each other input, give points that straight lines join.
 
         Args:
-            path: the file; its suffix tells what it is
-            drive: what is to run: it tells which inputs there are, and in which unit
+            path: the file; its suffix determines its format
+            drive: what is to run: it determines the inputs and their units
 
         Raises:
             TypeError: `drive` is none
@@ -212,7 +212,7 @@ class ScenarioFile:
 
         Args:
             path: the file, which must end in .toml
-            drive: what is to run: it tells the units
+            drive: what is to run: it determines the units
 
         Raises:
             TypeError: `drive` is none
@@ -327,8 +327,8 @@ def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> S
         raise ValueError(f"{place}.kind is missing; write kind = {_kinds()}")
     if not isinstance(kind, str) or kind not in KINDS:
         near = get_close_matches(str(kind).lower(), KINDS, n=1)
-        told = f"{'; near it is ' * bool(near)}{''.join(near)}; write kind = {_kinds()}"
-        raise ValueError(f"{place}.kind = {shortened(kind)} is not known{told}")
+        hint = f"{'; near it is ' * bool(near)}{''.join(near)}; write kind = {_kinds()}"
+        raise ValueError(f"{place}.kind = {shortened(kind)} is not known{hint}")
     known = inspect.signature(KINDS[kind]).parameters
     entries = {key: value for key, value in given.items() if key != "kind"}
     with at(f"{place}: {kind}:"):
@@ -392,7 +392,7 @@ def _with_unit(place: str, given: dict[str, Any]) -> tuple[Any, str]:
 
 
 def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
-    """What stands in the file: texts and numbers before tables."""
+    """Return the content of the file: texts and numbers before tables."""
     content: dict[str, Any] = {key: text for key in TEXTS if (text := getattr(given, key))}
     content["duration"] = _quantity(given.command.duration, "s")
     signals = {"command": given.command, **given.inputs}
@@ -400,7 +400,7 @@ def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
     content |= {name: _quantity(float(value), units[name]) for name, value in constant.items()}
     for name, signal in signals.items():
         if isinstance(signal, Scenario):
-            content[name] = [_with_units(kind, entries, units[name]) for kind, entries in _told(signal)]
+            content[name] = [_with_units(kind, entries, units[name]) for kind, entries in _terms(signal)]
     if given.initial:
         content["initial"] = {name: _quantity(float(value), QUANTITIES[name][1]) for name, value in given.initial.items()}
     return content
@@ -418,17 +418,17 @@ def _quantity(value: float | list[float], unit: str) -> Any:
     return quantity
 
 
-Told = list[tuple[str, dict[str, Any]]]  # kinds, each with its arguments
+Terms = list[tuple[str, dict[str, Any]]]  # kinds, each with its arguments
 
 
-def _told(signal: Scenario) -> Told:
+def _terms(signal: Scenario) -> Terms:
     """A signal as the kinds whose sum it is to the last bit, else as its pieces."""
-    told = _line(signal) + [_wave(each, signal.duration) for each in signal.waves]
-    return told if _sum_of(told, signal.duration) == signal else [_pieces(signal)]
+    terms = _line(signal) + [_wave(each, signal.duration) for each in signal.waves]
+    return terms if _sum_of(terms, signal.duration) == signal else [_pieces(signal)]
 
 
-def _line(signal: Scenario) -> Told:
-    """What makes the line of a signal, without its waves; nothing where waves are all there is."""
+def _line(signal: Scenario) -> Terms:
+    """Return the terms of a signal without its waves; none if it has waves only."""
     start, level, slope = (values.tolist() for values in (signal.start, signal.level, signal.slope))
     if signal.waves and not any(level) and not any(slope):
         return []
@@ -456,8 +456,8 @@ def _pieces(signal: Scenario) -> tuple[str, dict[str, Any]]:
     return "pieces", line | {f"wave_{name}": [float(getattr(wave, name)) for wave in signal.waves] for name in names}
 
 
-def _sum_of(told: Told, duration: float) -> Scenario | None:
+def _sum_of(terms: Terms, duration: float) -> Scenario | None:
     try:
-        return reduce(add, [KINDS[kind](**entries, duration=duration) for kind, entries in told])
+        return reduce(add, [KINDS[kind](**entries, duration=duration) for kind, entries in terms])
     except ValueError:  # what a kind refuses, as a wave of negative frequency
         return None

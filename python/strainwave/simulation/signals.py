@@ -1,4 +1,4 @@
-"""What goes into a drive and comes out of it, by name: its parts say what they take and what they show."""
+"""Inputs and outputs of a drive by name; its parts define them."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def command_unit(drive: Drive) -> str:
 
 
 def controls_position(drive: Drive) -> bool:
-    """Whether the command of a drive is an output angle."""
+    """True if the command of a drive is an output angle."""
     return command_unit(drive) == "rad"
 
 
@@ -103,7 +103,7 @@ def actuation(drive: Drive) -> Output:
 
 
 def load_input(drive: Drive) -> str:
-    """What the load of a drive takes as input.
+    """Return the name of the input of a drive's load.
 
     >>> from strainwave import loads
     >>> load_input(Drive()), load_input(Drive(load=loads.Prescribed()))
@@ -119,7 +119,7 @@ def _load_input_of(kind: type[Any]) -> str:
 
 
 def instants(drive: Drive, state: Array, duration: float) -> Array:
-    """When a sampled controller acts within `duration` [s], in order; none of one that acts all the time.
+    """Return the instants at which a sampled controller acts within `duration` [s]; none for a continuous one.
 
     Raises:
         ValueError, MemoryError: they are too many

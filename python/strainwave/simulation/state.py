@@ -117,8 +117,8 @@ class State(Mapping[str, float]):
         return State.of, (self.drive, np.array(self.numbers))
 
 
-class Layout:
-    """Where the numbers of a drive's state stand.
+class StateLayout:
+    """Places of the numbers in a drive's state.
 
     Attributes:
         names: of the numbers, in order
@@ -147,7 +147,7 @@ class Layout:
 
 
 def same_shape(one: Drive, other: Drive) -> bool:
-    """Whether states of one drive are states of another."""
+    """True if states of one drive are states of another."""
     return one is other or _core.shape(one) == _core.shape(other)
 
 

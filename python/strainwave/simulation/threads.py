@@ -8,25 +8,25 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Event
 from typing import TypeVar
 
-Told = Callable[[int], None]  # what a call of the core tells now and then how many steps are done
+StepCounter = Callable[[int], None]  # a call of the core reports to it now and then the count of steps done
 T = TypeVar("T")
 
-# Of libraries of linear algebra, which wait for each other beside other processes and take up to ten times the processor time.
+# Of libraries of linear algebra, whose threads wait for each other if other processes run: ten times the processor time.
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def available_threads() -> int:
-    """How many threads this process may run at once."""
+    """Return the count of threads that this process may run at once."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def side_by_side(calls: Sequence[Callable[[Told], T]]) -> list[T]:
-    """What the calls return. The first runs in this thread, so that Ctrl-C reaches it; what it raises ends the others."""
+def side_by_side(calls: Sequence[Callable[[StepCounter], T]]) -> list[T]:
+    """Return the results of the calls. The first runs in this thread, which Ctrl-C reaches; its failure ends the others."""
     ended = Event()
 
     def go_on(_: int) -> None:
         if ended.is_set():
-            raise InterruptedError("a call beside this one has failed")
+            raise InterruptedError("a parallel call has failed")
 
     if len(calls) == 1 or available_threads() == 1:
         return [call(go_on) for call in calls]

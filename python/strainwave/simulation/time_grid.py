@@ -18,7 +18,7 @@ NEVER = np.empty(0)
 STEP, INPUTS = 33.0, 144.0
 LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
 LONGER_STEPS = "take longer steps or slower inputs"
-CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
+STEPS_PER_CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +52,12 @@ class TimeGrid(ComparedByFields):
 
     def chunks(self) -> Iterator[TimeGrid]:
         """The same time_grid in pieces that follow each other."""
-        for start in range(0, len(self.instants) - 1, CHUNK):
-            yield TimeGrid(self.instants[start : start + CHUNK + 1], self.samples[start : start + CHUNK + 1], self.longest)
+        for start in range(0, len(self.instants) - 1, STEPS_PER_CHUNK):
+            yield TimeGrid(
+                self.instants[start : start + STEPS_PER_CHUNK + 1],
+                self.samples[start : start + STEPS_PER_CHUNK + 1],
+                self.longest,
+            )
 
 
 def grid(step: float, duration: float, tolerance: float) -> Array:

@@ -26,34 +26,34 @@ from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 from strainwave.simulation.ensemble import Ensemble
 from strainwave.simulation.signals import outputs
 from strainwave.studies.pure_error import PureError, pure_error
-from strainwave.studies.recovery import Model, corrected, recover, refined
+from strainwave.studies.recovery import RecoveryModel, corrected, recover, refined
 
 Array = NDArray[np.float64]
 
-STROKE = np.pi / 2.0  # rad: document A says "the maximum stroke", and not how much
-DURATION = 5.0  # s: document A
+STROKE_ANGLE = np.pi / 2.0  # rad: document A states "the maximum stroke" without its size
+STROKE_DURATION = 5.0  # s: document A
 DRIVE = "tilt-actuator"
 
 USUAL = "max"  # how the lobes share where one way is shown: the one with which order 2, that is observed, is of first order
 MICRON, DEGREE = 1e-6, np.pi / 180.0
 SHOWN_TILT = 0.2 * DEGREE
-BESIDE = 20e-6  # m: e_1 beside which the generator's own misalignment is tried
-# The sweeps: what is changed, over which levels, beside what; SI.
+USUAL_E1 = 20e-6  # m: e_1 of the sweep of the generator's own misalignment
+# The sweeps: the varied parameter, its levels, and the other parameters that differ from zero; SI.
 SWEEPS: dict[str, tuple[str, tuple[float, ...], dict[str, float]]] = {
     "e1": ("housing_eccentricity", (10e-6, 20e-6, 40e-6, 80e-6), {}),
     "beta": ("housing_tilt_x", tuple(DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
     "h": ("offset", (0.0, 2e-3, 8e-3), {"housing_tilt_x": SHOWN_TILT}),
     "e2": ("generator_eccentricity", (10e-6, 20e-6, 40e-6, 80e-6), {}),
     "alpha": ("generator_tilt_x", tuple(DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
-    "e2 beside e1": ("generator_eccentricity", (5e-6, 10e-6, 20e-6, 40e-6), {"housing_eccentricity": BESIDE}),
+    "e2 with e1": ("generator_eccentricity", (5e-6, 10e-6, 20e-6, 40e-6), {"housing_eccentricity": USUAL_E1}),
 }
 SHOWN_TILTS = SWEEPS["beta"][1][:3]
 BOTH_LOOPS = ("e1", "beta")  # sweeps that are run with the loop on the motor encoder, too
 SILENT = ("e2", "alpha")  # sweeps of what stands on the shaft alone
 SEEN_ORDERS = (1.0, 2.0, 4.0)
-HIGHEST = 10.0  # order of the spectra
-NEAR = 0.15  # an order this close to a whole one belongs to it
-SLOW = 0.5  # an order below is that of the load over the stroke
+MAX_ORDER = 10.0  # of the spectra
+WHOLE_ORDER_TOLERANCE = 0.15  # orders: the distance from a whole order within which an order belongs to it
+MIN_ORDER = 0.5  # below it lies the order of the load over the stroke
 
 TIMES = (0.5, 1.0, 2.0)  # ramp times over that of the study
 GAINS = (0.5, 1.0, 2.0, 4.0)  # gains of the position loop over that of the drive
@@ -68,11 +68,11 @@ INJECTED = {
 FEWEST_ROWS = 2  # of a measured ramp
 RECORDS = {"transmission_error": 2e-5, "current": 0.02}  # root mean square of the noise: two encoders [rad], current sensor [A]
 SERIES_RUNS = 200  # about, of the drive with its gear in series: as many determine whether a kernel is compiled first
-TRIALS = 12  # noises with which the recovery is tried
+NOISE_TRIALS = 12  # records with different noise from which the misalignment is recovered
 
 
 @dataclass(frozen=True)
-class Levels:
+class SweepLevels:
     """Ramps over the levels of all sweeps, for one `combine` and one loop.
 
     Attributes:
@@ -97,7 +97,7 @@ class Levels:
 
 @dataclass(frozen=True)
 class Passing:
-    """How much of the error reaches the output, over ramp times and gains, for one loop.
+    """Share of the error that reaches the output, over ramp times and gains, for one loop.
 
     Attributes:
         loop: where the position loop closes
@@ -111,14 +111,14 @@ class Passing:
 
 @dataclass(frozen=True)
 class Recovery:
-    """A misalignment that was put in, and what a record tells of it.
+    """A simulated misalignment, and its estimates from records.
 
     Attributes:
         column: of the record
         noise: root mean square of the noise in it
-        law: what was put in
-        first: what the first record tells, by `combine` assumed
-        trials: what records with other noises tell, with the right `combine`
+        law: the simulated misalignment
+        first: estimates from the first record, by assumed `combine`
+        trials: estimates from records with other noises, with the right `combine`
     """
 
     column: str
@@ -135,7 +135,7 @@ class Recovery:
 
     @property
     def best(self) -> MisalignmentEstimate:
-        """What the first record tells, once it was refined."""
+        """Return the refined estimate from the first record."""
         return self.trials[0]
 
     @property
@@ -146,7 +146,7 @@ class Recovery:
 
 @dataclass(frozen=True)
 class MisalignmentStudy:
-    """What the study found.
+    """Results of the study.
 
     Attributes:
         gear_set: the drive with its sources
@@ -160,7 +160,7 @@ class MisalignmentStudy:
         passing: by loop
         spectra: orders of torque, current and output angle by channel, for the straight and the shown run
         pure: Figure 3.a
-        recoveries: what records tell
+        recoveries: misalignments and their estimates
         measured: a recording of a ramp, where one was given
     """
 
@@ -171,7 +171,7 @@ class MisalignmentStudy:
     shown: Mapping[str, Mapping[float, Recording]]
     series: ActuatorRamp
     shown_in_series: Mapping[float, Recording]
-    levels: Mapping[tuple[str, str], Levels]
+    levels: Mapping[tuple[str, str], SweepLevels]
     passing: Mapping[str, Passing]
     spectra: Mapping[str, tuple[Recording, Recording]]
     pure: PureError
@@ -185,11 +185,11 @@ class MisalignmentStudy:
 
     @property
     def staged(self) -> bool:
-        """Whether the gear has stages that are in series for all but the shown runs."""
+        """True if the gear has stages that are in series for all but the shown runs."""
         return self.series is not self.ramp
 
     def off_in_series(self, name: str) -> float:
-        """How far the swing of a column with the shown tilt is from that with the stages in series, as a share of it."""
+        """Return the relative difference of a column's swing, stages in series against the ramp's gear, at the shown tilt."""
         swings = [
             swing(difference(self.ramp, runs, SHOWN_TILT, name)[name]) for runs in (self.shown[OUTPUT], self.shown_in_series)
         ]
@@ -202,13 +202,13 @@ class MisalignmentStudy:
 
 def misalignment(
     drive: str | Path = DRIVE,
-    stroke: float = STROKE,
-    duration: float = DURATION,
+    stroke: float = STROKE_ANGLE,
+    duration: float = STROKE_DURATION,
     measured: str | Path | None = None,
     measured_error: str | Path | None = None,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> MisalignmentStudy:
-    """Runs the study.
+    """Run the study.
 
     Args:
         drive: name or path of a set whose controller is a position loop around a speed loop
@@ -216,7 +216,7 @@ def misalignment(
         duration: of the ramp [s]
         measured: a recording of a ramp: time, and some of torque, current, output_angle and input_angle
         measured_error: a curve of the pure kinematic error: input_angle and kinematic_error, over a turn
-        progress: told of each stage
+        progress: is called with the name of each stage
 
     Raises:
         ValueError: a file cannot be read, the drive has no motor and controller, or no loop that closes on both sides, or the
@@ -274,16 +274,16 @@ def _spectra(ramp: ActuatorRamp, runs: Mapping[float, Recording], name: str) -> 
         run = ramp.settled(runs[tilt])
         values = run["output_angle"] - run["command"] if name == "output_angle" else run[name]
         columns = {"input_angle": run["input_angle"], name: values}
-        found.append(order_spectrum(Recording(columns, {each: run.unit(each) for each in columns}), name, HIGHEST))
+        found.append(order_spectrum(Recording(columns, {each: run.unit(each) for each in columns}), name, MAX_ORDER))
     return found[0], found[1]
 
 
 def share_of_whole_orders(ramp: ActuatorRamp, runs: Mapping[float, Recording], name: str) -> float:
-    """How much of the power of a difference lies at whole orders, or so close that the load over the stroke explains it."""
-    spectrum = order_spectrum(difference(ramp, runs, SHOWN_TILT, name), name, HIGHEST)
+    """Return the share of a difference's power at whole orders, or so close that the load over the stroke explains it [1]."""
+    spectrum = order_spectrum(difference(ramp, runs, SHOWN_TILT, name), name, MAX_ORDER)
     order, power = spectrum["order"], spectrum["amplitude"] ** 2
-    counted = order > SLOW
-    near = np.abs(order - np.round(order)) <= NEAR
+    counted = order > MIN_ORDER
+    near = np.abs(order - np.round(order)) <= WHOLE_ORDER_TOLERANCE
     return float(power[counted & near].sum() / power[counted].sum())
 
 
@@ -291,17 +291,17 @@ def share_of_whole_orders(ramp: ActuatorRamp, runs: Mapping[float, Recording], n
 
 
 def members(sweeps: Iterable[str]) -> tuple[list[dict[str, float]], dict[str, slice]]:
-    """What each run of some sweeps changes of the straight law, and which runs are of which sweep."""
+    """Return the changes of the straight law in each run of some sweeps, and the runs of each sweep."""
     changes: list[dict[str, float]] = [{}]
     rows = {}
     for sweep in sweeps:
-        name, values, beside = SWEEPS[sweep]
+        name, values, others = SWEEPS[sweep]
         rows[sweep] = slice(len(changes), len(changes) + len(values))
-        changes += [{**beside, name: value} for value in values]
+        changes += [{**others, name: value} for value in values]
     return changes, rows
 
 
-def swept(ramp: ActuatorRamp, law: Any) -> Levels:
+def swept(ramp: ActuatorRamp, law: Any) -> SweepLevels:
     """Runs of all levels, without noise of the sensors: differences are those of the misalignment alone."""
     changes, rows = members(SWEEPS if _side(ramp) == OUTPUT else BOTH_LOOPS)
     runs = (
@@ -318,11 +318,11 @@ def swept(ramp: ActuatorRamp, law: Any) -> Levels:
     columns = {name: [change.get(name, getattr(law, name)) for change in changes] for name in names}
     columns |= {name: [row[name] for row in found] for name in found[0]}
     known = {name: units[name] for name in names} | {name: _unit(name) for name in found[0]}
-    return Levels(law.combine, _side(ramp), Recording(columns, known), rows)
+    return SweepLevels(law.combine, _side(ramp), Recording(columns, known), rows)
 
 
 def effect(ramp: ActuatorRamp, runs: Ensemble, number: int) -> dict[str, float]:
-    """What a run differs from the straight one by; columns as those of `Levels.table`."""
+    """Return the differences of a run from the straight one; names as the columns of `Levels.table`."""
     straight, run = (ramp.settled(runs.member(each)) for each in (0, number))
     found = {"error_swing": swing(run["kinematic_error"])}
     columns = {"input_angle": run["input_angle"], "error": run["kinematic_error"]}
@@ -343,7 +343,7 @@ def swing(values: Array) -> float:
     return 0.5 * float(np.ptp(values))
 
 
-def power_of_level(levels: Levels, sweep: str, name: str) -> float:
+def power_of_level(levels: SweepLevels, sweep: str, name: str) -> float:
     """The exponent with which a column grows with the level, by least squares of the logarithms."""
     level = levels.column(sweep, SWEEPS[sweep][0])
     return float(np.polyfit(np.log(level), np.log(levels.column(sweep, name)), 1)[0])
@@ -356,7 +356,7 @@ def _unit(name: str) -> str:
 
 
 def _side(ramp: ActuatorRamp) -> str:
-    """Where the position loop closes."""
+    """Return the side on which the position loop closes."""
     control: Any = ramp.drive.control
     while not hasattr(control, "feedback"):
         control = control.law
@@ -368,7 +368,7 @@ def _side(ramp: ActuatorRamp) -> str:
 
 def passed(ramp: ActuatorRamp, law: Any) -> Passing:
     """The share of the error that the output has at orders 2 and 4, over ramp times and gains."""
-    misaligned = law.replace(combine=USUAL, housing_eccentricity=BESIDE)
+    misaligned = law.replace(combine=USUAL, housing_eccentricity=USUAL_E1)
     rows = []
     for times in TIMES:
         lasting = ramp.without_noise().lasting(times * ramp.duration).with_error(misaligned)
@@ -376,7 +376,7 @@ def passed(ramp: ActuatorRamp, law: Any) -> Passing:
         changes = [
             {ramp.gain_path: gain, f"{ERROR}.housing_eccentricity": eccentricity}
             for gain in gains
-            for eccentricity in (0.0, BESIDE)
+            for eccentricity in (0.0, USUAL_E1)
         ]
         runs = lasting.many(changes, record=[*CHANNELS, "kinematic_error"])
         for place, gain in enumerate(gains):
@@ -422,7 +422,7 @@ def share_by_ideal_loop(frequency: Any, gain: float) -> Any:
 
 def recovered(ramp: ActuatorRamp, law: Any) -> Iterator[Recovery]:
     """Puts a misalignment in, and looks for it in what can be measured."""
-    model = Model.of(ramp)
+    model = RecoveryModel.of(ramp)
     for combine in ("max", "single"):
         straight = law.replace(combine=combine)
         injected = straight.replace(**INJECTED)
@@ -441,10 +441,12 @@ def _records(ramp: ActuatorRamp) -> list[Recording]:
     seeds = noises(ramp.drive, "seed")
     if not seeds:
         run = ramp.settled(ramp.run())
-        return [run] * TRIALS
-    changes = [{path: float(1 + trial * len(seeds) + place) for place, path in enumerate(seeds)} for trial in range(TRIALS)]
+        return [run] * NOISE_TRIALS
+    changes = [
+        {path: float(1 + trial * len(seeds) + place) for place, path in enumerate(seeds)} for trial in range(NOISE_TRIALS)
+    ]
     runs = ramp.many(changes, record=["input_angle", *RECORDS])
-    return [ramp.settled(runs.member(trial)) for trial in range(TRIALS)]
+    return [ramp.settled(runs.member(trial)) for trial in range(NOISE_TRIALS)]
 
 
 def _noisy(recording: Recording, column: str, trial: int) -> Recording:

@@ -32,11 +32,11 @@ Array = NDArray[np.float64]
 FULL, SIMPLIFIED = "full", "simplified"
 SETS = {FULL: "position-drive-full-friction", SIMPLIFIED: "position-drive"}
 COMPARED = ("output_angle", "input_angle", "current")
-BAND = 0.02  # of a change, within which a response has settled
+SETTLING_BAND = 0.02  # share of a change within which a response has settled [1]
 
-REST = 0.05  # rad at the output, 5 rad at the motor: no overshoot leaves the domain of the friction
+REST_ANGLE = 0.05  # rad at the output, 5 rad at the motor: no overshoot leaves the domain of the friction
 STEP, SINE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 allows (E-P13)
-SAMPLE = 1e-3  # s
+SAMPLE_TIME = 1e-3  # s
 
 FIT_ERROR = 0.0052  # N.m: document P, Table 1, root mean square error of the average friction
 # Document P, Table 4: root mean square error [rad], largest error [rad], correlation coefficient. It compares simulated with
@@ -48,16 +48,16 @@ TABLE_4 = {
 }
 
 STROKES = (0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 45.0, 65.0, 90.0, 120.0, 160.0, 230.0)  # rad at the motor
-PULSES = 12  # of each voltage, from the least stroke to the largest
+PULSES_PER_VOLTAGE = 12  # from the least stroke to the largest
 VOLTAGES = (6.0, 12.0, 24.0)  # V, of pulses; above the 2.99 V at which the drive breaks away
 USUAL_VOLTAGE = 12.0  # V, of the pulses that are shown
-MOVE = 2.0  # s: how long a move under control takes
-COASTING = 2.5  # s: after a pulse, until the drive has come to rest
-COARSE = 1e-3  # s: a step of the sweeps; ten times shorter ones change strokes by a few millionths
+MOVE_DURATION = 2.0  # s: of a move under control
+COASTING_DURATION = 2.5  # s: from the end of a pulse until the drive is at rest
+SWEEP_STEP = 1e-3  # s: ten times shorter steps change strokes by a few millionths
 
 
 @dataclass(frozen=True)
-class Experiment:
+class CommandExperiment:
     """One command, run through both models.
 
     Attributes:
@@ -81,8 +81,8 @@ class Experiment:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """A measured run beside the models under the same command.
+class MeasuredRun:
+    """A measured run, and the models under the same command.
 
     Attributes:
         recording: time, from 0 on, command and output_angle
@@ -99,7 +99,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class PositionControl:
-    """What the study found.
+    """Results of the study.
 
     Attributes:
         sets: the set of each model
@@ -118,11 +118,11 @@ class PositionControl:
     """
 
     sets: Mapping[str, GearSet]
-    experiments: tuple[Experiment, ...]
+    experiments: tuple[CommandExperiment, ...]
     under_control: Recording
     by_pulse: Mapping[float, Recording]
     pulse_suffices_to: Mapping[float, float]
-    measured: Measured | None
+    measured: MeasuredRun | None
 
     @property
     def law_suffices_to(self) -> float:
@@ -145,11 +145,11 @@ class PositionControl:
 def position_control(
     measured: str | Path | None = None, progress: Callable[[str], None] = lambda stage: None
 ) -> PositionControl:
-    """Runs the study.
+    """Run the study.
 
     Args:
         measured: a recording of your own with time, command [rad] and output_angle [rad], from rest; a path
-        progress: told of each stage
+        progress: is called with the name of each stage
 
     Raises:
         ValueError: the recording cannot be read, or lacks a column
@@ -184,26 +184,29 @@ def position_control(
 
 def commands() -> dict[str, tuple[str, Scenario]]:
     """Title and command of each experiment; all begin at rest at 0.05 rad of the output."""
-    at = f"{1e3 * REST:g} mrad"
+    at = f"{1e3 * REST_ANGLE:g} mrad"
     return {
         "step": (
             f"Step of {1e3 * STEP:g} mrad",
-            constant(REST, 2.0) + step(STEP, 2.0, start=0.1),
+            constant(REST_ANGLE, 2.0) + step(STEP, 2.0, start=0.1),
         ),
         "sine": (
             f"Sine of 1 Hz, {1e3 * SINE:g} mrad about {at}",
-            sine(SINE, frequency=1.0, duration=3.0, offset=REST),
+            sine(SINE, frequency=1.0, duration=3.0, offset=REST_ANGLE),
         ),
         "pulse-train": (
             f"Pulses of {1e3 * STEP:g} mrad, 0.5 s each second",
-            constant(REST, 3.0) + pulse_train(STEP, period=1.0, width=0.5, duration=3.0, start=0.1),
+            constant(REST_ANGLE, 3.0) + pulse_train(STEP, period=1.0, width=0.5, duration=3.0, start=0.1),
         ),
     }
 
 
-def _experiment(name: str, title: str, command: Scenario, drives: Mapping[str, Drive]) -> Experiment:
-    runs = {model: simulate(drive, command, sample=SAMPLE, initial={"output_angle": REST}) for model, drive in drives.items()}
-    return Experiment(
+def _experiment(name: str, title: str, command: Scenario, drives: Mapping[str, Drive]) -> CommandExperiment:
+    runs = {
+        model: simulate(drive, command, sample=SAMPLE_TIME, initial={"output_angle": REST_ANGLE})
+        for model, drive in drives.items()
+    }
+    return CommandExperiment(
         name,
         title,
         command,
@@ -215,7 +218,7 @@ def _experiment(name: str, title: str, command: Scenario, drives: Mapping[str, D
 
 
 def _tracking(run: Recording) -> Agreement:
-    """How far the output angle is from its command."""
+    """Return the agreement of the output angle with its command."""
     asked = Recording({"time": run.time, "output_angle": run["command"]}, {"time": "s", "output_angle": run.unit("command")})
     return compare(asked, run.select(["time", "output_angle"]))[0]
 
@@ -227,7 +230,7 @@ def _agreement(first: Recording, second: Recording, names: tuple[str, ...]) -> d
 def _settling(run: Recording, command: Scenario) -> tuple[float, ...]:
     """After each jump of the command, until the next."""
     jumps = [*command.breaks.tolist(), command.duration]
-    return tuple(settling_time(run.between(*ends), band=BAND) for ends in pairwise(jumps))
+    return tuple(settling_time(run.between(*ends), band=SETTLING_BAND) for ends in pairwise(jumps))
 
 
 # ---- Strokes ---------------------------------------------------------------------------------------------------------
@@ -243,7 +246,7 @@ def _move_under_control(drives: Mapping[str, Drive], stroke: float) -> dict[str,
     command = cosine_move(stroke / drives[SIMPLIFIED].gear.kinematics.ratio)
     models = _models(drives, stroke)
     runs = {
-        name: simulate(drive, command, COARSE, sample=SAMPLE, record=["output_angle", "current"])
+        name: simulate(drive, command, SWEEP_STEP, sample=SAMPLE_TIME, record=["output_angle", "current"])
         for name, drive in models.items()
     }
 
@@ -263,13 +266,15 @@ def _move_under_control(drives: Mapping[str, Drive], stroke: float) -> dict[str,
 
 def cosine_move(angle: float) -> Scenario:
     """Half a cosine of 2 s from rest at 0 to rest at an output angle [rad]."""
-    return sine(0.5 * angle, frequency=0.5 / MOVE, duration=MOVE, phase=-0.5 * pi, offset=0.5 * angle)
+    return sine(0.5 * angle, frequency=0.5 / MOVE_DURATION, duration=MOVE_DURATION, phase=-0.5 * pi, offset=0.5 * angle)
 
 
 def moves_by_pulse(drives: Mapping[str, Drive], voltage: float) -> Recording:
     """One pulse of a voltage [V] in open loop for each of some strokes; columns as `PositionControl.by_pulse` has them."""
     ends = pulse_width(drives[SIMPLIFIED], voltage, STROKES[0]), pulse_width(drives[FULL], voltage, STROKES[-1])
-    return _columns([_move_by_pulse(drives, voltage, width) for width in np.geomspace(*ends, PULSES)], {"width": "s"})
+    return _columns(
+        [_move_by_pulse(drives, voltage, width) for width in np.geomspace(*ends, PULSES_PER_VOLTAGE)], {"width": "s"}
+    )
 
 
 def _move_by_pulse(drives: Mapping[str, Drive], voltage: float, width: float) -> dict[str, float]:
@@ -302,23 +307,23 @@ def pulse_limit(drives: Mapping[str, Drive], voltage: float, pulses: Recording) 
 
 
 def _excess(full: Any, stronger: Any, weaker: Any) -> Any:
-    """How far beyond the other two the first is; negative between them."""
+    """Return the distance of the first from the range of the other two; negative within it."""
     return np.maximum(full - weaker, stronger - full)
 
 
 def travel(drive: Drive, voltage: float, width: float) -> float:
-    """How far a pulse in open loop turns the motor until it rests [rad]: `voltage` [V] for `width` [s], then 0 V."""
-    duration = width + COASTING
+    """Return the turn of the motor by a pulse in open loop [rad]: `voltage` [V] for `width` [s], then 0 V until it rests."""
+    duration = width + COASTING_DURATION
     command = step(voltage, duration) - step(voltage, duration, start=width)
     open_loop = drive.replace(control=control.OpenLoop())
-    run = simulate(open_loop, command, COARSE, sample=0.01, record=["input_angle"])
+    run = simulate(open_loop, command, SWEEP_STEP, sample=0.01, record=["input_angle"])
     if run.end.input_slip_direction != 0.0:
-        raise ValueError(f"the drive still turns {COASTING:g} s after a pulse of {voltage:g} V for {width:g} s")
+        raise ValueError(f"the drive still turns {COASTING_DURATION:g} s after a pulse of {voltage:g} V for {width:g} s")
     return float(run["input_angle"][-1])
 
 
 def pulse_width(drive: Drive, voltage: float, stroke: float) -> float:
-    """How long a pulse [s] of a voltage [V] must be for a stroke of the motor [rad]."""
+    """Return the width of a pulse [s] of a voltage [V] that moves the motor by a stroke [rad]."""
     from scipy.optimize import brentq
 
     shortest, longest = 1e-3, 1e-2
@@ -368,7 +373,7 @@ def law_limit(drive: Drive) -> float:
 
 
 def first_above(place: Array, excess: Array) -> float:
-    """Where an excess first becomes positive, on the straight line between two places; inf if it never does."""
+    """Return the first place of a positive excess, on the straight line between two places; inf if there is none."""
     above = np.flatnonzero(excess > 0.0)
     if not above.size:
         return inf
@@ -380,7 +385,7 @@ def first_above(place: Array, excess: Array) -> float:
 
 
 def _columns(rows: list[dict[str, float]], units: Mapping[str, str]) -> Recording:
-    """Rows as a recording, whose columns are angles [rad] unless `units` says otherwise."""
+    """Return rows as a recording, whose columns are angles [rad] unless `units` names another unit."""
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     return Recording(columns, {name: units.get(name, "rad") for name in columns})
 
@@ -396,13 +401,13 @@ def _recording(path: Path) -> Recording:
     return Recording(columns, {"time": "s", "command": "rad", "output_angle": "rad"}, title=path.name)
 
 
-def _measured(recording: Recording, drives: Mapping[str, Drive]) -> Measured:
+def _measured(recording: Recording, drives: Mapping[str, Drive]) -> MeasuredRun:
     command = table(recording.time, recording["command"])
     initial = {"output_angle": float(recording["output_angle"][0])}
-    runs = {model: simulate(drive, command, sample=SAMPLE, initial=initial) for model, drive in drives.items()}
+    runs = {model: simulate(drive, command, sample=SAMPLE_TIME, initial=initial) for model, drive in drives.items()}
     measured = recording.select(["time", "output_angle"])
     agreement = {model: compare(measured, run)[0] for model, run in runs.items()}
-    return Measured(recording, runs, agreement, _beyond(drives[FULL], runs[FULL]["input_angle"]))
+    return MeasuredRun(recording, runs, agreement, _beyond(drives[FULL], runs[FULL]["input_angle"]))
 
 
 def _beyond(drive: Drive, angle: Array) -> tuple[float, float] | None:

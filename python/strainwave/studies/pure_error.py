@@ -1,4 +1,4 @@
-"""The pure kinematic error over a turn beside a measured curve, and `Misalignment` fitted to it: document A's Figure 3.a."""
+"""The pure kinematic error over a turn against a measured curve, and `Misalignment` fitted to it: document A's Figure 3.a."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
-from strainwave.diagnose.inversion import COMBINE, MICRON, displaced
+from strainwave.diagnose.inversion import COMBINE, M_PER_MICRON, displaced
 from strainwave.files.recording import Recording
 
 Array = NDArray[np.float64]
 
-TURN = 2.0 * np.pi
-FEWEST = 24  # points of a curve over a turn
+FULL_TURN = 2.0 * np.pi  # rad
+MIN_POINTS = 24  # of a measured curve over a turn
 # Document A shows its measured curve as a picture alone. Assumed: the amplitudes of E-A5, and phases.
 ASSUMED_CURVE = kinematic_error.Fourier(order=[1, 2, 4], amplitude=[0.8e-4, 3.0e-4, 0.5e-4], phase=[0.3, -0.8, 0.7])
 
@@ -42,12 +42,12 @@ class ErrorFit:
 
     @property
     def size(self) -> float:
-        """How large m is [m]."""
+        """Return the size of m [m]."""
         return float(np.hypot(self.determined["m_x"], self.determined["m_y"]))
 
     @property
     def possible(self) -> bool:
-        """Whether m is less than half the difference of the wave generator's axes, by which the lobes stand out."""
+        """True if m is less than half the difference of the wave generator's axes, by which the lobes stand out."""
         return self.size < 0.5 * float(self.law.major_radius - self.law.minor_radius)
 
 
@@ -90,20 +90,20 @@ def pure_error(measured: str | Path | None, law: Any) -> PureError:
 
 
 def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:
-    """The law that is closest to a curve of mean zero, by least squares from several starts.
+    """Fit the law to a curve of mean zero, by least squares from several starts.
 
-    Only what a curve can tell is free: m, and c_x where the lobe further out carries.
+    Only parameters that a curve can determine are free: m, and c_x if the lobe further out carries.
     """
     from scipy.optimize import least_squares
 
     free = 3 if law.combine == "max" else 2
-    far = 0.4 * law.minor_radius / MICRON
+    far = 0.4 * law.minor_radius / M_PER_MICRON
     per_metre = float(np.tan(law.pressure_angle) / law.pitch_radius)
     unit = max(float(np.abs(curve).max()), 1e-12)
 
     def model(point: Array) -> Array:
-        c_x = MICRON * float(point[2]) if free == 3 else 0.0
-        errors: Array = displaced(law, (MICRON * float(point[0]), MICRON * float(point[1])), c_x).error(angle)
+        c_x = M_PER_MICRON * float(point[2]) if free == 3 else 0.0
+        errors: Array = displaced(law, (M_PER_MICRON * float(point[0]), M_PER_MICRON * float(point[1])), c_x).error(angle)
         return errors - turn_mean(angle, errors)
 
     def gap(point: Array) -> Array:
@@ -112,7 +112,7 @@ def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:
     size = unit / per_metre
     if law.combine == "mean":  # of second order: a m^2 / 4 b^2
         size = float(np.sqrt(4.0 * size / law.major_radius)) * law.minor_radius
-    size = min(size / MICRON, 0.9 * far)
+    size = min(size / M_PER_MICRON, 0.9 * far)
     starts = [size * np.array([np.cos(way), np.sin(way), 0.1])[:free] for way in np.pi * np.arange(8) / 4.0]
     found = min(
         (least_squares(gap, start, bounds=(-far, far), x_scale=max(size, 1.0)) for start in starts),
@@ -120,7 +120,7 @@ def fitted(angle: Array, curve: Array, law: Any) -> ErrorFit:
     ).x
     rest = curve - model(found)
     variance = float(np.mean(curve**2))
-    determined = dict(zip(("m_x", "m_y", "c_x"), (MICRON * found).tolist(), strict=False))
+    determined = dict(zip(("m_x", "m_y", "c_x"), (M_PER_MICRON * found).tolist(), strict=False))
     return ErrorFit(
         law=displaced(law, (determined["m_x"], determined["m_y"]), determined.get("c_x", 0.0)),
         determined=determined,
@@ -151,11 +151,11 @@ def _read(path: Path) -> tuple[Array, Array, str]:
         raise ValueError(f"{path} {error}; give the column as an angle") from None
     order = np.argsort(angle, kind="stable")
     angle, curve = angle[order], curve[order]
-    kept = np.append(np.diff(angle) > 0.0, True) & (angle - angle[0] <= TURN * (1.0 + 1e-9))
+    kept = np.append(np.diff(angle) > 0.0, True) & (angle - angle[0] <= FULL_TURN * (1.0 + 1e-9))
     angle, curve = angle[kept], curve[kept]
-    if len(angle) < FEWEST or angle[-1] - angle[0] < TURN * (1.0 - 2.0 / FEWEST):
+    if len(angle) < MIN_POINTS or angle[-1] - angle[0] < FULL_TURN * (1.0 - 2.0 / MIN_POINTS):
         raise ValueError(
-            f"{path}: {len(angle)} points over {np.degrees(np.ptp(angle)):.4g} deg of input_angle; a curve needs {FEWEST} "
+            f"{path}: {len(angle)} points over {np.degrees(np.ptp(angle)):.4g} deg of input_angle; a curve needs {MIN_POINTS} "
             "points or more over a whole turn, 360 deg"
         )
     return angle, curve, path.name

@@ -29,11 +29,11 @@ from strainwave.files.recording import Recording
 Complex = NDArray[np.complex128]
 
 COLUMNS = ("input_angle", "transmission_error", "current")
-CORRECTIONS = 2  # runs with the estimate, each of which corrects it
+CORRECTION_RUNS = 2  # with the estimate; each corrects it
 
 
 @dataclass(frozen=True)
-class Model:
+class RecoveryModel:
     """A drive with two runs that determine its answer to a kinematic error, without noise of its sensors.
 
     Attributes:
@@ -47,7 +47,7 @@ class Model:
     probed: Recording
 
     @classmethod
-    def of(cls, ramp: ActuatorRamp) -> Model:
+    def of(cls, ramp: ActuatorRamp) -> RecoveryModel:
         """Run a drive without error and with a small one of all orders."""
         ((straight, probed),) = runs_with_probe(ramp, [{}], COLUMNS)
         return cls(ramp.without_noise(), straight, probed)
@@ -66,7 +66,7 @@ class Model:
         return [self.ramp.settled(runs.member(place)) for place in range(len(points))]
 
 
-def recover(recording: Recording, column: str, model: Model, law: Any) -> dict[str, MisalignmentEstimate]:
+def recover(recording: Recording, column: str, model: RecoveryModel, law: Any) -> dict[str, MisalignmentEstimate]:
     """Return the misalignment that a record determines, for each way in which the lobes may share.
 
     Args:
@@ -90,7 +90,7 @@ def recover(recording: Recording, column: str, model: Model, law: Any) -> dict[s
 
 
 def refined(
-    estimates: Sequence[MisalignmentEstimate], recordings: Sequence[Recording], model: Model, law: Any
+    estimates: Sequence[MisalignmentEstimate], recordings: Sequence[Recording], model: RecoveryModel, law: Any
 ) -> list[MisalignmentEstimate]:
     """Return the estimates for a drive whose answer depends on the size of the error: each is run, and corrected by the rest.
 
@@ -104,14 +104,14 @@ def refined(
         law: `Misalignment` with that `combine`
     """
     best = list(estimates)
-    for _ in range(CORRECTIONS):
+    for _ in range(CORRECTION_RUNS):
         runs = model.run([each.m for each in best], law)
         best = [corrected(*each, model, law) for each in zip(best, recordings, runs, strict=True)]
     return best
 
 
 def corrected(
-    estimate: MisalignmentEstimate, recording: Recording, run: Recording, model: Model, law: Any
+    estimate: MisalignmentEstimate, recording: Recording, run: Recording, model: RecoveryModel, law: Any
 ) -> MisalignmentEstimate:
     """Return the estimate, corrected in one step by the difference of the record from a run with it."""
     column, point = estimate.column, np.array(estimate.m)

@@ -15,8 +15,8 @@ from strainwave.simulation.scenario import Scenario
 
 Array = NDArray[np.float64]
 
-CYCLES = 32  # of the torque before the one that is read: hysteresis without closed minor loops has settled by then
-CREEP = 1e-9  # rad/s: friction at this speed and at twice as much, extrapolated to 0, has no viscous part
+SETTLING_CYCLES = 32  # of the torque before the one that is read; hysteresis without closed minor loops then repeats
+CREEP_SPEED = 1e-9  # rad/s: friction at this speed and at twice as much, extrapolated to 0, has no viscous part
 PEAK_SPEED = 15.0 / 8.0  # of a minimum-jerk motion, over its mean speed
 PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)  # of a minimum-jerk motion, over travel / duration^2
 DEFAULT_FACTOR = 1.2  # overshoot over lost motion
@@ -106,7 +106,7 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
             "state the friction of the load, or its inertia times its acceleration"
         )
     high, low = load + deviation, load - deviation
-    twist = gear.twist(np.concatenate(([0.0], np.tile([high, low], CYCLES), [high, load, low, load, high])))
+    twist = gear.twist(np.concatenate(([0.0], np.tile([high, low], SETTLING_CYCLES), [high, load, low, load, high])))
     falling, lowest, rising, highest = twist[-4:]
     return LostMotion(load, deviation, float(falling - rising), float(highest - lowest), abs(float(gear.kinematics.ratio)))
 
@@ -114,7 +114,10 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
 def friction_at_rest(law: Any, load: float = 0.0) -> float:
     """Return the torque [N.m] that a friction takes at rest, under a load [N.m]; that of bristles where they begin to slide."""
     held = [float(law.hold(sense, load=load)) for sense in (1.0, -1.0)]
-    slow = [2.0 * law.steady(sense * CREEP, load=load) - law.steady(2.0 * sense * CREEP, load=load) for sense in (1.0, -1.0)]
+    slow = [
+        2.0 * law.steady(sense * CREEP_SPEED, load=load) - law.steady(2.0 * sense * CREEP_SPEED, load=load)
+        for sense in (1.0, -1.0)
+    ]
     return float(np.abs([*held, *slow]).max())
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Compensation, Drive, Gear, _core, compensation, stiffness
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning.cascade import (
-    RIGID,
+    RIGID_STIFFNESS,
     Plant,
     Setting,
     bare,
@@ -51,11 +51,11 @@ USUAL_SPEED = 20.0  # rad/s of the input
 MIN_FRICTION = 1e-6  # N.m
 RANGE_OF_SPEED = (0.1, 100.0)  # rad/s of the input, over which friction is compared with a line
 MAX_OFF_LINE = 0.01  # of the line
-ANGLES = 720  # of a turn of the input, at which the slope of an error is taken
+ANGLES_PER_TURN = 720  # of the input, at which the slope of an error is taken
 
 
 @dataclass(frozen=True)
-class Candidate:
+class ControllerCandidate:
     """A controller with a compensation.
 
     Attributes:
@@ -75,16 +75,18 @@ class Candidate:
     is_plain: bool = False
 
 
-def baseline(plant: Plant, setting: Setting) -> Candidate:
+def baseline(plant: Plant, setting: Setting) -> ControllerCandidate:
     """Return the cascade with feed-forward of inertia, weight, Coulomb and viscous friction, and the observer of a setting."""
     observed = " and disturbance observer" if setting.observer_share else ""
     encoder = ", position by the output encoder" if setting.feedback == "output" else ""
     added = _compensation(plant, (), setting)
     drive = plant.controlled(tuned_law(plant, setting), added)
-    return Candidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
+    return ControllerCandidate(f"cascade with feed-forward{observed}{encoder}", (), setting, drive)
 
 
-def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Mapping[str, Array]) -> Iterator[Candidate]:
+def candidates(
+    plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Mapping[str, Array]
+) -> Iterator[ControllerCandidate]:
     """Yield the cascade of each setting with models of each choice of effects, and with what observes or learns.
 
     Waves over the input are learnt where the controller follows the input encoder and sees the output, so only if there are
@@ -114,22 +116,22 @@ def candidates(plant: Plant, settings: Sequence[Setting], goal: Goal, draws: Map
                     yield from (_with_learning(plant, setting, effects, *each) for each in learners)
 
 
-def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> ControllerCandidate:
     added = _compensation(plant, effects, setting)
     drive = plant.controlled(tuned_law(plant, setting), added)
-    return Candidate(_name(effects, setting), effects, setting, drive, len(effects), is_plain=True)
+    return ControllerCandidate(_name(effects, setting), effects, setting, drive, len(effects), is_plain=True)
 
 
-def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> ControllerCandidate:
     """Return the same with an observer of the scale of friction in place of one of the disturbance."""
     law = tuned_law(plant, setting)
     scale = compensation.FrictionScale(gain=_scale_gain(plant, setting), position_gain=law.position_gain)
     added = _compensation(plant, effects, setting).replace(observer=scale)
     name = f"{_name(effects, setting)}, scale of friction observed"
-    return Candidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
+    return ControllerCandidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
 
 
-def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Candidate:
+def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> ControllerCandidate:
     """Return the same with the friction at the input by the measured motion, in place of that of the model."""
     law, gear = tuned_law(plant, setting), plant.drive.gear
     bristles = compensation.BristleObserver(
@@ -141,10 +143,10 @@ def _with_bristles(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> 
     )
     added = _compensation(plant, effects, setting).replace(observer=bristles)
     name = f"{_name(effects, setting)}, friction by the measured motion"
-    return Candidate(name, ("friction", *effects), setting, plant.controlled(law, added), len(effects) + 1)
+    return ControllerCandidate(name, ("friction", *effects), setting, plant.controlled(law, added), len(effects) + 1)
 
 
-def _with_map(plant: Plant, setting: Setting, goal: Goal) -> Candidate:
+def _with_map(plant: Plant, setting: Setting, goal: Goal) -> ControllerCandidate:
     """Return the cascade with a map of lost motion, and friction that the law feeds forward if no observer supplies it."""
     law, per_torque = tuned_law(plant, setting), plant.actuation_per_torque
     if not setting.observer_share:
@@ -153,7 +155,7 @@ def _with_map(plant: Plant, setting: Setting, goal: Goal) -> Candidate:
     added = Compensation(
         feedforward=lost_motion_map(plant, goal), observer=observer_of(plant, setting), actuation_per_torque=per_torque
     )
-    return Candidate("map of lost motion", ("torsion",), setting, plant.controlled(law, added), 1)
+    return ControllerCandidate("map of lost motion", ("torsion",), setting, plant.controlled(law, added), 1)
 
 
 def lost_motion_map(plant: Plant, goal: Goal) -> compensation.LostMotionMap:
@@ -195,11 +197,11 @@ def _mapped(points: Array, forward: Array, backward: Array, reach: float, angle:
     return np.asarray(0.5 * (above + below + sense * (above - below)))
 
 
-def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], name: str, learner: Any) -> Candidate:
+def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], name: str, learner: Any) -> ControllerCandidate:
     """Return a model with what is learnt over the input."""
     added = _compensation(plant, effects, setting).replace(learning=learner)
     drive = plant.controlled(tuned_law(plant, setting), added)
-    return Candidate(f"{_name(effects, setting)}, {name} learnt", effects, setting, drive, len(effects) + 1)
+    return ControllerCandidate(f"{_name(effects, setting)}, {name} learnt", effects, setting, drive, len(effects) + 1)
 
 
 def _learners(
@@ -291,7 +293,8 @@ def has_effect(gear: Gear, effect: str) -> bool:
     if effect == "kinematic error":
         return steepest_error(gear) > 0.0
     return any(
-        getattr(gear, part) != getattr(none.replace(stiffness=stiffness.Linear(k=RIGID)), part) for part in EFFECTS[effect]
+        getattr(gear, part) != getattr(none.replace(stiffness=stiffness.Linear(k=RIGID_STIFFNESS)), part)
+        for part in EFFECTS[effect]
     )
 
 
@@ -315,7 +318,7 @@ def too_steep(plant: Plant, effect: str) -> bool:
 
 def steepest_error(gear: Gear) -> float:
     """Return the largest slope of the kinematic error of a gear over a turn of the input [rad/rad]."""
-    angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    angle = np.linspace(0.0, 2.0 * np.pi, ANGLES_PER_TURN, endpoint=False)
     return float(np.abs(gear.kinematic_error.slope(angle)).max())
 
 

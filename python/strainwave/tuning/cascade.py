@@ -14,13 +14,15 @@ from strainwave.messages import shortened
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning.steady_torque import steady_torque
 
-RIGID = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
+RIGID_STIFFNESS = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
 PHASE_OF_DELAY = 0.5  # rad that the delay takes where the speed loop crosses over: 60 degrees are left
 POSITION_SHARE = 0.25  # bandwidth of the position loop over that of the speed loop, so that it does not overshoot
 INTEGRAL_SHARE = 0.25  # likewise of the integral of the speed
 FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose friction the line of Coulomb and viscous friction goes
-ANGLES = 64  # of a turn of the input, over which friction is averaged
-LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor that states no limit, beside that of acceleration
+ANGLES_PER_TURN = 64  # of the input, over which friction is averaged
+LIMIT_OF_LEVELS = (
+    20.0  # times friction and weight: torque of a motor without a stated limit, in addition to that of acceleration
+)
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
 MAX_VIBRATION = 1e6  # rad/s of the fastest vibration: steps of 1 us, of which a motion of seconds has millions
 
@@ -154,7 +156,7 @@ def _usual_limit(drive: Drive) -> float:
 
 def line_of_friction(gear: Gear, temperature: float = ROOM_TEMPERATURE) -> tuple[float, float]:
     """Return Coulomb [N.m] and viscous friction [N.m.s/rad] at the input: the line through its mean at two speeds."""
-    turn = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    turn = np.linspace(0.0, 2.0 * np.pi, ANGLES_PER_TURN, endpoint=False)
     slow, fast = (
         float(steady_torque(gear, speed, turn, temperature=temperature).friction.mean()) for speed in (SLOW_SPEED, FAST_SPEED)
     )
@@ -166,7 +168,7 @@ def bare(gear: Gear, temperature: float = ROOM_TEMPERATURE) -> Gear:
     """Return a gear of which only the ratio, the inertia and the line of its friction at a temperature [K] are known."""
     coulomb, viscous = line_of_friction(gear, temperature)
     law = friction.Coulomb(coulomb=coulomb, viscous=viscous)
-    spring = stiffness.Linear(k=RIGID)
+    spring = stiffness.Linear(k=RIGID_STIFFNESS)
     return Gear(kinematics=gear.kinematics, stiffness=spring, friction_input=law, input_inertia=gear.input_inertia)
 
 

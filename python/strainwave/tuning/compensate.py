@@ -17,7 +17,7 @@ from strainwave.parameters import Parameter, every
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting, gear_set_of
-from strainwave.tuning.conditions import Condition, OverCompensation, conditions, over_compensation
+from strainwave.tuning.conditions import ConditionResult, OverCompensation, conditions, over_compensation
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 from strainwave.tuning.judging import AT_LIMIT, Judged, judged
@@ -72,7 +72,7 @@ class Compensated:
     members: int
     margins: LoopMargins
     over_compensation: tuple[OverCompensation, ...]
-    conditions: tuple[Condition, ...]
+    conditions: tuple[ConditionResult, ...]
     remarks: tuple[str, ...]
 
     @property

@@ -28,7 +28,7 @@ SPEED_OF_FRICTION = 20.0  # rad/s of the input, at which friction is compared be
 
 
 @dataclass(frozen=True)
-class Condition:
+class ConditionResult:
     """Both controllers, neither tuned anew, under another condition.
 
     Attributes:
@@ -43,7 +43,7 @@ class Condition:
 
 def conditions(
     controllers: tuple[Judged, Judged], goal_at: Callable[[float], Goal], draws: Mapping[str, Array], plant: Plant
-) -> Iterator[Condition]:
+) -> Iterator[ConditionResult]:
     """Yield cascade and controller at other speeds, load inertias and temperatures.
 
     Args:
@@ -53,8 +53,8 @@ def conditions(
         plant: the drive
     """
 
-    def at(name: str, goal: Goal, drawn: Mapping[str, Array], **changes: float) -> Condition:
-        return Condition(name, *(judged(each.candidate, goal, drawn, plant, **changes) for each in controllers))
+    def at(name: str, goal: Goal, drawn: Mapping[str, Array], **changes: float) -> ConditionResult:
+        return ConditionResult(name, *(judged(each.candidate, goal, drawn, plant, **changes) for each in controllers))
 
     usual = goal_at(1.0)
     for name, pace in PACES.items():

@@ -14,7 +14,7 @@ from strainwave.parameters import every
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning import goals
-from strainwave.tuning.candidates import Candidate
+from strainwave.tuning.candidates import ControllerCandidate
 from strainwave.tuning.cascade import Plant
 from strainwave.tuning.goals import Goal
 
@@ -38,7 +38,7 @@ class Judged:
         reason: why a run failed; empty if none did
     """
 
-    candidate: Candidate
+    candidate: ControllerCandidate
     figures: Mapping[str, Array]
     nominal: Mapping[str, float]
     reason: str = ""
@@ -62,7 +62,7 @@ class Judged:
 
 
 def judged(
-    candidate: Candidate, goal: Goal, draws: Mapping[str, Array], plant: Plant, temperature: float = ROOM_TEMPERATURE
+    candidate: ControllerCandidate, goal: Goal, draws: Mapping[str, Array], plant: Plant, temperature: float = ROOM_TEMPERATURE
 ) -> Judged:
     """Return a controller with its figures on drawn gears; the gear as its numbers have it is run first among them.
 

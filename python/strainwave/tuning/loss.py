@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Loss:
+class ExportLoss:
     """Difference between the numbers that another program takes and the full model of the gear.
 
     Attributes:
@@ -32,7 +32,7 @@ class Loss:
     relative_to: str = ""
 
     @classmethod
-    def between(cls, quantity: str, difference: Array, unit: str, size: float, over: str, relative_to: str = "") -> Loss:
+    def between(cls, quantity: str, difference: Array, unit: str, size: float, over: str, relative_to: str = "") -> ExportLoss:
         """Return the loss with root mean square and largest size of differences."""
         rms, largest = float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
         return cls(quantity, rms, largest, unit, size, over, relative_to)

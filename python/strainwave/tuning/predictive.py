@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
-from strainwave.simulation.controller import Seen
+from strainwave.simulation.controller import Observation
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning.cascade import Plant
 from strainwave.tuning.linear_plant import LinearPlant, optimal
@@ -102,7 +102,7 @@ class PredictiveController:
         unsolved: number of periods since the begin in which the solver ran out of iterations
     """
 
-    def __init__(self, plant: Plant, program: Program, model: Model, preview: Scenario | None, share: float) -> None:
+    def __init__(self, plant: Plant, program: Program, model: PredictiveModel, preview: Scenario | None, share: float) -> None:
         self.drive = plant.drive
         self.period, self.delay = plant.period, plant.delay
         self.gains, self.states = model.gains, model.linear.states
@@ -119,7 +119,7 @@ class PredictiveController:
         self._predicted = np.zeros(len(self.states) + 1)
         self._time: float | None = None
 
-    def __call__(self, seen: Seen) -> float:
+    def __call__(self, seen: Observation) -> float:
         """Return the actuation, in the unit of the motor of `drive`.
 
         Raises:
@@ -189,7 +189,7 @@ class PredictiveController:
         limit = program.bound[0]
         return np.asarray(np.clip(solution.x[: program.horizon], -limit, limit))
 
-    def _measured(self, seen: Seen) -> Array:
+    def _measured(self, seen: Observation) -> Array:
         """Return the states and the actuation before, after the bias of the states has been estimated from them."""
         values = {
             "input_angle": seen.input_angle,
@@ -202,7 +202,7 @@ class PredictiveController:
             self._bias += self._share * (states - self._predicted[:-1] - self._bias)
         return np.append(states, self._predicted[-1])
 
-    def _commanded(self, seen: Seen) -> tuple[Array, Array]:
+    def _commanded(self, seen: Observation) -> tuple[Array, Array]:
         """Return angle and rate of the command at the instants of the horizon."""
         ahead = self.period * np.arange(1, self._program.horizon + 1)
         if self._preview is None:
@@ -212,7 +212,7 @@ class PredictiveController:
 
 
 @dataclass(frozen=True)
-class Model:
+class PredictiveModel:
     """The drive over one period, and what its controller weighs.
 
     Attributes:
@@ -236,7 +236,7 @@ class Model:
     target_of_rate: Array
 
     @classmethod
-    def of(cls, plant: Plant, linear: LinearPlant, weight: Array, effort: float) -> Model:
+    def of(cls, plant: Plant, linear: LinearPlant, weight: Array, effort: float) -> PredictiveModel:
         """
         Raises:
             ValueError: these weights have no regulator
@@ -321,7 +321,7 @@ def predictive(
     linear = _linear_of(plant, torque_limit)
     size = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
     bandwidth = arguments.number("bandwidth", bandwidth, "rad/s", "[)", 0.0)
-    model = Model.of(plant, linear, linear.cost(error, speed_error), size)
+    model = PredictiveModel.of(plant, linear, linear.cost(error, speed_error), size)
     program = _program(plant, model, _limits(linear, speed_limit, torque_limit), horizon, (LIMIT_ERROR / error) ** 2)
     return PredictiveController(plant, program, model, preview, -float(np.expm1(-bandwidth * plant.period)))
 
@@ -348,7 +348,7 @@ def _limits(linear: LinearPlant, speed_limit: float | None, torque_limit: float 
     return limits
 
 
-def _program(plant: Plant, model: Model, limits: Sequence[Array], horizon: int, penalty: float) -> Program:
+def _program(plant: Plant, model: PredictiveModel, limits: Sequence[Array], horizon: int, penalty: float) -> Program:
     """Return the program over a horizon, with sums of states that are limited to 1."""
     count, size = len(model.step), len(model.step) - 1
     parameters = count + size + 2 * horizon

@@ -137,7 +137,7 @@ double predictive_step(const predictive_measured *measured, const double angle[P
 def write_c(
     folder: Path, states: Sequence[str], horizon: int, constants: Mapping[str, float], arrays: Mapping[str, Array]
 ) -> None:
-    """Write `predictive.h` and `predictive.c` beside the solver.
+    """Write `predictive.h` and `predictive.c` into the folder of the solver.
 
     Args:
         folder: of the solver

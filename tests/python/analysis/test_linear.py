@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 from strainwave import _core
 from strainwave.simulation import signals
-from strainwave.simulation.state import Layout
+from strainwave.simulation.state import StateLayout
 
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
@@ -210,7 +210,7 @@ def test_derivatives_are_those_of_differences(place: str, model: object, data: s
     inputs = np.array([0.001, 0.02, 0.7, 0.0, 300.0, 0.0])
     state = _core.aged(drive, _core.consistent(drive, moving.numbers), inputs, 1e-4)
     values, slopes = _core.differentiate_rates(drive, state, inputs)
-    layout = Layout(drive)
+    layout = StateLayout(drive)
     count = layout.count
     size = np.abs(values) + np.abs([*state[:count], *inputs]) @ np.abs(slopes)
 

@@ -120,7 +120,7 @@ def test_what_there_is_not_is_refused_with_what_there_is() -> None:
 @pytest.mark.parametrize(
     ("sensor", "name", "why"),
     [
-        (sw.sensor.Noisy(amplitude=1e-5, seed=3), "seed", "it tells which noise it is, not how much of it"),
+        (sw.sensor.Noisy(amplitude=1e-5, seed=3), "seed", "it selects the noise, not its size"),
         (sw.sensor.Encoder(counts=4096), "counts", "a reading that is rounded jumps, and derivatives ignore the rounding"),
         (
             sw.sensor.Quantised(resolution=1e-3),

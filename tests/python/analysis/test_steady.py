@@ -12,7 +12,7 @@ from hypothesis import given, reject, settings
 from numpy.typing import NDArray
 from scipy.optimize import fsolve
 from strainwave import _core
-from strainwave.simulation.state import Layout
+from strainwave.simulation.state import StateLayout
 
 from tests.actuator_equations import OUT, WG, X2, Y1, Y2, corrected
 from tests.geared import MOTOR, RATIO, K, geared, outputs
@@ -247,7 +247,7 @@ def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:
         gear = drive.gear.replace(kinematic_error=sw.kinematic_error.Fourier(), kinematic_noise=sw.kinematic_error.Stochastic())
         drive = drive.replace(gear=gear)
     values, slopes = _core.differentiate_rates(drive, state.numbers, np.array([0.01, 0.0, 0.1, 0.0, 293.15, 0.0]))
-    layout = Layout(drive)
+    layout = StateLayout(drive)
     n = layout.count
     numbers = state.numbers[:n]
     size = np.abs(numbers) @ np.abs(slopes[:n, :n]) + np.abs([0.01, 0.0, 0.1, 0.0, 293.15, 0.0]) @ np.abs(slopes[n:, :n])

@@ -7,7 +7,7 @@ from typing import Any
 
 import tomlkit
 from strainwave.dataset.members import Population
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 from strainwave.dataset.shards import Shards
 
 SMALL: dict[str, Any] = {
@@ -37,7 +37,7 @@ def write(folder: Path, content: dict[str, Any] = SMALL) -> Path:
 
 
 def population(content: dict[str, Any] = SMALL) -> Population:
-    return Population(Plan.of(content))
+    return Population(DatasetPlan.of(content))
 
 
 def shards(content: dict[str, Any] = SMALL) -> Shards:

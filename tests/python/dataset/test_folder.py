@@ -19,7 +19,7 @@ import pytest
 from strainwave.dataset import runners
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.make import make
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 
 from tests.python.command import refused, strainwave
 from tests.python.dataset.plans import SMALL, changed, population, write
@@ -88,7 +88,9 @@ def test_killed_workers_and_commands_leave_an_equal_data_set(whole: tuple[Path, 
 def test_a_data_set_leaves_no_temporary_files(whole: tuple[Path, Path]) -> None:
     names = {path.name for path in whole[1].iterdir()}
     assert names == {"SHA256SUMS", "card.md", "manifest.json", "plan.toml", "samples", "shards"}
-    assert len(list((whole[1] / "shards").iterdir())) == len(list((whole[1] / "samples").iterdir())) == Plan.of(MANY).shards
+    assert (
+        len(list((whole[1] / "shards").iterdir())) == len(list((whole[1] / "samples").iterdir())) == DatasetPlan.of(MANY).shards
+    )
 
 
 def test_the_sums_are_those_of_the_files(whole: tuple[Path, Path]) -> None:
@@ -111,7 +113,7 @@ def test_drafts_of_killed_workers_are_removed(whole: tuple[Path, Path], tmp_path
 
 def test_pandas_reads_labels_parameters_and_features(whole: tuple[Path, Path]) -> None:
     frame = pandas.read_parquet(whole[1] / "shards")
-    plan = Plan.of(MANY)
+    plan = DatasetPlan.of(MANY)
     assert frame["member"].tolist() == list(range(plan.members))
     assert frame["failure"].isna().all()
     assert frame["current_rms"].notna().all()
@@ -128,7 +130,7 @@ def test_the_manifest_has_unit_and_role_of_each_column_and_the_source_of_each_pa
     assert "maxon" in columns["motor.resistance"]["source"]
     assert columns["current_rms"]["unit"] == "A"
     assert columns["split_unit"]["role"] == "split"
-    assert content["plan_digest"] == Plan.of(MANY).digest
+    assert content["plan_digest"] == DatasetPlan.of(MANY).digest
     assert {"strainwave", "numpy", "scipy", "pyarrow", "python"} <= set(content["versions"])
 
 
@@ -295,7 +297,7 @@ def test_dask_without_an_address_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_parent_of_a_worker_is_gone_so_it_ends(tmp_path: Path) -> None:
-    plan: Any = Plan.of(SMALL)
+    plan: Any = DatasetPlan.of(SMALL)
     folder = DatasetFolder(tmp_path)
     write(tmp_path)
     (tmp_path / "shards").mkdir()

@@ -10,7 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave.dataset.faults import with_faults
 from strainwave.dataset.members import HEALTHY
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 from strainwave.dataset.shards import Shards
 from strainwave.dataset.splits import MIXED
 
@@ -184,4 +184,4 @@ def test_samples_are_decimated_series() -> None:
 def test_the_plan_of_a_population_is_untouched_by_one_member() -> None:
     made = shards(SMALL)
     made.member(1)
-    assert made.plan == Plan.of(SMALL)
+    assert made.plan == DatasetPlan.of(SMALL)

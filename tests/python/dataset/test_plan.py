@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from strainwave.dataset.make import estimate
-from strainwave.dataset.plan import Plan
+from strainwave.dataset.plan import DatasetPlan
 from strainwave.dataset.shards import Shards
 
 from tests.python.dataset.plans import SMALL, changed, population, write
@@ -52,7 +52,7 @@ CONTRADICTIONS = [
 @pytest.mark.parametrize(("content", "said"), CONTRADICTIONS, ids=[said[:30] for _, said in CONTRADICTIONS])
 def test_a_plan_that_contradicts_itself_is_refused(content: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError, match=said) as error:
-        Plan.of(content)
+        DatasetPlan.of(content)
     assert "\n" not in str(error.value)
 
 
@@ -103,12 +103,12 @@ def test_an_unreadable_plan_names_its_file(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
     path.write_text("name = ")
     with pytest.raises(ValueError, match=r"plan\.toml: is not valid TOML"):
-        Plan.read(path)
+        DatasetPlan.read(path)
 
 
 def test_comments_and_order_do_not_change_the_digest(tmp_path: Path) -> None:
     path = write(tmp_path)
-    turned = Plan.of(dict(reversed(list(SMALL.items()))))
+    turned = DatasetPlan.of(dict(reversed(list(SMALL.items()))))
     path.write_text("# a comment\n" + path.read_text())
-    assert Plan.read(path).digest == turned.digest == Plan.of(SMALL).digest
-    assert Plan.of(changed(seed=6)).digest != turned.digest
+    assert DatasetPlan.read(path).digest == turned.digest == DatasetPlan.of(SMALL).digest
+    assert DatasetPlan.of(changed(seed=6)).digest != turned.digest

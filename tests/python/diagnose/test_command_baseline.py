@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from scipy.stats import binom
-from strainwave.diagnose.baseline import Comparison, baseline_of, compared
+from strainwave.diagnose.baseline import BaselineComparison, baseline_of, compared
 from strainwave.diagnose.refusals import usable
 from strainwave.diagnose.replicates import JointMotion, apart, blocks_of, cells_of, joint_motion
 
@@ -31,7 +31,7 @@ def joint(
     return joint_motion(usable(sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"}), f"run {seed}"))
 
 
-def against(healthy: JointMotion, motion: JointMotion, false_alarm: float = 1e-3) -> Comparison:
+def against(healthy: JointMotion, motion: JointMotion, false_alarm: float = 1e-3) -> BaselineComparison:
     return compared(baseline_of([healthy], ORDERS), motion, false_alarm=false_alarm)
 
 

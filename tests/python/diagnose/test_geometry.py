@@ -104,13 +104,13 @@ def test_a_drive_outside_of_the_set_is_reported(drives: PossibleDrives) -> None:
     heavy = RAMP.drive.replace({"load.moment_slope": 0.64})
     ramp = ActuatorRamp.of(heavy, RAMP.stroke, RAMP.duration)
     found = diagnosed(LAW.replace(housing_eccentricity=14e-6), drives, ramp)
-    assert any("contradicts the drives of this set" in doubt for doubt in found.doubts)
-    assert diagnosed(LAW.replace(housing_eccentricity=14e-6), drives).doubts == ()
+    assert any("contradicts the drives of this set" in doubt for doubt in found.contradictions)
+    assert diagnosed(LAW.replace(housing_eccentricity=14e-6), drives).contradictions == ()
 
 
 def test_orders_that_no_misalignment_has_are_reported(drives: PossibleDrives) -> None:
     law = sw.kinematic_error.Fourier(order=[2.0, 3.0], amplitude=[2e-4, 2e-4], phase=[0.0, 1.0])
-    assert any("do not have the ratios of a misalignment" in doubt for doubt in diagnosed(law, drives).doubts)
+    assert any("do not have the ratios of a misalignment" in doubt for doubt in diagnosed(law, drives).contradictions)
 
 
 def test_an_unloaded_slow_run_is_insensitive_and_a_loaded_one_is_not() -> None:

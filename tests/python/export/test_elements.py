@@ -8,7 +8,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.export.elements import GearElements, Spring, friction_losses
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 hysteresis, stiffness = sw.hysteresis, sw.stiffness
 MAX_TORQUE, MAX_SPEED = 40.0, 200.0
@@ -27,7 +27,7 @@ def elements(gear: sw.Gear) -> GearElements:
     return GearElements.of(gear, 1e-4, MAX_TORQUE, MAX_SPEED)
 
 
-def torsion_losses(law) -> list[Loss]:
+def torsion_losses(law) -> list[ExportLoss]:
     gear = sw.Gear(hysteresis=law)
     found = elements(gear)
     return list(found.torsion_losses(gear, float(gear.stiffness.twist(MAX_TORQUE))))

@@ -13,7 +13,7 @@ import strainwave as sw
 from strainwave import _core
 from strainwave.export.firmware import FLAGS
 from strainwave.native.static_type import Scalar, parameters
-from strainwave.simulation.controller import Seen
+from strainwave.simulation.controller import Observation
 
 from tests.cplusplus import compiler, zig
 from tests.firmware import STRICT, Loaded, compiled, library, run_with, written
@@ -137,7 +137,7 @@ def test_single_precision_is_as_accurate_as_stated(name: str, doubled: dict[str,
     rounded.start()
     errors = list[float]()
 
-    def both(seen: Seen) -> float:
+    def both(seen: Observation) -> float:
         given = exact(seen)
         errors.append(abs(given - rounded(seen)))
         return given

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from strainwave.commands.export import slot as command
-from strainwave.export import Exported, Loss
+from strainwave.export import Exported, ExportLoss
 from strainwave.export.slots import MAX_OVER_COMPENSATED_SHARE, SLOTS
 from strainwave.files.entries import Entry, Quantity
 from strainwave.tuning.drawn import drawn_gears
@@ -34,7 +34,7 @@ def value(found: Exported, name: str) -> float:
     return found.numbers[name][0]
 
 
-def loss(found: Exported) -> Loss:
+def loss(found: Exported) -> ExportLoss:
     return found.losses[0]
 
 

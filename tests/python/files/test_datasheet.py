@@ -91,8 +91,10 @@ def test_the_laws_of_size_are_those_of_the_catalogue() -> None:
 
 def test_the_rules_of_friction_are_those_of_the_makers_figures() -> None:
     factors = [torque * ratio / size**3 for (size, ratio), torque in STARTING_TORQUE.items()]
-    assert pytest.approx(sqrt(factors[0] * factors[1]), rel=ROUNDING) == typical.STARTING
-    assert pytest.approx((CPL_RUNNING - CPL_RATIO_CORRECTION - CPL_STARTING) / CPL_SPEED, rel=ROUNDING) == typical.VISCOUS
+    assert pytest.approx(sqrt(factors[0] * factors[1]), rel=ROUNDING) == typical.STARTING_TORQUE
+    assert (
+        pytest.approx((CPL_RUNNING - CPL_RATIO_CORRECTION - CPL_STARTING) / CPL_SPEED, rel=ROUNDING) == typical.VISCOUS_FRICTION
+    )
 
 
 @settings(max_examples=30, deadline=None)
@@ -221,7 +223,7 @@ def test_a_data_sheet_in_a_file_is_read_as_a_gear_set_and_saved_as_one(tmp_path:
 @pytest.mark.parametrize(
     ("figures", "message"),
     [
-        ({"ratio": 100}, "does not say what is held"),
+        ({"ratio": 100}, "leaves the fixed part open"),
         ({"ratio": -72.3}, "whole number"),
         ({"ratio": -1e308}, "whole number"),
         ({"ratio": -100, "k1": f"1 {10**6 * ' '}x"}, r"^k1 = .* has 1000003 characters; a figure has at most 200$"),
@@ -269,7 +271,7 @@ def test_an_unknown_figure_and_one_of_another_kind_are_refused() -> None:
         ("ratio = -80\n", "", "ratio is missing"),
         ('"0,47 kgf·m/arcmin"', "31e3", 'k1 = 31000.0 has no unit; write k1 = "31000.0 N.m/rad"'),
         ("k1", "k9", "k9: not a figure"),
-        ("maker", "owner", "stand name, maker and source alone"),
+        ("maker", "owner", "only name, maker and source may stand outside"),
         ('"LHT-20-80"', "5", "name must be a text"),
     ],
 )

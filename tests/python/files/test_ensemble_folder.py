@@ -269,16 +269,16 @@ def test_the_time_of_a_kill_does_not_matter(tmp_path: Path, written: Path) -> No
 def test_a_run_whose_disk_is_full_names_the_file_and_is_finished_to_the_same_bits(
     writes: int, tmp_path: Path, written: Path
 ) -> None:
-    folder, put = tmp_path / "new" / "runs", writing._Beside.put
+    folder, put = tmp_path / "new" / "runs", writing._Draft.put
     left = iter(range(writes))
 
-    def full(draft: writing._Beside) -> None:
+    def full(draft: writing._Draft) -> None:
         if next(left, None) is None:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         put(draft)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(writing._Beside, "put", full)
+        patch.setattr(writing._Draft, "put", full)
         with pytest.raises(OSError, match=r"^\S+\.parquet cannot be written: No space left on device$"):
             simulate(folder)
     assert folder.exists() == (writes > 0)

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from strainwave import Recording
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.matlab_table import open_mat
 from strainwave.files.tables import open_table
 
@@ -37,9 +37,9 @@ def exactly(message: str) -> str:
     return f"^{re.escape(message)}$"
 
 
-def sources(path: Path, names: Sequence[str]) -> list[Source]:
+def sources(path: Path, names: Sequence[str]) -> list[ColumnSource]:
     labels = [label.name for label in open_table(path).labels]
-    return [Source(labels.index(name), name, name, "1") for name in names]
+    return [ColumnSource(labels.index(name), name, name, "1") for name in names]
 
 
 def read(path: Path, *names: str) -> tuple[list[list[float]], list[str]]:
@@ -208,7 +208,7 @@ def test_channels_sampled_at_other_instants_are_put_on_the_slowest(tmp_path: Pat
         Recording.read(path)
     opened = open_table(path)
     units = {"time": "s", "current": "A", "link_angle": "rad", "temperature": "degC"}
-    wanted = [Source(i, label.name, label.name, units[label.name]) for i, label in enumerate(opened.labels)]
+    wanted = [ColumnSource(i, label.name, label.name, units[label.name]) for i, label in enumerate(opened.labels)]
     columns, remarks = opened.measured(wanted)
     assert columns["time"].tolist() == TIME.tolist()
     assert columns["current"] == pytest.approx(3.0 * TIME + 1.0)  # a straight line is interpolated exactly

@@ -13,7 +13,7 @@ import pytest
 from strainwave import Recording
 from strainwave.files import budget
 from strainwave.files.array_table import Grid, GridTable, grid_table
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.mdf_channels import RecordLayout, records_of
 from strainwave.files.mdf_table import open_mdf
 from strainwave.files.tables import open_table
@@ -131,7 +131,7 @@ def test_a_formula_is_never_evaluated_and_its_channel_is_named(tmp_path: Path, v
     save(tmp_path / name, version, {"q": None, "tau": {"formula": formula}})
     table = open_table(tmp_path / name)
     assert [label.name for label in table.labels] == ["time", "q"]
-    values, remarks = table.measured([Source(1, "q", "q", "1")])
+    values, remarks = table.measured([ColumnSource(1, "q", "q", "1")])
     assert values["q"].tolist() == RAW.tolist()
     (remark,) = remarks
     assert remark.startswith('tau is left out: its conversion is a formula, "f')
@@ -281,10 +281,10 @@ def test_a_conversion_is_counted_for_each_channel_that_refers_to_it(tmp_path: Pa
 def test_each_unsorted_record_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Many groups may refer to the same data, and sort it anew."""
     layouts = {1: RecordLayout(1, 0), 2: RecordLayout(0, 0)}
-    assert len(records_of(np.ones(100, np.uint8), layouts, 1, budget.Budget(0))[1]) == 1
+    assert len(records_of(np.ones(100, np.uint8), layouts, 1, budget.ReadBudget(0))[1]) == 1
     monkeypatch.setattr(budget, "MIN_ALLOWED_BYTES", 1000)
     with pytest.raises(budget.RefusedFile, match="sorting its records expands the file"):
-        records_of(np.ones(100, np.uint8), layouts, 1, budget.Budget(0))
+        records_of(np.ones(100, np.uint8), layouts, 1, budget.ReadBudget(0))
 
 
 def test_a_name_without_end(tmp_path: Path) -> None:
@@ -305,13 +305,13 @@ def test_a_channel_called_time_is_not_the_time(tmp_path: Path) -> None:
     save(tmp_path / "a.mf4", "4.10", {"time": None, "q": None})
     table = open_mdf(tmp_path / "a.mf4")
     assert [label.name for label in table.labels] == ["time", "time.0", "q"]
-    found, _ = table.measured([Source(place, name, name, "1") for place, name in enumerate(("time", "clock", "q"))])
+    found, _ = table.measured([ColumnSource(place, name, name, "1") for place, name in enumerate(("time", "clock", "q"))])
     assert {name: values.tolist() for name, values in found.items()} == {
         "time": TIME.tolist(), "clock": RAW.tolist(), "q": RAW.tolist(),
     }  # fmt: skip
     shared = grid_table("run.mcap", "", [Grid(TIME, {"time": RAW})], {})  # as of a topic /time
-    assert shared.numbers([Source(0, "time", "time", "s")])["time"].tolist() == TIME.tolist()
-    assert shared.numbers([Source(1, "time", "clock", "s")])["clock"].tolist() == RAW.tolist()
+    assert shared.numbers([ColumnSource(0, "time", "time", "s")])["time"].tolist() == TIME.tolist()
+    assert shared.numbers([ColumnSource(1, "time", "clock", "s")])["clock"].tolist() == RAW.tolist()
 
 
 def test_a_channel_outside_of_its_record(tmp_path: Path) -> None:

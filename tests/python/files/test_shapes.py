@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Recording
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.tables import open_table
 
 FOLDER = settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -93,7 +93,7 @@ def test_a_torn_last_row_is_left_out_and_named_where_that_is_allowed(
     path = tmp_path / "table.csv"
     path.write_text("\n".join([header, *whole, torn]))
     opened = open_table(path)
-    columns, remarks = opened.measured([Source(i, f"c{i}", f"c{i}", "1") for i in range(count)])
+    columns, remarks = opened.measured([ColumnSource(i, f"c{i}", f"c{i}", "1") for i in range(count)])
     assert [columns[f"c{i}"].tolist() for i in range(count)] == np.transpose(rows[:-1]).tolist()
     assert remarks == [
         f'its last row, line {len(rows) + 1}, ends too early and is left out: "{torn[:60]}{"…" if len(torn) > 60 else ""}"'
@@ -113,7 +113,7 @@ def test_cells_without_a_number_are_nan_where_that_is_allowed(
         cells[row][column], expected[row, column] = nothing or '""', np.nan
     path = tmp_path / "table.csv"
     path.write_text("\n".join([",".join(f"c{i} [1]" for i in range(count)), *(",".join(row) for row in cells)]) + "\n")
-    columns, _ = open_table(path).measured([Source(i, f"c{i}", f"c{i}", "1") for i in range(count)])
+    columns, _ = open_table(path).measured([ColumnSource(i, f"c{i}", f"c{i}", "1") for i in range(count)])
     assert np.array_equal(np.column_stack([columns[f"c{i}"] for i in range(count)]), expected, equal_nan=True)
 
 
@@ -122,7 +122,7 @@ def test_dates_are_seconds_since_the_first(tmp_path: Path) -> None:
     path.write_text("when,c [1]\n2026-01-31T23:59:59.500Z,1\n,2\n2026-02-01T00:00:01.250Z,3\n")
     opened = open_table(path)
     assert opened.contents == ["dates", "numbers"]
-    columns, _ = opened.measured([Source(0, "when", "time", "s")])
+    columns, _ = opened.measured([ColumnSource(0, "when", "time", "s")])
     assert np.array_equal(columns["time"], [0.0, np.nan, 1.75], equal_nan=True)
 
 
@@ -139,7 +139,7 @@ def test_units_below_the_header_and_lines_above_it(
     path.write_text("\n".join([*before, *header, *rows_as(rows, delimiter, ".")]) + "\n")
     opened = open_table(path)
     assert [(label.name, label.unit) for label in opened.labels] == list(zip(NAMES, UNITS, strict=True))[:count]
-    columns, remarks = opened.measured([Source(i, NAMES[i], NAMES[i], UNITS[i]) for i in range(count)])
+    columns, remarks = opened.measured([ColumnSource(i, NAMES[i], NAMES[i], UNITS[i]) for i in range(count)])
     assert [columns[NAMES[i]].tolist() for i in range(count)] == [[row[i] for row in rows] for i in range(count)]
     assert remarks == (["its header is line 4; what stands above it is left out"] if above else [])
     if above:
@@ -156,7 +156,7 @@ def test_lists_in_cells_are_columns(tmp_path: Path, written: str) -> None:
     path.write_text("\n".join(["time,position,note (x)", *rows]) + "\n")
     opened = open_table(path)
     assert [label.name for label in opened.labels] == ["time", "position_1", "position_2", "note (x)"]
-    columns, _ = opened.measured([Source(place, "", str(place), "1") for place in range(4)])
+    columns, _ = opened.measured([ColumnSource(place, "", str(place), "1") for place in range(4)])
     assert columns["1"].tolist() == [0.1, 1.1, 2.1]
     assert columns["2"].tolist() == [0.0, -1.0, -2.0]
     assert columns["3"].tolist() == [0.5, 1.5, 2.5]
@@ -175,5 +175,5 @@ def test_times_of_day_are_seconds_since_the_first(tmp_path: Path, written: tuple
     path.write_text("\n".join(["Zeit;c [1]", *(f"{text};{place}" for place, text in enumerate(written))]) + "\n")
     opened = open_table(path)
     assert opened.contents == ["dates", "numbers"]
-    columns, _ = opened.measured([Source(0, "Zeit", "time", "s")])
+    columns, _ = opened.measured([ColumnSource(0, "Zeit", "time", "s")])
     assert np.array_equal(columns["time"], [0.0, np.nan, 1.75], equal_nan=True)

@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
 from strainwave.files.tables import open_table
 
@@ -291,7 +291,7 @@ def test_blanks_without_end_between_cells_take_linear_time(tmp_path: Path) -> No
     path = tmp_path / "table.csv"
     path.write_text(f"t q\n0 1\n1{900_000 * ' '}2\n")
     table = open_table(path)
-    assert table.numbers([Source(1, "q", "q", "1")])["q"].tolist() == [1.0, 2.0]
+    assert table.numbers([ColumnSource(1, "q", "q", "1")])["q"].tolist() == [1.0, 2.0]
 
 
 def test_a_name_has_at_most_a_thousand_characters(tmp_path: Path) -> None:
@@ -462,8 +462,8 @@ def test_parquet_columns_of_one_name_are_refused_and_the_others_read(tmp_path: P
     pq.write_table(pa.table([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]], names=["t [s]", "t [s]", "q [rad]"]), path)
     table = open_table(path)
     with pytest.raises(ValueError, match=exactly(f'{path} has 2 columns named "t [s]"; names must differ')):
-        table.measured([Source(0, "t", "t", "s")])
-    assert table.measured([Source(2, "q", "q", "rad")])[0]["q"].tolist() == [5.0, 6.0]
+        table.measured([ColumnSource(0, "t", "t", "s")])
+    assert table.measured([ColumnSource(2, "q", "q", "rad")])[0]["q"].tolist() == [5.0, 6.0]
 
 
 def test_parquet_without_columns_is_refused(tmp_path: Path) -> None:

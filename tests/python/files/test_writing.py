@@ -278,13 +278,13 @@ def test_either_all_files_are_written_or_none(tmp_path: Path) -> None:
 
 def test_the_files_of_two_writers_are_not_mixed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each writer stops for a moment between its two files, in which the other one has its own ready."""
-    put = writing._Beside.put
+    put = writing._Draft.put
 
-    def slowly(draft: writing._Beside) -> None:
+    def slowly(draft: writing._Draft) -> None:
         put(draft)
         time.sleep(0.02)
 
-    monkeypatch.setattr(writing._Beside, "put", slowly)
+    monkeypatch.setattr(writing._Draft, "put", slowly)
     one, other = tmp_path / "one", tmp_path / "other"
     contents: list[dict[Path, str]] = [{one: "a", other: "a"}, {other: "b", one: "b"}]
     writers = [threading.Thread(target=write_all, args=(each,)) for each in contents for _ in range(3)]

@@ -13,7 +13,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Covariance
-from strainwave.identification.results.changes import Change
+from strainwave.identification.results.changes import PartChange
 from strainwave.report.predict import verdict
 
 from tests.arms import Joint, Recorder, fourier, rtde, run
@@ -49,8 +49,8 @@ def predicted(folder: Path, name: str) -> sw.Prediction:
     return found
 
 
-def change(found: sw.Prediction, name: str) -> Change:
-    found_changes: tuple[Change, ...] = found.changes
+def change(found: sw.Prediction, name: str) -> PartChange:
+    found_changes: tuple[PartChange, ...] = found.changes
     return next(each for each in found_changes if each.name == name)
 
 

@@ -68,7 +68,7 @@ def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
 
 def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("position", "velocity", "torque"))
-    with pytest.raises(ValueError, match="the fit does not decide between readings, so say which: ") as asked:
+    with pytest.raises(ValueError, match="the fit does not decide between readings; select one by ") as asked:
         identify("csg-20-100", [path])
     ways = re.findall(r"(--[^()]*) \(([^:()]*): [\d.e+]+ %\)", str(asked.value))
     options = {described: way for way, described in ways}
@@ -84,7 +84,7 @@ def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp
 def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path) -> None:
     """An upright joint: in revolutions or radians it leaves as little, and the side is in the names."""
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
-    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well: .* say which: ") as asked:
+    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well: .* select one by ") as asked:
         identify("csg-20-100", [path])
     (option,) = re.findall(r"or (--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
     identified = with_options(path, option)
@@ -100,7 +100,7 @@ def test_an_upright_joint_of_a_robot_is_in_radians(tmp_path: Path) -> None:
 
 def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("position", "velocity", "torque"), pace=2.5)
-    with pytest.raises(ValueError, match="say which: ") as asked:
+    with pytest.raises(ValueError, match="select one by ") as asked:
         identify("csg-20-100", [path])
     assert "(rad, rad/s at the output: " in str(asked.value)
     assert "(rev, rev/s at the output: " not in str(asked.value)

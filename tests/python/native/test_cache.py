@@ -316,8 +316,8 @@ def test_the_package_ziglang_alone_makes_a_kernel_that_runs(empty_path: None) ->
 def test_a_shipped_kernel_needs_no_compiler(
     kernels: Path, monkeypatch: pytest.MonkeyPatch, given_away: Callable[[Path], None]
 ) -> None:
-    folder.SHIPPED.mkdir()
-    shipped = ship(KERNEL, folder.SHIPPED, _core.instruction_set())
+    folder.SHIPPED_KERNELS.mkdir()
+    shipped = ship(KERNEL, folder.SHIPPED_KERNELS, _core.instruction_set())
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(compilers, "find_spec", lambda name: None)
     assert kernel_file(KERNEL) == shipped

@@ -52,7 +52,7 @@ def library(drive: sw.Drive, scalar: Scalar) -> ctypes.CDLL:
     """The code of the device, compiled for the processor."""
     folder = Path(mkdtemp())
     (folder / "device.cpp").write_text(ON_THE_PROCESSOR + device.source(drive, scalar) + THREAD_AFTER_THREAD)
-    flags = "-std=c++20", "-O1", "-ffp-contract=off", "-shared", "-fPIC", "-w", f"-I{device.INCLUDE}"
+    flags = "-std=c++20", "-O1", "-ffp-contract=off", "-shared", "-fPIC", "-w", f"-I{device.INCLUDE_FOLDER}"
     subprocess.run([*compiler("g++"), *flags, "device.cpp", "-o", "device.so"], cwd=folder, check=True)
     return ctypes.CDLL(str(folder / "device.so"))
 

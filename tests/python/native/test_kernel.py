@@ -11,7 +11,7 @@ import pytest
 from strainwave import _core
 from strainwave.native import kernel
 from strainwave.native.compilers import find_compiler
-from strainwave.native.kernel import INCLUDE, Kernel
+from strainwave.native.kernel import INCLUDE_FOLDER, Kernel
 
 KERNEL = Kernel("int x;", "run", "load Pendulum")
 COMPILER = find_compiler()
@@ -23,14 +23,14 @@ def headers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (tmp_path / "inner").mkdir()
     (tmp_path / "inner" / "one.hpp").write_text("1")
     (tmp_path / "two.hpp").write_text("2")
-    monkeypatch.setattr(kernel, "INCLUDE", tmp_path)
+    monkeypatch.setattr(kernel, "INCLUDE_FOLDER", tmp_path)
     kernel.headers_digest.cache_clear()
     yield tmp_path
     kernel.headers_digest.cache_clear()
 
 
 def test_the_headers_are_those_that_the_package_brings() -> None:
-    assert (INCLUDE / "strainwave" / "drive.hpp").is_file()
+    assert (INCLUDE_FOLDER / "strainwave" / "drive.hpp").is_file()
 
 
 def test_the_source_the_instruction_set_and_the_compiler_are_in_the_key(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -64,7 +64,7 @@ def test_a_speed_is_summed_up_where_there_is_no_angle() -> None:
 
 def test_what_is_missing_is_named() -> None:
     t = np.arange(100.0)
-    with pytest.raises(ValueError, match="torque or current beside one angle; there are time, output_angle"):
+    with pytest.raises(ValueError, match="or one angle and a torque or current; there are time, output_angle"):
         orders_found(sw.Recording({"time": t, "output_angle": t}, {"time": "s", "output_angle": "rad"}))
     with pytest.raises(ValueError, match="give --side input or --side output"):
         orders_found(sw.Recording({"angle": t, "torque": np.sin(t)}, {"angle": "rad", "torque": "N.m"}))

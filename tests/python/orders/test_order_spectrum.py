@@ -95,9 +95,7 @@ def test_two_orders_need_as_many_revolutions_as_tell_them_apart() -> None:
     torque = np.sin(2 * angle) + 0.5 * np.sin(tooth * angle)
     assert sw.order_amplitudes(recorded(angle, angle, torque), "torque", [tooth, 2.0]).amplitude == pytest.approx([0.5, 1.0])
     short = recorded(angle, angle, torque).between(0.0, tau * 49.5)
-    with pytest.raises(
-        ValueError, match=r"to tell orders 2 and 2\.02 from each other takes 50 revolutions .* has 49; record longer"
-    ):
+    with pytest.raises(ValueError, match=r"to resolve orders 2 and 2\.02 takes 50 revolutions .* has 49; record longer"):
         sw.order_amplitudes(short, "torque", [2.0, tooth])
 
 
@@ -110,7 +108,7 @@ def test_two_orders_need_as_many_revolutions_as_tell_them_apart() -> None:
         ([], r"order must be a number or one series of at least one; its shape is \(0,\)"),
         ([[1.0]], r"its shape is \(1, 1\)"),
         ([2, 1, 2], r"order 2 is asked for twice"),
-        ([0.01], r"order 0\.01 and the mean from each other takes 100 revolutions"),
+        ([0.01], r"order 0\.01 and the mean takes 100 revolutions"),
         ([200.0], r"order 200 needs samples less than 0\.0157 rad of input_angle apart; rows \d+ and \d+ are 0\.\d+ rad apart"),
     ],
 )

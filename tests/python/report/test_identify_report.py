@@ -118,7 +118,7 @@ def test_what_is_fine_needs_no_alarm(found: Identified) -> None:
     html = identify_report(Identified(START, (one,), combine((one,)), START))
     assert not [each for each in Page(html).root.walk() if each.attributes.get("role") == "alert"]
     assert "The file determines 1 parameter; no check applied." in text_of(html)
-    assert "Files beside each other" not in text_of(html)
+    assert "Comparison of files" not in text_of(html)
 
 
 def test_the_error_on_data_held_out_stands_beside_plain_least_squares(found: Identified) -> None:
@@ -201,7 +201,7 @@ def test_experiments_show_every_run_and_every_figure_beside_the_published_one(fo
     assert [cell.text for cell in page.find("tr")[1].children if isinstance(cell, Node)] == [
         "largest error", "0.0123", "0.0456", "0.0042", "rad",
     ]  # fmt: skip
-    assert "compared, not reproduced" in page.text
+    assert "they are not reproduced" in page.text
     assert "amplitude assumed" in page.text
     labels = [text.text for text in page.find("text")]
     assert {"command", "_gear", " ".join(HOSTILE.split())} <= set(labels)

@@ -139,7 +139,7 @@ def test_what_could_not_be_told_comes_first(found: Evaluation, html: str) -> Non
     assert any("One specimen" in each for each in said)
     assert any("friction of the wave generator" in each for each in said)
     assert f"{HOSTILE}." in said
-    assert "What this test could not tell" in section(html, "summary").text
+    assert "What this test does not determine" in section(html, "summary").text
 
 
 def test_a_loop_alone_makes_a_report_that_says_what_is_missing() -> None:
@@ -178,7 +178,7 @@ def test_a_number_is_rounded_to_its_interval() -> None:
     assert str(stated(Result(2.0, "", 0.1, 0.0, 1.5, float("inf")))) == "2 (1.5 to ∞)"
 
 
-# ---- Files beside it -------------------------------------------------------------------------------------------------
+# ---- Files in its folder ---------------------------------------------------------------------------------------------
 
 
 def test_results_are_json_with_every_number(found: Evaluation) -> None:
@@ -231,8 +231,8 @@ def test_the_rig_is_told_in_units_of_the_workshop() -> None:
 
 def test_a_loop_is_drawn_with_its_regimes_in_the_order_run() -> None:
     angle, torque = np.array([0.0, -1.0, -2.0]), np.array([1.0, 0.5, 0.0])
-    branch = rig_figures.Branch("positive unloading", angle, torque)
-    width = rig_figures.Width("a", "hysteresis", (-2.0, -1.0), 0.2)
+    branch = rig_figures.DrawnRegime("positive unloading", angle, torque)
+    width = rig_figures.DrawnWidth("a", "hysteresis", (-2.0, -1.0), 0.2)
     names = ("angle [°]", "torque [N·m]")
     svg = rig_figures.loop_figure((angle, torque), [branch], [width], names, 0.6, "one", "A loop")
     root = Page(svg).root

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.simulation.run import METHODS
 
-from tests.cplusplus import INCLUDE, STRICT, compilation, compiler
+from tests.cplusplus import INCLUDE_FOLDER, STRICT, compilation, compiler
 from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
 from tests.tolerance import difference
 
@@ -107,7 +107,7 @@ def test_a_turn_of_the_twist_within_a_step_is_remembered() -> None:
 
 def coefficients() -> dict[str, Any]:
     """The numbers of the method as the code has them; rows filled up with zeros."""
-    code = (INCLUDE / "strainwave" / "integrate" / "rosenbrock.hpp").read_text()
+    code = (INCLUDE_FOLDER / "strainwave" / "integrate" / "rosenbrock.hpp").read_text()
     found: dict[str, Any] = {}
     for name, numbers in re.findall(r"static constexpr double (\w+)(?:\[stages\])* =\s*([^;]+);", code):
         found[name] = json.loads(numbers.replace("{", "[").replace("}", "]"), parse_float=Fraction)

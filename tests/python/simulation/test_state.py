@@ -11,7 +11,7 @@ import strainwave as sw
 from hypothesis import given, settings
 from strainwave import _core
 from strainwave.simulation.signals import outputs
-from strainwave.simulation.state import Layout, State
+from strainwave.simulation.state import State, StateLayout
 
 from tests.reference_drive import DRIVE, SMOOTH
 from tests.samples import sample
@@ -22,7 +22,7 @@ from tests.strategies import drives
 @given(drives)
 def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) -> None:
     rest = drive.rest()
-    assert list(rest) == Layout(drive).names == list(rest.units)
+    assert list(rest) == StateLayout(drive).names == list(rest.units)
     assert len(set(rest)) == len(rest) == len(rest.numbers)
     assert dict(rest) == {name: rest[name] for name in rest}
     assert all(np.isfinite(list(rest.values())))
@@ -88,7 +88,7 @@ def test_a_step_takes_no_state_of_a_drive_with_other_models() -> None:
 
 
 def test_continuous_numbers_come_first() -> None:
-    layout = Layout(DRIVE)
+    layout = StateLayout(DRIVE)
     assert layout.names[: layout.count] == [
         *("motor.current", "control.error_integral", "input_angle", "input_speed", "transmission_error", "output_speed"),
         "friction_input.deflection",

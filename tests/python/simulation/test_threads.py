@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.simulation import threads
-from strainwave.simulation.threads import Told, side_by_side
+from strainwave.simulation.threads import StepCounter, side_by_side
 
 
 @pytest.mark.parametrize("available", [1, 2, 5])
@@ -21,7 +21,7 @@ def test_a_call_that_fails_ends_the_others(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(threads, "available_threads", lambda: 3)
     ended: list[str] = []
 
-    def lasting(told: Told) -> None:
+    def lasting(told: StepCounter) -> None:
         try:
             for _ in range(20_000):
                 told(0)
@@ -31,7 +31,7 @@ def test_a_call_that_fails_ends_the_others(monkeypatch: pytest.MonkeyPatch) -> N
             ended.append("by the other")
             raise
 
-    def failing(told: Told) -> None:
+    def failing(told: StepCounter) -> None:
         time.sleep(0.1)
         raise FloatingPointError("diverged")
 

@@ -12,7 +12,7 @@ from strainwave.diagnose.actuator_ramp import ASSUMED, ERROR, INPUT, OUTPUT, Act
 from strainwave.diagnose.inversion import displaced, harmonics
 from strainwave.native import kernels
 from strainwave.studies import misalignment as study
-from strainwave.studies.misalignment import Levels, passed, recovered, share_by_ideal_loop, swept
+from strainwave.studies.misalignment import SweepLevels, passed, recovered, share_by_ideal_loop, swept
 
 SHORT = radians(60.0), 3.0  # stroke and time of the ramps of these tests
 PER_METRE = tan(radians(20.0)) / 25e-3  # rad at the output per metre of displacement, of the assumed dimensions
@@ -26,7 +26,7 @@ def ramp() -> ActuatorRamp:
 
 
 @pytest.fixture(scope="module")
-def levels(ramp: ActuatorRamp) -> dict[str, Levels]:
+def levels(ramp: ActuatorRamp) -> dict[str, SweepLevels]:
     """All sweeps with the assumed dimensions."""
     law = ASSUMED.replace(offset=4e-3)
     return {combine: swept(ramp, law.replace(combine=combine)) for combine in ("single", "mean", "max")}
@@ -35,7 +35,7 @@ def levels(ramp: ActuatorRamp) -> dict[str, Levels]:
 # The error that goes in
 
 
-def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, Levels]) -> None:
+def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, SweepLevels]) -> None:
     """20 um off centre, a = 25.3 mm, b = 24.7 mm: 1.001 arcmin once a turn; 8.492 um twice and 1.698 um four times."""
     row = study.SWEEPS["e1"][1].index(20e-6)
     arcmin = 60.0 * 180.0 / pi
@@ -50,7 +50,7 @@ def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, Levels
     assert levels["mean"].column("e1", "error_2")[row] == pytest.approx(second * PER_METRE, rel=1e-3)
 
 
-def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, Levels]) -> None:
+def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, SweepLevels]) -> None:
     for each in levels.values():
         for sweep in study.SILENT:
             assert each.column(sweep, "error_swing").max() < 1e-15, sweep
@@ -59,7 +59,7 @@ def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, Level
     assert np.all(alone < 1e-3 * housing), "what is left of a constant is the start of the ramp"
 
 
-def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, Levels]) -> None:
+def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, SweepLevels]) -> None:
     """The tilted section of a cylinder is longer by the tilt squared: a beta^2 / 4 at order 2 (erratum E-A8)."""
     without = levels["single"].column("h", "error_2")[0]
     assert without == pytest.approx(25.3e-3 * study.SHOWN_TILT**2 / 4.0 * PER_METRE, rel=1e-2)
@@ -69,7 +69,7 @@ def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, L
 # What it does
 
 
-def test_the_effect_grows_with_the_level_as_the_sharing_has_it(levels: dict[str, Levels]) -> None:
+def test_the_effect_grows_with_the_level_as_the_sharing_has_it(levels: dict[str, SweepLevels]) -> None:
     assert study.power_of_level(levels["single"], "e1", "current_swing") == pytest.approx(1.0, abs=0.02)
     assert study.power_of_level(levels["max"], "e1", "current_swing") == pytest.approx(1.0, abs=0.05)
     assert study.power_of_level(levels["mean"], "e1", "current_swing") == pytest.approx(2.0, abs=0.05)

@@ -146,7 +146,7 @@ def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
     lines: list[str] = []
     given: list[float] = []
 
-    def recorded(seen: sw.Seen) -> float:
+    def recorded(seen: sw.Observation) -> float:
         known = (seen.input_angle, seen.input_speed, seen.output_angle, seen.output_speed, seen.command)
         lines.append(" ".join(map(repr, known)))
         given.append(controller(seen))

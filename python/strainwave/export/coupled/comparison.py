@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, loads
 from strainwave.export.fmu.comparison import moving_run
 from strainwave.simulation.signals import command_unit
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 Array = NDArray[np.float64]
 COMPARED_DURATION = 1.0  # s, of the run
@@ -20,7 +20,7 @@ REFERENCE_STEP_SHARE = 0.25  # of the internal step: step of the simulation
 
 def losses(
     drive: Drive, inertia: float, step: float, exchange: float, words: str, moved: Callable[[float, float, float, int], Array]
-) -> Iterator[Loss]:
+) -> Iterator[ExportLoss]:
     """Yield the loss of the output angle over a step of the command, at an interval of exchange and at half of it.
 
     Args:
@@ -42,4 +42,4 @@ def losses(
         apart = interval / every
         error = moved(size, float(angle[0]), apart, every) - angle
         over = f"a step of the command by {size:g} {command_unit(drive)}, {duration:.3g} s, {words} {1e3 * apart:.3g} ms"
-        yield Loss.between("output_angle", error, "rad", float(np.ptp(angle)), over)
+        yield ExportLoss.between("output_angle", error, "rad", float(np.ptp(angle)), over)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from importlib import metadata
 
 from strainwave.export import cplusplus
-from strainwave.export.firmware.step import Member, Step
+from strainwave.export.firmware.step import Member, StepFunction
 from strainwave.native.static_type import short_name, static_type
 
 FLAGS = "-std=c++20 -O2 -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti"
@@ -14,22 +14,22 @@ OWN_HEADERS = ("strainwave/compiled.hpp", "strainwave/field.hpp")
 NO_STATE = (Member("unused", "", "this part has no memory"),)  # C has no empty struct
 
 
-def texts(step: Step, name: str, scalar: str) -> dict[str, str]:
+def texts(step: StepFunction, name: str, scalar: str) -> dict[str, str]:
     """Return the three files of a step by name."""
     return {f"{name}.hpp": _cplusplus(step, name, scalar), f"{name}.h": _c(step, name, scalar), f"{name}.cpp": _joint(name)}
 
 
-def state_of(step: Step) -> tuple[Member, ...]:
+def state_of(step: StepFunction) -> tuple[Member, ...]:
     """Return the members of the state in C, of which there is at least one."""
     return step.state or NO_STATE
 
 
-def _about(step: Step) -> str:
+def _about(step: StepFunction) -> str:
     model = f"{step.words}: {short_name(step.model)}" if step.words.startswith("a law") else step.words
     return f"{model}{_every(step)}.\n   Written by strainwave {metadata.version('strainwave')} (Apache-2.0)"
 
 
-def _every(step: Step) -> str:
+def _every(step: StepFunction) -> str:
     return f" every {step.period!r} s" if step.period else ""
 
 
@@ -42,7 +42,7 @@ def _members(members: Iterable[Member], scalar: str, comment: str) -> str:
     )
 
 
-def _c(step: Step, name: str, scalar: str) -> str:
+def _c(step: StepFunction, name: str, scalar: str) -> str:
     """Return the declarations in C."""
     members = {"inputs": step.inputs, "state": state_of(step), "outputs": step.outputs}
     structs = "\n".join(
@@ -90,7 +90,7 @@ extern "C" {name}_outputs {name}_step({name}_state* state, const {name}_inputs* 
 """
 
 
-def _cplusplus(step: Step, name: str, scalar: str) -> str:
+def _cplusplus(step: StepFunction, name: str, scalar: str) -> str:
     """Return the header in C++ that contains all that it needs."""
     package = cplusplus.amalgamated([*cplusplus.headers_of(step.model), *step.headers, *OWN_HEADERS])
     macros = "".join(f"#undef {each}\n" for each in cplusplus.macros(package))

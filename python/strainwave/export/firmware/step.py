@@ -38,7 +38,7 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Step:
+class StepFunction:
     """A function that firmware calls once in each period.
 
     Attributes:
@@ -63,7 +63,7 @@ class Step:
     headers: tuple[str, ...] = ()
 
 
-def step(drive: Drive, part: str, period: float | None) -> Step:
+def step(drive: Drive, part: str, period: float | None) -> StepFunction:
     """Return the step of a part of a drive.
 
     Args:
@@ -80,14 +80,14 @@ def step(drive: Drive, part: str, period: float | None) -> Step:
     return make(drive, part, period)
 
 
-def _controller(drive: Drive, part: str, period: float | None) -> Step:
+def _controller(drive: Drive, part: str, period: float | None) -> StepFunction:
     control = drive.control
     if not isinstance(control, _core.control.Sampled):
         raise TypeError(f"drive.control = {shortened(control)} must be sampled, as sw.control.Sampled(law=...) makes one")
     if period not in (None, control.period):
         raise ValueError(f"period = {period:g} s must be drive.control.period, {control.period:g} s: leave it out")
     command, given = command_unit(drive), actuation(drive)
-    return Step(
+    return StepFunction(
         control.replace(delay=0.0),
         "the sampled controller of a drive",
         (
@@ -115,7 +115,7 @@ def _controller(drive: Drive, part: str, period: float | None) -> Step:
     )
 
 
-def _drive(drive: Drive, part: str, period: float | None) -> Step:
+def _drive(drive: Drive, part: str, period: float | None) -> StepFunction:
     load, load_unit, load_doc = _core.load_input(drive)
     command = command_unit(drive)
     shown = [each for each in outputs(drive).values() if each.name != "command"]
@@ -124,7 +124,7 @@ def _drive(drive: Drive, part: str, period: float | None) -> Step:
     if _kept_counts(drive):
         steps = "auto steps = __builtin_bit_cast(strainwave::integrate::Steps<S, Model>, state.kept);"
         kept = "\n    __builtin_memcpy(state.kept, &steps, sizeof steps);"
-    return Step(
+    return StepFunction(
         drive,
         "a drive, by one step of a simulation",
         (
@@ -200,13 +200,13 @@ def _period_of_drive(drive: Drive, period: float | None) -> float:
     )
 
 
-def _friction(drive: Drive, part: str, period: float | None) -> Step:
+def _friction(drive: Drive, part: str, period: float | None) -> StepFunction:
     law = _law(drive, part)
     period = default_step(drive) if period is None else period
     held = (Member("hold_forward", "N.m", "most that it balances at rest against a push forwards"),
             Member("hold_backward", "N.m", "the same backwards")) if law.set_valued else ()  # fmt: skip
     holds = ", ".join(f"strainwave::friction::hold(model, now.pushed(S({sense})))" for sense in ("1.0", "-1.0"))
-    return Step(
+    return StepFunction(
         law,
         "a law of friction: torque that opposes the motion",
         (
@@ -236,9 +236,9 @@ def _friction(drive: Drive, part: str, period: float | None) -> Step:
     )  # fmt: skip
 
 
-def _hysteresis(drive: Drive, part: str, period: float | None) -> Step:
+def _hysteresis(drive: Drive, part: str, period: float | None) -> StepFunction:
     _check_static(part, period)
-    return Step(
+    return StepFunction(
         _law(drive, part),
         "a law of hysteresis: torque over the history of the twist",
         (Member("twist", "rad", "at the output"),),
@@ -255,9 +255,9 @@ def _hysteresis(drive: Drive, part: str, period: float | None) -> Step:
     )  # fmt: skip
 
 
-def _stiffness(drive: Drive, part: str, period: float | None) -> Step:
+def _stiffness(drive: Drive, part: str, period: float | None) -> StepFunction:
     _check_static(part, period)
-    return Step(
+    return StepFunction(
         _law(drive, part),
         "a law of stiffness: elastic torque over the twist",
         (Member("twist", "rad", "at the output"),),
@@ -266,9 +266,9 @@ def _stiffness(drive: Drive, part: str, period: float | None) -> Step:
     )
 
 
-def _kinematic_error(drive: Drive, part: str, period: float | None) -> Step:
+def _kinematic_error(drive: Drive, part: str, period: float | None) -> StepFunction:
     _check_static(part, period)
-    return Step(
+    return StepFunction(
         _law(drive, part),
         "a law of the kinematic error at the output",
         (Member("input_angle", "rad"),),
@@ -280,9 +280,9 @@ def _kinematic_error(drive: Drive, part: str, period: float | None) -> Step:
     )
 
 
-def _kinematic_noise(drive: Drive, part: str, period: float | None) -> Step:
+def _kinematic_noise(drive: Drive, part: str, period: float | None) -> StepFunction:
     _check_static(part, period)
-    return Step(
+    return StepFunction(
         _law(drive, part),
         "a law of the random kinematic error at the output",
         (Member("input_angle", "rad"), Member("torque", "N.m", "elastic"), Member("input_speed", "rad/s")),
@@ -294,7 +294,7 @@ def _kinematic_noise(drive: Drive, part: str, period: float | None) -> Step:
     )
 
 
-Maker = Callable[[Drive, str, float | None], Step]
+Maker = Callable[[Drive, str, float | None], StepFunction]
 PARTS: dict[str, Maker] = {
     "control": _controller,
     "drive": _drive,

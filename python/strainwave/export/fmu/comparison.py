@@ -18,7 +18,7 @@ from strainwave import Drive
 from strainwave.export.fmu.variables import Variable, recorded
 from strainwave.simulation import scenario, signals
 from strainwave.simulation.run import Run, simulate
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,9 @@ MAX_COMMAND_FACTOR = 1000.0  # by which the command is raised until the drive mo
 COMPARED = ("input_angle", "output_angle", "twist", "torque")
 
 
-def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable], version: int, step: float) -> list[Loss]:
+def difference_to_simulation(
+    content: bytes, drive: Drive, found: list[Variable], version: int, step: float
+) -> list[ExportLoss]:
     """Return what an FMU loses against `sw.simulate` over a step of the command, in some of its outputs."""
     interval = max(1, math.ceil(MIN_DURATION / COMMUNICATION_STEPS / step)) * step
     duration = COMMUNICATION_STEPS * interval
@@ -50,7 +52,7 @@ def difference_to_simulation(content: bytes, drive: Drive, found: list[Variable]
     for name, column in zip(chosen, np.array(values).T, strict=True):
         size = float(np.abs(run[name]).max())
         if size > 0.0 or column.any():  # an angle that the load holds at 0 compares nothing
-            losses.append(Loss.between(name, column - run[name], run.unit(name), size, over))
+            losses.append(ExportLoss.between(name, column - run[name], run.unit(name), size, over))
     return losses
 
 

@@ -30,7 +30,7 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import Run, simulate
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning.drawn import drawn_gears
-from strainwave.tuning.loss import Loss
+from strainwave.tuning.loss import ExportLoss
 
 Array = NDArray[np.float64]
 MAX_NAME_LENGTH = 60  # characters
@@ -143,7 +143,7 @@ def _draws(model: Drive | GearSet, members: int, seed: int) -> dict[str, Array]:
     return {path: values for path, values in drawn_gears(model, members, seed).items() if not path.startswith("load.")}
 
 
-def difference_to_simulation(drive: Drive, files: dict[str, str | bytes], about: dict[str, Any]) -> list[Loss]:
+def difference_to_simulation(drive: Drive, files: dict[str, str | bytes], about: dict[str, Any]) -> list[ExportLoss]:
     """Return what an actuator loses against `sw.simulate` while its joint follows a sine, in some of its outputs."""
     size = COMMAND_SIZES.get(about["command_unit"], OTHER_COMMAND)
     duration = round(COMPARED_DURATION / about["step"]) * about["step"]
@@ -160,7 +160,9 @@ def difference_to_simulation(drive: Drive, files: dict[str, str | bytes], about:
     losses = []
     for name in COMPARED:
         if name in found and run[name].any():
-            losses.append(Loss.between(name, found[name] - run[name], run.unit(name), float(np.abs(run[name]).max()), over))
+            losses.append(
+                ExportLoss.between(name, found[name] - run[name], run.unit(name), float(np.abs(run[name]).max()), over)
+            )
     return losses
 
 

@@ -30,7 +30,7 @@ _SOURCE = (_FOLDER / "drive.hpp").read_text("utf-8")
 _SCALAR = {"double": wp.float64, "float": wp.float32}[_ABOUT["scalar"]]
 _NUMBER_TYPE = {"double": np.float64, "float": np.float32}[_ABOUT["scalar"]]
 _MEMORY: int = _ABOUT["memory"]
-_THREADS = 128  # of a block on a GPU
+_THREADS_PER_BLOCK = 128  # on a GPU
 
 PARAMETERS: dict[str, dict[str, Any]] = _ABOUT["parameters"]
 """Value, unit and range of each number of the drive, by its path."""
@@ -359,8 +359,8 @@ class _Cuda:
         pointers = (ctypes.c_void_p * len(values))(*(ctypes.cast(ctypes.byref(each), ctypes.c_void_p) for each in values))
         with wp.ScopedDevice(self._device):
             stream = ctypes.c_void_p(self._device.stream.cuda_stream)
-            blocks = -(-count // _THREADS)
-            self._call("cuLaunchKernel", self._found[name], blocks, 1, 1, _THREADS, 1, 1, 0, stream, pointers, None)
+            blocks = -(-count // _THREADS_PER_BLOCK)
+            self._call("cuLaunchKernel", self._found[name], blocks, 1, 1, _THREADS_PER_BLOCK, 1, 1, 0, stream, pointers, None)
 
 
 def _as_c(argument: Any) -> Any:

@@ -188,7 +188,7 @@ def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) 
 
 
 @dataclass(frozen=True, eq=False)
-class _Tried(ComparedByFields):
+class _TriedModel(ComparedByFields):
     """A model fitted to a part of the log: its name, free paths, drive, and error on data held out [rad]."""
 
     name: str
@@ -221,7 +221,7 @@ def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourie
     return drive.replace(gear=gear)
 
 
-def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) -> tuple[_Tried, list[_Tried]]:
+def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) -> tuple[_TriedModel, list[_TriedModel]]:
     """Return the model that no further part improves, and those that predict as well.
 
     The part that predicts best is added next: a bend of the spring and a further element of hysteresis can imitate each other,
@@ -240,7 +240,7 @@ def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) ->
     return best, [each for each in every if each is not best and MAX_RELATIVE_ERROR * each.error < best.error]
 
 
-def _apart(path: str, one: _Tried, other: _Tried) -> float:
+def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
     """Return the distance of a number of the gear in two models that predict alike; 0 if the other model lacks it.
 
     Elements of hysteresis are compared if both models have as many.
@@ -253,8 +253,8 @@ def _apart(path: str, one: _Tried, other: _Tried) -> float:
 
 
 def _with(
-    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _Tried, law: Any, scale: str, reach: float
-) -> _Tried | None:
+    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _TriedModel, law: Any, scale: str, reach: float
+) -> _TriedModel | None:
     """Return the model with one part more, from its fit without; None if the part does not apply."""
     if (grown := more(best.drive, law, reach)) is None:
         return None
@@ -264,12 +264,12 @@ def _with(
         return None
 
 
-def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _Tried:
+def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel:
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
     ((predicted, _),) = problem.predict(x)
     error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
-    return _Tried(_name(drive), free, problem.records[0].model(x), error)
+    return _TriedModel(_name(drive), free, problem.records[0].model(x), error)
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:

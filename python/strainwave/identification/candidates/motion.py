@@ -97,7 +97,7 @@ def fit_motion(
 
 
 def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
-    """Return a model with a delay from where it starts, and with each other part beside it, as each may hide the other."""
+    """Return a model with a delay alone, and with a delay and each other part, as each may hide the other."""
     late = with_delay(model, delay)
     return [late] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
 
@@ -300,7 +300,7 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
 
 
 def natural_frequency(drive: Drive, carried: float) -> float:
-    """Of an inertia on the spring of the gear, its input held [Hz]; infinite where nothing gives way, or it has play."""
+    """Return the natural frequency of an inertia on the gear's spring, input held [Hz]; infinite if rigid or with play."""
     softness = 1.0 / stiffness if (stiffness := drive.gear.stiffness.tangent(0.0)) > 0.0 else 0.0
     softness += series_compliance(drive.gear)
     return float(1.0 / (2.0 * np.pi * np.sqrt(softness * carried))) if softness * carried > 0.0 else np.inf

@@ -24,8 +24,8 @@ TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns ov
 FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
 MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction begins, which plain least squares does not describe
-BLOCKS = 10  # of each stretch, over which what is left of it scatters
-RCOND = 1e-6  # singular values below this share of the largest are taken as zero
+BLOCKS_PER_STRETCH = 10  # over which the residual scatters
+MIN_SINGULAR_SHARE = 1e-6  # share of the largest singular value [1] below which one counts as zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
 
 
 def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tuple[MotionLog, bool]:
-    """Return the log along its angle or the speed recorded beside it, whichever predicts better; and True for the speed."""
+    """Return the log along its angle or its recorded speed, whichever predicts better; and True for the speed."""
     measured = log.with_measured_speed(recording, drive.gear.kinematics.ratio)
     if measured is None:
         return log, False
@@ -145,7 +145,7 @@ def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
     for stretch in stretches(log):
         others = rows & ~stretch
         left = (torque - columns @ _solved(columns[others], torque[others])) ** 2 / variance
-        for block in np.array_split(np.flatnonzero(stretch), BLOCKS):
+        for block in np.array_split(np.flatnonzero(stretch), BLOCKS_PER_STRETCH):
             squares.append(float(left[block[rows[block]]].sum()))
             samples.append(int(rows[block].sum()))
     return np.array(squares), np.array(samples)
@@ -170,5 +170,5 @@ def _torque(log: MotionLog, drive: Drive) -> Array:
 def _solved(columns: Array, torque: Array) -> Array:
     size = np.linalg.norm(columns, axis=0)
     size[size == 0.0] = 1.0
-    found: Array = np.linalg.lstsq(columns / size, torque, rcond=RCOND)[0] / size
+    found: Array = np.linalg.lstsq(columns / size, torque, rcond=MIN_SINGULAR_SHARE)[0] / size
     return found

@@ -24,8 +24,8 @@ from strainwave.identification.fitting.estimate import Estimate
 
 Array = NDArray[np.float64]
 
-TURN = 2.0 * np.pi  # rad
-ORDERS = 10  # count of harmonics of document P, and of the law
+FULL_TURN = 2.0 * np.pi  # rad
+ORDER_COUNT = 10  # harmonics of document P, and of the law
 MIN_SAMPLES_PER_PERIOD = 4  # of the highest order
 CONTRADICTION_SIGMA = 3.0  # standard deviations: two numbers further apart contradict each other
 
@@ -52,8 +52,8 @@ class PositionFit(ComparedByFields):
 
 
 @dataclass(frozen=True)
-class Reading:
-    """One way to read a table of friction over speed beside a law over the angle.
+class TableReading:
+    """One way to read a table of friction over speed together with a law over the angle.
 
     Attributes:
         name: total friction, or its viscous part, of speeds of the motor or of the output
@@ -93,15 +93,15 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
         raise ValueError("recordings is empty; give at least one run at constant speed")
     angle, level, speed = map(np.concatenate, zip(*runs, strict=True))
     start, end = float(angle.min()), float(angle.max())
-    if end - start < TURN:
-        raise ValueError(f"the runs cover {(end - start) / TURN:.2f} turns; record a whole turn or more")
-    if len(angle) < max(MIN_SAMPLES_PER_PERIOD * ORDERS * (end - start) / TURN, 2 * ORDERS + 5):
+    if end - start < FULL_TURN:
+        raise ValueError(f"the runs cover {(end - start) / FULL_TURN:.2f} turns; record a whole turn or more")
+    if len(angle) < max(MIN_SAMPLES_PER_PERIOD * ORDER_COUNT * (end - start) / FULL_TURN, 2 * ORDER_COUNT + 5):
         raise ValueError(
-            f"{len(angle)} samples over {(end - start) / TURN:.1f} turns do not separate {ORDERS} orders; record more"
+            f"{len(angle)} samples over {(end - start) / FULL_TURN:.1f} turns do not separate {ORDER_COUNT} orders; record more"
         )
     several = len(np.unique(np.round(speed / max(float(speed.max()), 1e-300), 2))) > 1
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
-    u, k = (angle - middle) / half, np.arange(1, ORDERS + 1)
+    u, k = (angle - middle) / half, np.arange(1, ORDER_COUNT + 1)
     waves = (*np.cos(np.outer(k, angle)), *np.sin(np.outer(k, angle)))
     jacobian = np.stack([u**2, u, np.ones_like(u), *waves, *([speed] if several else [])], axis=1)
     found = np.linalg.lstsq(jacobian, level, rcond=None)[0]
@@ -114,8 +114,8 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
         [(middle / half) ** 2, -middle / half, 1.0],
     ]
     numbers, sigma = back @ found, np.sqrt(np.diag(back @ covariance @ back.T))
-    names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(ORDERS))]
-    units = ["N.m/rad2", "N.m/rad", *(2 * ORDERS + 1) * ["N.m"]]
+    names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(ORDER_COUNT))]
+    units = ["N.m/rad2", "N.m/rad", *(2 * ORDER_COUNT + 1) * ["N.m"]]
     if several:
         names, units = [*names, "viscous"], [*units, "N.m.s/rad"]
     estimates = tuple(
@@ -124,8 +124,8 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     )
     law = _law(numbers, start, end, viscous=float(numbers[-1]) if several else 0.0)
     whole = [integrated for run in runs if (integrated := _integrated(run[0], run[1])) is not None]
-    beside = _law(np.mean(whole, axis=0), start, end) if whole and not several else None
-    return PositionFit(law, estimates, residual, angle, level, beside)
+    by_integrals = _law(np.mean(whole, axis=0), start, end) if whole and not several else None
+    return PositionFit(law, estimates, residual, angle, level, by_integrals)
 
 
 def _law(numbers: Array, start: float, end: float, viscous: float = 0.0) -> PositionDependent:
@@ -134,8 +134,8 @@ def _law(numbers: Array, start: float, end: float, viscous: float = 0.0) -> Posi
         quadratic=quadratic,
         linear=linear,
         constant=constant,
-        cosine=waves[:ORDERS],
-        sine=waves[ORDERS : 2 * ORDERS],
+        cosine=waves[:ORDER_COUNT],
+        sine=waves[ORDER_COUNT : 2 * ORDER_COUNT],
         viscous=max(viscous, 0.0),
         domain_start=start,
         domain_end=end,
@@ -160,21 +160,21 @@ def _integrated(angle: Array, level: Array) -> Array | None:
     """Return P's integrals over the whole turns of a run: s1, s2, s3, a_k, b_k; None for fewer than three turns."""
     order = np.argsort(angle, kind="stable")
     angle, level = angle[order], level[order]
-    first, turns = float(angle[0]), int((angle[-1] - angle[0]) // TURN)
+    first, turns = float(angle[0]), int((angle[-1] - angle[0]) // FULL_TURN)
     if turns < 3:
         return None
     centres, means = [], []
     for turn in range(turns):
-        q, f = _between(angle, level, first + turn * TURN, first + (turn + 1) * TURN)
-        centres.append(first + (turn + 0.5) * TURN)
-        means.append(np.trapezoid(f, q) / TURN)
+        q, f = _between(angle, level, first + turn * FULL_TURN, first + (turn + 1) * FULL_TURN)
+        centres.append(first + (turn + 0.5) * FULL_TURN)
+        means.append(np.trapezoid(f, q) / FULL_TURN)
     quadratic, linear, constant = np.polyfit(centres, means, 2)
     constant -= quadratic * np.pi**2 / 3.0
-    q, f = _between(angle, level, first, first + turns * TURN)
+    q, f = _between(angle, level, first, first + turns * FULL_TURN)
     left = f - np.polyval([quadratic, linear, constant], q)
-    k = np.arange(1, ORDERS + 1)[:, np.newaxis]
+    k = np.arange(1, ORDER_COUNT + 1)[:, np.newaxis]
     waves = np.concatenate([np.cos(k * q), np.sin(k * q)])
-    return np.concatenate([[quadratic, linear, constant], 2.0 / (turns * TURN) * np.trapezoid(left * waves, q, axis=1)])
+    return np.concatenate([[quadratic, linear, constant], 2.0 / (turns * FULL_TURN) * np.trapezoid(left * waves, q, axis=1)])
 
 
 def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Array, Array]:
@@ -184,8 +184,8 @@ def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Arra
     return np.concatenate([[start], angle[inside], [end]]), np.concatenate([ends[:1], level[inside], ends[1:]])
 
 
-def readings(table: FrictionTable, law: PositionDependent, reduction: float | None = None) -> tuple[Reading, ...]:
-    """Return the readings of a table of friction over speed beside a law over the angle, as document P's Table 2.
+def readings(table: FrictionTable, law: PositionDependent, reduction: float | None = None) -> tuple[TableReading, ...]:
+    """Return the readings of a table of friction over speed with a law over the angle, as document P's Table 2.
 
     By its title it is viscous friction: the part b v + B, which is added to Coulomb's. By its columns it is the whole friction.
     Both are fitted by a line, each with its contradictions to the law (E-P6, E-P7, E-P11). Nothing is averaged.
@@ -234,15 +234,15 @@ def readings(table: FrictionTable, law: PositionDependent, reduction: float | No
             f"the law's {law.constant:.3g} N·m"
         )
     found_readings = (
-        Reading("total friction", offset, slope, torque, (*of_level, *_against_slope(slope, law)), False, ""),
-        Reading("its viscous part", offset, slope, least + torque, _against_slope(slope, law), True, remark),
+        TableReading("total friction", offset, slope, torque, (*of_level, *_against_slope(slope, law)), False, ""),
+        TableReading("its viscous part", offset, slope, least + torque, _against_slope(slope, law), True, remark),
     )
     if reduction is None:
         return found_readings
     share = 1.0 / arguments.number("reduction", reduction, "1", low=0.0)
     at_motor = replace(slope, value=share * slope.value, sigma=share * slope.sigma)
     name = "its viscous part, over speeds of the output"
-    return (*found_readings, Reading(name, offset, at_motor, least + torque, _against_slope(at_motor, law), True, remark))
+    return (*found_readings, TableReading(name, offset, at_motor, least + torque, _against_slope(at_motor, law), True, remark))
 
 
 def _against_slope(slope: Estimate, law: PositionDependent) -> tuple[str, ...]:

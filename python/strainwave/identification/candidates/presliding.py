@@ -15,7 +15,7 @@ from strainwave import friction, hysteresis
 from strainwave._core import PassivityWarning
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.friction import MAX_CHANCE, by_chance, dissipating
-from strainwave.identification.experiments.presliding import Breakaway, PreslidingLoop
+from strainwave.identification.experiments.presliding import BreakawayPoint, PreslidingLoop
 from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 MAX_ELEMENTS = 4  # Maxwell
 GRID_SIZE = 24  # reaches of elements that a start is chosen from
 MAX_SHARE_LEFT = 0.98  # of the error: an element more that leaves more of it is the last tried
-FOLDS = 4  # of the branches, each predicted from the others
+FOLD_COUNT = 4  # of the branches, each predicted from the others
 WHOLE_TRIALS, PART_TRIALS = 40, 10  # steps of a fit to the whole loop, and of one that starts from there
 MIN_RATES = 3  # different ramps, that determine how breakaway depends on the rate
 
@@ -148,7 +148,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[P
     return [first, *sorted((each for each in tried if each is not first), key=lambda each: each.error)]
 
 
-def breakaway_torque(ramps: Sequence[Breakaway]) -> BreakawayTorque:
+def breakaway_torque(ramps: Sequence[BreakawayPoint]) -> BreakawayTorque:
     """Return the breakaway torque of each direction, with its interval, and how it depends on the rate of the ramps.
 
     Raises:
@@ -254,7 +254,7 @@ def _candidate(
     found = _solved(predict, start, loop.torque, begun, count, WHOLE_TRIALS)
     predicted = predict(found)
     held_out = predicted.copy()
-    parts, again = branch % FOLDS, branch > branch[begun].min()  # the first branch determines the beginning
+    parts, again = branch % FOLD_COUNT, branch > branch[begun].min()  # the first branch determines the beginning
     for part in np.unique(parts[again]):
         left_out = again & (parts == part)
         if (begun & ~left_out).sum() > len(found):

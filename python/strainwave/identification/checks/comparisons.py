@@ -37,8 +37,8 @@ REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and rat
 
 
 @dataclass(frozen=True)
-class _Compared:
-    """A parameter beside its value in the start set.
+class _ComparedWithStart:
+    """A parameter and its value in the start set.
 
     Attributes:
         estimate: by the files
@@ -83,7 +83,7 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     )  # fmt: skip
 
 
-def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[_Compared]:
+def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[_ComparedWithStart]:
     compared = set[str]()
     for each in parameters:
         estimate = each.estimate
@@ -98,7 +98,7 @@ def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterat
         spread = uncertainty(before, entry) / before
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
         sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
-        yield _Compared(estimate, each.source, before, spread, float(np.log(estimate.value / before)), sigma)
+        yield _ComparedWithStart(estimate, each.source, before, spread, float(np.log(estimate.value / before)), sigma)
 
 
 def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:

@@ -47,7 +47,7 @@ def checks_of_motion(
         best: the model fitted
         drive: as far as it was known before
         recording: of the log, with its angle in the unit of the file
-        held_out: its error on data held out, beside that of plain least squares
+        held_out: its error on data held out, and that of plain least squares
         source: name of the file
     """
     alone = not best.log.regressors
@@ -68,7 +68,7 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     """Yield the check that gravity goes with the sine of the angle in the unit and of the side that are taken for it.
 
     A wrong unit or side of an angle scales inertia and friction, which absorb it. Gravity of a joint that moves far enough
-    shows the angle itself. The pass band is compared, by least squares with inertia and friction of any curve beside.
+    shows the angle itself. The pass band is compared, by least squares together with inertia and friction of any curve.
     """
     log, ratio = best.log, abs(drive.gear.kinematics.ratio)
     delay = _delay(best)

@@ -22,8 +22,8 @@ from strainwave.kinematics import StrainWave
 
 Array = NDArray[np.float64]
 
-# Share of the variation of a channel that a fit may leave unexplained beside noise. It is less of an angle, which sums up the
-# motion before, than of a torque or a current, which contain every effect that a model lacks.
+# Share of the variation of a channel that a fit may leave unexplained in addition to noise. It is less for an angle, which sums
+# up the motion before, than for a torque or a current, which contain every effect that a model lacks.
 MAX_SHARE_OF_MOTION = 0.1
 MAX_SHARE_OF_LOOP = 0.1
 MAX_SHARE_OF_TORQUE = 0.3

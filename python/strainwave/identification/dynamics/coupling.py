@@ -34,7 +34,7 @@ TIME_BLOCKS = 10  # of the motion before the last stretch: terms are chosen by t
 SHARE_OF_JOINT = 0.5  # weight of a term in the selection for each other joint in it
 SLOW_SHARES = (0.1, 0.5)  # of the usual speed, at which friction may fall
 END_OF_RIGID, END_OF_FRICTION = 3, 9  # of the columns of a joint by itself: inertia and gravity, offset and friction
-PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that gravity is found beside: inertia, offset, Coulomb, viscous
+PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that are fitted together with gravity: inertia, offset, Coulomb, viscous
 MIN_INDEPENDENT_WAVE = 0.02  # of the size of a sine or cosine of gravity, that those before it must not explain
 MIN_ROWS = 50  # in the pass band before the last stretch, by which terms are found
 TERMS_AT_ONCE = 64  # that are filtered
@@ -94,7 +94,7 @@ def _gravity(arm: _Arm, own: Motion, torque: Array, base: Array, known: Rows) ->
 
 
 def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: Rows) -> Iterator[MotionLog]:
-    """Yield the log with terms of the kinetic energy, chosen beside a loss under load, which they can imitate, and without."""
+    """Yield the log with terms of the kinetic energy, chosen with a loss under load, which they can imitate, and without."""
     own, terms = log.motion, list(arm.terms())
     columns = _columns(own, arm, terms)
     lossy = np.column_stack([base, _loss(torque, base, known) * np.sign(own.speed[own.rows])])

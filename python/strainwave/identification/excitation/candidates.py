@@ -87,7 +87,7 @@ class Limits:
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class CandidateMeasurement:
     """One measurement that could be made.
 
     Attributes:
@@ -107,7 +107,7 @@ class Candidate:
 
 def friction(
     gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, resolution: Resolution, duration: float
-) -> Iterator[Candidate]:
+) -> Iterator[CandidateMeasurement]:
     """Yield friction torques at the input at constant speeds, each both ways."""
     one_way = np.geomspace(limits.lowest_speed, limits.speed, SPEED_COUNT)
     speed = np.concatenate((one_way, -one_way))
@@ -116,12 +116,12 @@ def friction(
     for row, each in enumerate(one_way.tolist()):
         rows = slopes[:, 0, [row, row + SPEED_COUNT]].T / sigma
         words = f"friction torque at ± {each:.4g} rad/s of the input ({each * 30.0 / pi:.4g} rpm)"
-        yield Candidate("friction", {"input_speed_rad_s": each}, words, 2.0 * duration, rows.T @ rows)
+        yield CandidateMeasurement("friction", {"input_speed_rad_s": each}, words, 2.0 * duration, rows.T @ rows)
 
 
 def torsion(
     gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, resolution: Resolution, duration: float
-) -> Iterator[Candidate]:
+) -> Iterator[CandidateMeasurement]:
     """Yield torsion loops up to several torques, at the output with the input held, and at the input with the output held.
 
     Loops that the sensors do not resolve are left out.
@@ -143,7 +143,7 @@ def torsion(
                 f"± {turn:.3g} rad"
             )
             settings: dict[str, float | str] = {"torque_N_m": amplitude, "measured_at": side, "held": held}
-            yield Candidate("torsion", settings, words, duration, information)
+            yield CandidateMeasurement("torsion", settings, words, duration, information)
 
 
 def _loop_sigma(noise: Noise, ratio: float | None, limits: Limits, resolution: Resolution, stiffness: float) -> float:
@@ -166,7 +166,7 @@ def _loop(gear: Gear, largest: float, ratio: float | None) -> TorsionLoop:
 
 def motion(
     drive: Drive, paths: Sequence[str], limits: Limits, noise: Noise, commands: Mapping[str, Scenario], sample: float
-) -> Iterator[Candidate]:
+) -> Iterator[CandidateMeasurement]:
     """Yield runs of a drive from rest under commands, and under shares of them; those that keep the limits."""
     known = outputs(drive)
     channels = [name for name in noise if name in known] or [name for name in USUAL_COLUMNS if name in known]
@@ -182,7 +182,7 @@ def motion(
         rows = np.concatenate([slopes[:, row] / sigma for row, sigma in enumerate(sigmas)], axis=1).T
         information = without_nuisances(rows[:, : len(paths)], rows[:, len(paths) :])
         words = f"run of {command.duration:.3g} s under {share:g} times the command {name}"
-        yield Candidate("motion", {"command": name, "share": share}, words, command.duration, information)
+        yield CandidateMeasurement("motion", {"command": name, "share": share}, words, command.duration, information)
 
 
 def _sigma(noise: Noise, name: str, largest: float, least: float = 0.0) -> float:

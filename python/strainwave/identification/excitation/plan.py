@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
-from strainwave.identification.excitation.candidates import Candidate, Limits, Noise, Resolution
+from strainwave.identification.excitation.candidates import CandidateMeasurement, Limits, Noise, Resolution
 from strainwave.identification.excitation.design import Criterion, best, covariance_of, undetermined
 from strainwave.identification.fitting.fit import Fit
 from strainwave.messages import listed, shortened
@@ -37,7 +37,7 @@ Known = GearSet | Fit | Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class Step:
+class PlannedMeasurement:
     """One measurement of a plan.
 
     Attributes:
@@ -84,13 +84,13 @@ class ExperimentPlan:
         expectations: of each parameter that is not known
         notes: assumptions of the numbers
 
-    >>> step = Step("friction", "hold 10 rad/s at the input", {"input_speed_rad_s": 10.0}, 3, 60.0)
+    >>> step = PlannedMeasurement("friction", "hold 10 rad/s at the input", {"input_speed_rad_s": 10.0}, 3, 60.0)
     >>> plan = ExperimentPlan((step,), (Expectation("gear.damping", "N.m.s/rad", 2.0, np.inf, 0.5, True, ""),), ())
     >>> plan.duration, plan["gear.damping"].after
     (60.0, 0.5)
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[PlannedMeasurement, ...]
     expectations: tuple[Expectation, ...]
     notes: tuple[str, ...]
 
@@ -306,12 +306,12 @@ def _candidates(
     durations: Mapping[str, float],
     commands: Mapping[str, Scenario] | None,
     sample: float,
-) -> list[Candidate]:
+) -> list[CandidateMeasurement]:
     asked = {kind: durations.get(kind, usual) for kind, usual in USUAL_DURATIONS.items()}
     lasting = {kind: arguments.seconds(f"durations: {kind}", duration) for kind, duration in asked.items()}
     gear = whole.gear if isinstance(whole, Drive) else whole
     of_gear = [path.removeprefix("gear.") if isinstance(whole, Drive) else path for path in paths]
-    found: list[Candidate] = []
+    found: list[CandidateMeasurement] = []
     if "friction" in kinds:
         found += possible.friction(gear, of_gear, limits, noise, resolution, lasting["friction"])
     if "torsion" in kinds:
@@ -362,9 +362,11 @@ def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
     return before
 
 
-def _steps(found: Sequence[Candidate], places: Sequence[int]) -> tuple[Step, ...]:
+def _steps(found: Sequence[CandidateMeasurement], places: Sequence[int]) -> tuple[PlannedMeasurement, ...]:
     steps = [(found[place], often) for place, often in sorted(Counter(places).items())]
-    return tuple(Step(each.kind, each.words, each.settings, often, often * each.duration) for each, often in steps)
+    return tuple(
+        PlannedMeasurement(each.kind, each.words, each.settings, often, often * each.duration) for each, often in steps
+    )
 
 
 def _expectations(
@@ -408,16 +410,16 @@ def _reasons(paths: Sequence[str], covariance: Array, everything: Array, kinds: 
         elif np.isinf(reach[place]):
             dead = np.abs(directions[place]) * undetermined(values)
             direction = np.abs(directions[:, int(np.argmax(dead))])
-            beside = [paths[other] for other in others if direction[other] > 1e-3]
+            joint = [paths[other] for other in others if direction[other] > 1e-3]
             reasons.append(
-                f"determined only together with {listed(beside)}" if beside else f"{listed(kinds)} hardly depend on it"
+                f"determined only together with {listed(joint)}" if joint else f"{listed(kinds)} hardly depend on it"
             )
         elif np.isinf(sigma[place]):
             reasons.append(
                 "the plan has no measurement that determines it: it does not matter for what is wanted, or time is short"
             )
-        elif beside := [paths[other] for other in others if related[place, other] > MAX_CORRELATION]:
-            reasons.append(f"correlated with {listed(beside)}; more time, or knowledge of these, reduces its uncertainty")
+        elif correlated := [paths[other] for other in others if related[place, other] > MAX_CORRELATION]:
+            reasons.append(f"correlated with {listed(correlated)}; more time, or knowledge of these, reduces its uncertainty")
         else:
             reasons.append("limited by the noise; more time reduces its uncertainty")
     return reasons

@@ -22,7 +22,7 @@ from strainwave.simulation.signals import command_unit, controls_position, outpu
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
-MAX_HANGING_ANGLE = 0.02  # rad: gravity is small there beside friction
+MAX_HANGING_ANGLE = 0.02  # rad: gravity is small there compared with friction
 MAX_REST_SPEED = 0.02  # of the largest speed: a log that starts faster does not start at rest
 MAX_STILL_SHARE = 1e-3  # of the range measured: a prediction that moves less stands still
 MAX_COMPARED = 20_000  # samples of a log; of a longer one every so many, the command in full

@@ -17,14 +17,14 @@ from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import EFFORTS, per_torque
 from strainwave.messages import listed, quoted
 from strainwave.simulation.excitation import Excitation
-from strainwave.simulation.motion import Motion
+from strainwave.simulation.motion import InputMotion
 from strainwave.simulation.resolution import fine_enough
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.scenario import Scenario, table
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
-CHANNELS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_error": "rad", "torque": "N.m"} | EFFORTS
+CHANNEL_UNITS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_error": "rad", "torque": "N.m"} | EFFORTS
 MAX_STEP = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
 VIBRATION_TIME = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
 MAX_CUTOFF_SHARE = 0.24  # of the sample rate: bristles and the order of teeth are fast, and above a quarter noise is measured
@@ -59,7 +59,7 @@ class DrivenLog(ComparedByFields):
         delayed: names of the channels whose delay behind the input angle is an unknown
     """
 
-    motion: Motion
+    motion: InputMotion
     angle: Array
     speed: Array
     time: Array
@@ -88,20 +88,20 @@ class DrivenLog(ComparedByFields):
             drive: to be identified
             channels: columns to compare
             dt: largest step of the simulation [s]; 0.5 ms, or as short as the drive needs, if not given
-            initial: initial values beside the motion of the input, as for `simulate`
+            initial: initial values other than the motion of the input, as for `simulate`
 
         Raises:
             ValueError: a column is missing, nothing can be compared, or the angle does not determine the motion
         """
         check_columns(recording, ("time", "input_angle"), "a log along the motion of its input")
         arguments.drive(drive)
-        present = [name for name in recording.names if name in CHANNELS]
+        present = [name for name in recording.names if name in CHANNEL_UNITS]
         chosen = tuple(present if channels is None else arguments.names("channels", channels))
         if unknown := [name for name in chosen if name not in present]:
             raise ValueError(f"the log cannot be compared by {quoted(unknown[0])}; it can by {listed(present) or 'nothing'}")
         if not chosen:
             raise ValueError(
-                f"the log contains how the input moved, and nothing to compare: record one of {listed(CHANNELS)} besides; "
+                f"the log contains how the input moved, and nothing to compare: record one of {listed(CHANNEL_UNITS)} besides; "
                 f"it has {listed(recording.names)}"
             )
         smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), highest=MAX_CUTOFF_SHARE)
@@ -110,13 +110,13 @@ class DrivenLog(ComparedByFields):
         step = fine_enough(driven(drive), MAX_STEP, MIN_STEP) if dt is None else arguments.seconds("dt", dt)
         steps = np.searchsorted(grid, min(MAX_STEPS * step, float(time[-1])), "right")
         moving = abs(float(smoothed.speed[0])) > MAX_REST_SPEED * float(np.abs(smoothed.speed).max())
-        moved = Motion.through(grid[:steps], smoothed.angle[:steps], from_rest=not moving)
+        moved = InputMotion.through(grid[:steps], smoothed.angle[:steps], from_rest=not moving)
         moved = replace(moved, initial={**moved.initial, **(initial or {})})
         begin = VIBRATION_TIME if moving and initial is None else 0.0
         end = moved.command.duration - END_PERIODS / smoothed.cutoff
         rows = np.flatnonzero((time >= begin) & (time <= end))
         rows = rows[:: max(1, -(-len(rows) // MAX_COMPARED))]
-        measured = np.stack([sensible(recording, name, CHANNELS[name])[rows] for name in chosen])
+        measured = np.stack([sensible(recording, name, CHANNEL_UNITS[name])[rows] for name in chosen])
         held_back: Scenario | float = 0.0
         if "rigid_torque" in recording:
             held_back = table(grid[:steps], np.interp(grid[:steps], time, recording.values("rigid_torque", "N.m")))
@@ -135,12 +135,12 @@ class DrivenLog(ComparedByFields):
 
     @property
     def units(self) -> tuple[str, ...]:
-        return tuple(CHANNELS[name] for name in self.channels)
+        return tuple(CHANNEL_UNITS[name] for name in self.channels)
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
         """Zeros of encoders at the output and of the motor's effort; then delays."""
-        zeros = (Nuisance(f"{name}_zero", CHANNELS[name], zero) for name, zero in self.zeros.items())
+        zeros = (Nuisance(f"{name}_zero", CHANNEL_UNITS[name], zero) for name, zero in self.zeros.items())
         return (*zeros, *(Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed))
 
     def with_delays(self, *channels: str) -> DrivenLog:

@@ -20,7 +20,7 @@ from strainwave.identification.experiments.experiment import Nuisance, sensible
 Array = NDArray[np.float64]
 MAX_SPEEDS = 1_000  # of either sign in a table; a longer table is thinned
 ROOM_TEMPERATURE = 293.15  # K, if no temperature was measured
-CONDITIONS = {"angle": "rad", "load": "N.m", "temperature": "K"}  # that friction may depend on beside the speed
+CONDITIONS = {"angle": "rad", "load": "N.m", "temperature": "K"}  # that friction may depend on in addition to the speed
 FRICTIONLESS = Viscous()
 MAX_LOSS = 1.0  # of the torque transmitted: a gear that loses more cannot be turned from its output
 EQUAL_LOADS = 1e-3  # relative: loads of one size
@@ -56,7 +56,7 @@ class FrictionTable(ComparedByFields):
         """Return a table of columns speed and torque of the input, and angle, load and temperature if present.
 
         A torque given as a magnitude takes the sign of its speed. Of a long table, means over neighbouring speeds are taken;
-        where an angle is beside it, every so many rows.
+        of one with an angle, every so many rows.
         """
         check_recording("recording", recording)
         speed, torque = sensible(recording, "speed", "rad/s"), sensible(recording, "torque", "N.m")

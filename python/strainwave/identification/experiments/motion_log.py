@@ -150,7 +150,7 @@ class MotionLog(ComparedByFields):
         return tuple(Nuisance(name, unit, start) for (name, unit), start in zip(described, starts, strict=True))
 
     def with_measured_speed(self, recording: Recording, ratio: float) -> MotionLog | None:
-        """Return the same along the speed that was recorded beside the angle; None if none was.
+        """Return the same along the recorded speed; None if there is none.
 
         Args:
             recording: of the log

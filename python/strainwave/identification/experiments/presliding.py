@@ -65,7 +65,7 @@ class PreslidingLoop(ComparedByFields):
 
 
 @dataclass(frozen=True)
-class Breakaway:
+class BreakawayPoint:
     """The point of a ramp of torque at which the shaft breaks away.
 
     Attributes:
@@ -81,7 +81,7 @@ class Breakaway:
     bent: float
 
 
-def breakaways(recording: Recording) -> list[Breakaway]:
+def breakaways(recording: Recording) -> list[BreakawayPoint]:
     """Return where ramps of torque break a shaft away.
 
     A ramp is a stretch over which the size of the torque rises from small values. The shaft has broken away where its angle
@@ -151,7 +151,7 @@ def _ramps(torque: Array) -> list[slice]:
     return ramps
 
 
-def _broken(time: Array, torque: Array, angle: Array, threshold: float) -> Breakaway | None:
+def _broken(time: Array, torque: Array, angle: Array, threshold: float) -> BreakawayPoint | None:
     way = np.sign(torque[len(torque) // 2])
     off = way * (angle - angle[0])
     top = int(np.argmax(np.maximum.accumulate(way * torque)))
@@ -173,7 +173,7 @@ def _broken(time: Array, torque: Array, angle: Array, threshold: float) -> Break
     begun = max(2.0 * first - second, float(time[0]))
     rising = time <= first
     rate, level = np.polynomial.polynomial.polyfit(time[rising] - begun, way * torque[rising], 1)[::-1]
-    return Breakaway(begun, float(way * level), float(rate), float(line(level) - line(way * torque[0])))
+    return BreakawayPoint(begun, float(way * level), float(rate), float(line(level) - line(way * torque[0])))
 
 
 def _stays(beyond: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -9,7 +9,7 @@ from strainwave._core import Gear
 
 
 def series_compliance(gear: Gear) -> float:
-    """Return the compliance at the output beside that of the spring, the input shaft held [rad/(N.m)]; 0 without stages.
+    """Return the compliance at the output in series with the spring, the input shaft held [rad/(N.m)]; 0 without stages.
 
     Document A's statics, corrected (its eq. (1) at rest, with errata E-A1 and E-A2): radial displacements times
     tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear one torque,

@@ -124,7 +124,7 @@ def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: 
 
     Args:
         torques: of each stretch [N.m]
-        angles: of the joint beside it [rad]; None if it was not measured
+        angles: of the joint at these torques [rad]; None if it was not measured
         speeds: of each stretch, with its sign [rad/s], shape (n,)
     """
     shorter = [_shorter(torque, angle) for torque, angle in zip(torques, angles, strict=True)]
@@ -168,7 +168,7 @@ def _symmetry(speeds: Array, torque: Array) -> Array:
 
 
 def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array) -> tuple[Levels, list[Array]]:
-    """Return the levels beside one wave over the angle, by least squares, and what is left of each stretch."""
+    """Return the levels fitted together with one wave over the angle, and the residual of each stretch."""
     counts, many = [len(torque) for torque, _ in stretches], len(stretches)
     angle = np.concatenate([angle for _, angle in stretches if angle is not None])
     columns = np.repeat(np.eye(many), counts, axis=0)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import _core, arguments
 from strainwave._core import Gear
-from strainwave.analysis.branches import PRESLIDING, monotone, slid, still_slides, thinned, turning_points
+from strainwave.analysis.branches import PRESLIDING_SHARE, monotone, slid, still_slides, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import RELATIVE_STEP, Nuisance, changing, with_step
@@ -240,7 +240,7 @@ class TorsionLoop(ComparedByFields):
         if self.history == "cyclic":
             return np.concatenate(([self.middle], twist, twist))
         sense = np.sign(twist[np.argmax(twist != twist[0])] - twist[0])
-        return np.concatenate(([twist[0] - sense * PRESLIDING * np.ptp(twist)], twist))
+        return np.concatenate(([twist[0] - sense * PRESLIDING_SHARE * np.ptp(twist)], twist))
 
 
 def _moments(recording: Recording) -> Array:

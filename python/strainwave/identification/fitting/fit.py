@@ -44,7 +44,7 @@ OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "in
 
 
 @dataclass(frozen=True, eq=False)
-class Part(ComparedByFields):
+class RecordFit(ComparedByFields):
     """Result of a fit for one record.
 
     Attributes:
@@ -90,7 +90,7 @@ class Fit(ComparedByFields):
     model: Any
     estimates: tuple[Estimate, ...]
     covariance: Array
-    parts: tuple[Part, ...]
+    parts: tuple[RecordFit, ...]
     plan: FitParameters
     loss: LossName
     evaluations: int
@@ -141,7 +141,7 @@ class Fit(ComparedByFields):
         return self._only.rms(held_out=held_out)
 
     @property
-    def _only(self) -> Part:
+    def _only(self) -> RecordFit:
         if len(self.parts) > 1:
             raise ValueError(f"the fit is to {len(self.parts)} records; take it from one of its parts, in their order")
         return self.parts[0]
@@ -234,7 +234,7 @@ class Fit(ComparedByFields):
         return "\n".join(lines)
 
 
-def _channels_of(part: Part, named: bool) -> str:
+def _channels_of(part: RecordFit, named: bool) -> str:
     """Return the channels of a record in words, with its name if there are several records."""
     channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
     return f"{channels}, {part.name}" if named else channels
@@ -396,7 +396,7 @@ def fit_of(problem: Problem, x: Array, weights: Sequence[Weights]) -> Fit:
     """Return the fit that ended with these unknowns and weights."""
     estimates, covariance = problem.estimates(x, weights)
     parts = tuple(
-        Part(name, record.model(x), record.experiment, predicted, record.training)
+        RecordFit(name, record.model(x), record.experiment, predicted, record.training)
         for name, record, (predicted, _) in zip(problem.plan.records, problem.records, problem.predict(x), strict=True)
     )
     return Fit(parts[0].model, estimates, covariance, parts, problem.plan, problem.loss_name, problem.evaluations)

@@ -26,7 +26,7 @@ SIGMA_IF_ASSUMED = 0.5  # relative, of a kept value that is assumed
 
 
 @dataclass(frozen=True, eq=False)
-class Influence(ComparedByFields):
+class InfluenceOfKept(ComparedByFields):
     """Change of the estimates of a fit with the parameters that it kept.
 
     Attributes:
@@ -44,7 +44,7 @@ class Influence(ComparedByFields):
     explained_share: Array
 
     @classmethod
-    def none(cls, estimates: int) -> Influence:
+    def none(cls, estimates: int) -> InfluenceOfKept:
         """Return that of a fit that explains nothing."""
         return cls((), np.zeros((estimates, 0)), *np.zeros((3, 0)))
 
@@ -88,7 +88,7 @@ def uncertainty(value: float, entry: Entry | None) -> float:
     return (SIGMA_IF_ASSUMED if entry is not None and entry.assumed else SIGMA_IF_NOT_STATED) * abs(value)
 
 
-def influence(found: Fit) -> Influence:
+def influence(found: Fit) -> InfluenceOfKept:
     """Return the change of the estimates of a fit with what it kept, to first order.
 
     At the minimum the gradient J'r of the least squares is zero, and stays so when a kept parameter changes: the estimates move
@@ -123,7 +123,7 @@ def influence(found: Fit) -> Influence:
     bounds = np.where(power > 0.0, np.sqrt(length / divisor), np.inf)
     shift = np.where(power > 0.0, residuals @ shown / divisor, 0.0)
     explained = shift**2 * power / max(float(residuals @ residuals), 1e-300)
-    return Influence(kept, moved, bounds, shift, explained)
+    return InfluenceOfKept(kept, moved, bounds, shift, explained)
 
 
 def _is_exact(path: str) -> bool:

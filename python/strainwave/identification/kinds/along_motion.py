@@ -129,7 +129,7 @@ def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
 def _with_friction(known: GearSoFar, best: MotionCandidate, estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
     """Return the set with the friction of a log, whole, if no earlier file determines friction.
 
-    The loss under load was fitted beside this Coulomb torque: with that of another file it would be a friction of neither.
+    The loss under load was fitted with this Coulomb torque: with that of another file it would be a friction of neither.
     """
     gear, before = best.fit.parts[0].model.gear, known.gear_set.gear
     laws = {part: getattr(gear, part) for part in FRICTION if getattr(gear, part) != getattr(before, part)}
@@ -166,7 +166,7 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
     """Yield the estimates of a log; each is as uncertain as the torque constant too, and inertia as that of the rotor."""
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
-    beside = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
+    independent = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
     induced = {}
     if taken.log.effort == "voltage":
         induced["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
@@ -180,9 +180,9 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
         law = encoder if estimate.path == "load.gravity_phase" else ""
         sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
         found = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
-        besides = beside.get(estimate.path, 0.0)
-        found = found.resting_on(taken.relative, besides + induced.get(estimate.path, 0.0))
-        found = found.resting_on(taken.of_resistance, besides)
+        offset = independent.get(estimate.path, 0.0)
+        found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
+        found = found.resting_on(taken.of_resistance, offset)
         found = found.sharing(taken.rotor) if estimate.path == "load.inertia" else found
         if not found.is_phase:
             found = found.unless_uncertain()

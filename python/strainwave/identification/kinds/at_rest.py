@@ -29,7 +29,7 @@ MAX_PRESLIDING = 0.05  # rad of the input: what moves to and fro by less has not
 
 
 class AtRest(Kind):
-    """The common base of both kinds: one angle beside a torque or current."""
+    """The common base of both kinds: one angle and a torque or current."""
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         angle, (effort, force) = needed(columns, "angle", self.title), needed_effort(columns, self.title)
@@ -44,7 +44,7 @@ class AtRest(Kind):
 
 
 def goes_to_and_fro(columns: Sequence[Column], mapping: FileMapping) -> bool:
-    """True if one angle of an input moves to and fro by little beside a torque or current."""
+    """True if one angle of an input moves to and fro by little, and the file contains a torque or current."""
     if (pair := angle_and_effort(columns, mapping)) is None:
         return False
     angle, _ = pair

@@ -101,7 +101,7 @@ class _Scale:
 def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) -> _Scale:
     """Return what torques count from: gravity, which slow motion determines without the motor's inertia, or the load's inertia.
 
-    That of the load is what is left beside the rotor's, so that a small one may be known badly.
+    The load's inertia is the total less the rotor's; a small one has a large uncertainty.
 
     Raises:
         ValueError: the log determines neither
@@ -117,7 +117,7 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
     if not known:
         missing = "is not known: give --constant motor_inertia=…"
         if taken.motor_known:
-            missing = f"is not known well enough beside that of the load: ± {taken.rotor:.2g} kg·m² at the output"
+            missing = f"is not known well enough compared with that of the load: ± {taken.rotor:.2g} kg·m² at the output"
         raise ValueError(
             f"no torque at the output is known to count from: the log determines no gravity, and the inertia of the "
             f"motor {missing}"
@@ -211,7 +211,7 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
     if together > MAX_CORRELATION_LENGTH:
         yield (
             f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
-            "that the model lacks, and its numbers may be off by more than they say"
+            "that the model lacks, and its numbers may be off by more than their uncertainty"
         )
     if DELAY not in estimates:
         yield (

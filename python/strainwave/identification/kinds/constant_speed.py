@@ -10,7 +10,7 @@ from strainwave.analysis.branches import turning_points
 from strainwave.identification.candidates.plain import sliding_squares
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.kinds import constant_speed_runs
-from strainwave.identification.kinds.constant_speed_runs import Run, Together, is_one_speed, run_of
+from strainwave.identification.kinds.constant_speed_runs import ConstantSpeedRun, Together, is_one_speed, run_of
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.reading.column import Column
@@ -35,10 +35,10 @@ class ConstantSpeed(Kind):
     section = "Files at constant speed"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
-        """True for a torque or current alone, beside an angle, or beside one speed.
+        """True for a torque or current alone, with an angle, or with one speed.
 
         Raises:
-            UndecidedError: an angle goes to and fro beside a current, as before it slides or in a log
+            UndecidedError: an angle goes to and fro under a current, as before it slides or in a log
         """
         efforts, angles, speeds = (measured(columns, *each) for each in (("torque", "current"), ("angle",), ("speed",)))
         if efforts and angles and not measured(columns, "torque") and turning_points(angles[0].si):
@@ -69,7 +69,7 @@ class ConstantSpeed(Kind):
     def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
         """True also for logs at constant speed, but for one of few speeds whose torque changes as that of a log.
 
-        The torque of a joint beside others that move is not its friction.
+        The torque of a joint is not its friction if other joints move.
         """
         if file.kind == "log" and file.neighbours:
             return False
@@ -98,7 +98,7 @@ class ConstantSpeed(Kind):
 
 
 def _or_refused(
-    name: str, fit: Callable[[Sequence[Run], GearSoFar], Together], files: Sequence[Recognised], known: GearSoFar
+    name: str, fit: Callable[[Sequence[ConstantSpeedRun], GearSoFar], Together], files: Sequence[Recognised], known: GearSoFar
 ) -> Together:
     """Return what the runs of files determine together, or a result of this name that is refused."""
     try:
@@ -107,7 +107,7 @@ def _or_refused(
         return (FileResult(name, refused=str(error)),), known
 
 
-def _runs(files: Sequence[Recognised], known: GearSoFar) -> list[Run]:
+def _runs(files: Sequence[Recognised], known: GearSoFar) -> list[ConstantSpeedRun]:
     """Return the runs of files; those that cannot be used are left out."""
     found = []
     for file in files:
@@ -130,7 +130,7 @@ def _is_explained(file: Recognised, known: GearSoFar) -> bool:
 
 
 def _without_motion(file: Recognised) -> str:
-    """Return what to do with a torque or a current that has no motion beside it."""
+    """Return what to do with a torque or a current without a motion."""
     do = "does it" if len(file.unused) == 1 else "do they"
     hint = f" (columns not used: {listed(file.unused)}: {do} hold texts?)" if file.unused else ""
     if {"angle", "speed", *ENCODERS} & {*file.recording.names, *file.constants}:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.position import TURN, PositionFit, fit_position
+from strainwave.identification.candidates.position import FULL_TURN, PositionFit, fit_position
 from strainwave.identification.checks.sizes import opposes_motion
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.experiments.experiment import sensible
@@ -61,7 +61,7 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Run:
+class ConstantSpeedRun:
     """A record at one speed, or at several speeds one after the other.
 
     Attributes:
@@ -81,7 +81,7 @@ class Run:
     remarks: tuple[str, ...]
 
 
-def run_of(file: Recognised, known: GearSoFar) -> Run | None:
+def run_of(file: Recognised, known: GearSoFar) -> ConstantSpeedRun | None:
     """Return a file as a run at constant speed; None if it is none.
 
     Raises:
@@ -106,7 +106,7 @@ def run_of(file: Recognised, known: GearSoFar) -> Run | None:
     stretches = tuple(_stretches(file, speed, torque, angle, parts, ratio if side == "input" else 1.0))
     if not all(each.whole for each in stretches):
         assumed = (*assumed, "less than a turn at one speed does not average out what varies over the turn")
-    return Run(file, side, stretches, turning, uncertain, assumed)
+    return ConstantSpeedRun(file, side, stretches, turning, uncertain, assumed)
 
 
 def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, ...]] | None:
@@ -182,7 +182,7 @@ def _stretches(
     warm = recording.values("temperature", "K") if "temperature" in recording else np.full(len(speed), given)
     for part in parts:
         turned = None if angle is None else angle[part]
-        whole = turned is None or ratio == 1.0 or abs(turned[-1] - turned[0]) > WHOLE_TURN * TURN
+        whole = turned is None or ratio == 1.0 or abs(turned[-1] - turned[0]) > WHOLE_TURN * FULL_TURN
         joint = None if turned is None else turned / ratio
         yield Stretch(float(np.median(speed[part])), torque[part], float(np.mean(warm[part])), joint, whole)
 
@@ -196,13 +196,13 @@ def _angle(file: Recognised, side: Side) -> Array | None:
 def _whole_turns(angle: Array, part: slice) -> slice:
     """Return the rows of a stretch up to its last whole turn, which average out what varies over it; all of less than one."""
     way = np.abs(angle[part] - angle[part][0])
-    turns = float(way[-1] // TURN)
-    return part if turns < 1.0 else slice(part.start, part.start + max(int(np.argmax(way >= turns * TURN)), 1))
+    turns = float(way[-1] // FULL_TURN)
+    return part if turns < 1.0 else slice(part.start, part.start + max(int(np.argmax(way >= turns * FULL_TURN)), 1))
 
 
 def _turning(speed: Array, angle: Array, torque: Array, part: slice) -> Recording | None:
     """Return usual speed, angle and torque of a stretch in which the input turns once or more; None for less."""
-    if abs(angle[part][-1] - angle[part][0]) < TURN:
+    if abs(angle[part][-1] - angle[part][0]) < FULL_TURN:
         return None
     usual = np.full(len(angle[part]), abs(np.median(speed[part])))
     columns = {"angle": angle[part], "torque": torque[part], "speed": usual}
@@ -212,7 +212,7 @@ def _turning(speed: Array, angle: Array, torque: Array, part: slice) -> Recordin
 # ---- Results ----------------------------------------------------------------------------------------------------------
 
 
-def of_run(run: Run) -> FileResult:
+def of_run(run: ConstantSpeedRun) -> FileResult:
     """Return the result of one file, whose stretches are points of the table of all."""
     speeds = np.array([each.speed for each in run.stretches])
     levels = levels_of([each.torque for each in run.stretches], [None] * len(speeds), speeds)
@@ -228,7 +228,7 @@ def of_run(run: Run) -> FileResult:
     )
 
 
-def joined(runs: Sequence[Run], known: GearSoFar) -> Together:
+def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     """Return the friction that runs determine together: a law from four speeds on, else the friction at each speed.
 
     If the runs determine gravity over the angle of the joint, it is taken out, and is a result, too.
@@ -291,7 +291,7 @@ def _gravity(levels: Levels) -> Iterator[FileEstimate]:
     yield FileEstimate("load.gravity_phase", "rad", phase, across, "")
 
 
-def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> Together:
+def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     """Return friction over the angle of the input, as document P describes it; nothing if no run turns once or more."""
     turning = [run for run in runs if run.turning is not None]
     if not turning:
@@ -316,7 +316,7 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> Together:
         after = _modulated(known, waves, listed(names))
         remarks.append("the gear takes its waves around the friction that other files determine, relative to its mean")
     file = turning[0].file
-    why = (f"at constant speed the angle of {listed(names)} turns once or more beside a torque",)
+    why = (f"at constant speed the angle of {listed(names)} turns once or more under a torque",)
     columns = {"angle": found.angle, "torque": found.friction, "modelled": found.friction - found.residual}
     rows = slice(0, len(recordings[0]))
     order = np.argsort(found.angle[rows], kind="stable")

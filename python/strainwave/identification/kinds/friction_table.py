@@ -45,7 +45,7 @@ from strainwave.identification.results.determined import (
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import Fitted
+from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.prediction import Prediction, judged, model_error
 from strainwave.messages import as_option
 
@@ -64,7 +64,7 @@ class SteadyFriction(Kind):
     needs = "speed and torque"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
-        """True for speeds beside a torque or current.
+        """True for speeds and a torque or current.
 
         Raises:
             UndecidedError: these may be samples of a log
@@ -156,7 +156,7 @@ def _check_speed_unit(speed: Column) -> None:
 def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:
     """Return the columns without the torque that loads the gear, this torque by its name, and what determines it.
 
-    It is `output_torque` if the other torque drives it too, as on a dynamometer, and `load_torque` beside a torque that is
+    It is `output_torque` if the other torque drives it too, as on a dynamometer, and `load_torque` with a torque that is
     friction alone.
     """
     named = [column for column in columns if column.channel.loading]
@@ -207,7 +207,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     speed_check = input_speed(experiment.speed, name)
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole = explained(best.fit, name)
-    fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
+    fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
     estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()

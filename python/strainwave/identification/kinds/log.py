@@ -100,7 +100,7 @@ def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tup
 
 
 def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
-    """Ask for the letter u, which is a voltage beside motors, and any input of a robot beside joints.
+    """Ask for the letter u, which is a voltage in files of motors, and any input of a robot in files of joints.
 
     Raises:
         UndecidedError: a column has this letter and nothing else for a name

@@ -29,8 +29,8 @@ from strainwave.identification.results.changes import (
     TEMPERATURE,
     VISCOUS,
     ZERO,
-    Change,
     Direction,
+    PartChange,
     changes_of,
     friction_directions,
     slopes_by_numbers,
@@ -38,7 +38,7 @@ from strainwave.identification.results.changes import (
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction, judged
 from strainwave.messages import listed
-from strainwave.orders.lines import Line
+from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ripple import ripple
 
 Array = NDArray[np.float64]
@@ -78,7 +78,7 @@ def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
     taken = log_of(file, GearSoFar(gear_set))
     if taken.in_current:
         raise ValueError(f"{gear_set.name} has no torque constant: give --constant torque_constant=…")
-    return judged(*_Compared.of(taken, gear_set).prediction(file, gear_set))
+    return judged(*_PredictedLog.of(taken, gear_set).prediction(file, gear_set))
 
 
 def _turned(file: Recognised) -> Recognised:
@@ -90,8 +90,8 @@ def _turned(file: Recognised) -> Recognised:
 
 
 @dataclass(frozen=True, eq=False)
-class _Compared(ComparedByFields):
-    """A log beside what a saved drive predicts for it.
+class _PredictedLog(ComparedByFields):
+    """A log and its prediction by a saved drive.
 
     Attributes:
         taken: the log as `identify` prepares it
@@ -108,8 +108,8 @@ class _Compared(ComparedByFields):
     delay: float
 
     @classmethod
-    def of(cls, taken: PreparedLog, gear_set: GearSet) -> _Compared:
-        """Return a log beside a saved drive."""
+    def of(cls, taken: PreparedLog, gear_set: GearSet) -> _PredictedLog:
+        """Return a log compared with a saved drive."""
         log = min((taken.log, *taken.with_others), key=lambda each: held_out_rms(each, taken.drive))
         drive = taken.drive.replace(load=gear_set.load)
         saved = next((each for each in gear_set.validation if each.channel == log.effort), None)
@@ -165,7 +165,7 @@ class _Compared(ComparedByFields):
         )  # fmt: skip
         return found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes[rows], covariance, slopes[rows])))
 
-    def _changes(self, directions: Sequence[Direction], slopes: Array, covariance: Array) -> tuple[Change, ...]:
+    def _changes(self, directions: Sequence[Direction], slopes: Array, covariance: Array) -> tuple[PartChange, ...]:
         """Return what the log shows of each part, in its pass band."""
         band, speed = self.band, self.log.motion.speed[self.band.rows]
         asked = [replace(each, effect=band.filtered(each.effect)) for each in directions]
@@ -209,7 +209,7 @@ class _Compared(ComparedByFields):
         torque = log.recorded - log.induced(drive) - scale * log.extra / drive.gear.kinematics.ratio
         return float(np.std(torque[self.rows])) * float(np.sqrt(max(1.0 - fit_plain(log, drive).explained, 0.0)))
 
-    def _lines(self, residual: Array, file: Recognised) -> tuple[tuple[Line, ...], tuple[str, ...]]:
+    def _lines(self, residual: Array, file: Recognised) -> tuple[tuple[SpectrumLine, ...], tuple[str, ...]]:
         """Return the lines of the spectrum of a residual, or why there is none."""
         motion = self.log.motion
         columns = {"time": motion.time, "input_angle": motion.angle, "residual": residual}

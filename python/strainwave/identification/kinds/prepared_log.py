@@ -148,7 +148,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         remarks.append("the inertia of the motor is not known: that of the load has it inside, times the ratio squared")
     elif "motor_inertia" in constants:
         remarks.append(
-            f"beside the motor's {inertia:.3g} kg·m² the set's {gear.input_inertia:.3g} kg·m² of the gear turn at the input; "
+            f"at the input turn the motor's {inertia:.3g} kg·m² and the set's {gear.input_inertia:.3g} kg·m² of the gear; "
             "where the first has the gear inside, give it without"
         )
     motor_there = motor.CurrentSource(

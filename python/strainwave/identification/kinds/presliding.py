@@ -43,7 +43,7 @@ class Presliding(AtRest):
     def motion(self, angle: Column, force: Column) -> str:
         """Return in words how the shaft moves."""
         moved, turns = f"moves by {1e3 * np.ptp(angle.si):.3g} mrad in all", len(turning_points(angle.si))
-        return f"{angle.name} {moved} and turns back {turns} times beside {force.name}"
+        return f"{angle.name} {moved} and turns back {turns} times under {force.name}"
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit bristle or Maxwell elements to a loop of small motion at rest.

@@ -13,7 +13,7 @@ from strainwave.identification.checks.unexplained import causes, explained, unex
 from strainwave.identification.dynamics.log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.fitting.influence import Influence, influence
+from strainwave.identification.fitting.influence import InfluenceOfKept, influence
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
 from strainwave.identification.kinds.shafts import put_sided
@@ -27,7 +27,7 @@ from strainwave.identification.results.curves import pictures_of_channels
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import MAX_LISTED, Fitted
+from strainwave.identification.results.identifiability import MAX_LISTED, JudgedFit
 from strainwave.simulation.run import simulate
 
 MAX_CAUSES = 2  # likely mistakes that are fitted if the model does not explain a run, the likeliest first
@@ -63,10 +63,10 @@ class RunFromRest(Kind):
         free = free_parameters(log, drive, friction_known=friction_known, torsion_known=torsion_known)
         found = fit_log(log, drive, free)
         whole = explained(found.fit, name)
-        kept = Influence.none(len(found.fit.estimates)) if whole.failed else influence(found.fit)
+        kept = InfluenceOfKept.none(len(found.fit.estimates)) if whole.failed else influence(found.fit)
         if whole.failed:
             whole = _with_cause(whole, found.fit, recording, drive, free)
-        fitted = Fitted(found.fit, name, kept, not whole.failed, prefix="")
+        fitted = JudgedFit(found.fit, name, kept, not whole.failed, prefix="")
         estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
@@ -91,7 +91,7 @@ def _held_out(found: LogFit) -> HeldOut:
     return max(each, key=lambda channel: channel.relative)
 
 
-def _remarks(recording: Recording, log: DriveLog, fit: Fit, kept: Influence, known: GearSoFar) -> Iterator[str]:
+def _remarks(recording: Recording, log: DriveLog, fit: Fit, kept: InfluenceOfKept, known: GearSoFar) -> Iterator[str]:
     yield from thinned(log.samples, len(log.time))
     if log.time[-1] < 0.99 * np.ptp(recording.time):
         yield f"of its {np.ptp(recording.time):.4g} s the first {log.time[-1]:.4g} s are taken, to fit in little time"

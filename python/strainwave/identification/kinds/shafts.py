@@ -1,4 +1,4 @@
-"""Motions and torques of a drive with their sides: by their names, by their sizes, and by the columns beside them."""
+"""Motions and torques of a drive with their sides: by their names, by their sizes, and by the other columns."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from strainwave.identification.reading.sides import (
 from strainwave.messages import as_option
 
 MAX_REFLECTED = 0.1  # relative difference of a motion of the input from that of the output, if it is divided by the ratio
-MAX_REFLECTED_RANGE = 2.0 * np.pi  # rad, rad/s: a motor that moves less, beside no encoder of the joint, is counted there
+MAX_REFLECTED_RANGE = 2.0 * np.pi  # rad, rad/s: a motor that moves less, without an encoder of the joint, is counted there
 
 
 def put_sided(

@@ -10,7 +10,7 @@ import numpy as np
 from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.torsion import Friction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import explained
@@ -27,7 +27,7 @@ from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import Fitted
+from strainwave.identification.results.identifiability import JudgedFit
 
 MIN_ROWS = 4  # of a loop or branch
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
@@ -43,7 +43,7 @@ class Torsion(Kind):
     needs = "twist and torque, or input_angle and input_torque"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
-        """True for a twist beside a torque, or for an angle beside one if it may be a twist: a shaft that turns on is none.
+        """True for a twist and a torque, or for an angle and a torque if the angle may be a twist: a turning shaft is none.
 
         Raises:
             UndecidedError: these may be samples of a log
@@ -101,7 +101,7 @@ class Torsion(Kind):
         checks = [clipping(file.recording, name), *stiffness_of_loop(file.recording, best.fit, start, name)]
         whole = explained(best.fit, name)
         shared = _shared(best, gear, loop, friction_measured)
-        fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, shared)
+        fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
         estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
         result = FileResult(
             name, file, best.name, estimates,
@@ -117,7 +117,7 @@ class Torsion(Kind):
         parts = (
             {"stiffness"} if loop.input_ratio is not None and "hysteresis" in known.determined else {"stiffness", "hysteresis"}
         )
-        if isinstance(best.beside, Friction):
+        if isinstance(best.dissipation, InputFriction):
             parts |= {"friction_input"}
         return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("stiffness", estimates)
 
@@ -166,7 +166,7 @@ def _remarks(
     yield from thinned(loop.samples, len(loop.twist))
     yield from hint_of_ratio(best.fit, start.gear)
     yield from unused(recording, ("input_angle", "input_torque") if at_input(recording) else ("twist", "torque"))
-    if isinstance(best.beside, Nothing):
+    if isinstance(best.dissipation, Nothing):
         yield (
             "one branch only: it determines neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to "
             "have been unloaded at the zeros of both axes"
@@ -183,7 +183,7 @@ def _of_friction(loop: TorsionLoop, best: TorsionCandidate, gear: Any, friction_
     together = "friction at the input was not measured: the loop determines the sum of friction and hysteresis only."
     if friction_measured:
         yield f"the friction measured at the input, ±{held:.3g} N·m at the output, is taken out of it"
-    elif isinstance(best.beside, Friction):
+    elif isinstance(best.dissipation, InputFriction):
         yield f"{together} Friction is fitted, and the hysteresis kept; give a friction table to separate them"
     elif held > 0.0:
         yield (
@@ -202,7 +202,7 @@ def _shared(best: TorsionCandidate, gear: Any, loop: TorsionLoop, friction_measu
     if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
         return {}
     sum_of, ratio = "the loop determines the sum of", abs(loop.input_ratio)
-    if isinstance(best.beside, Friction):
+    if isinstance(best.dissipation, InputFriction):
         why = f"{sum_of} {ratio:g} x friction_input.breakaway and the torque of the hysteresis, which was kept"
         return {"gear.friction_input.breakaway": why}
     why = f"{sum_of} the torque of the hysteresis and {ratio:g} x friction_input.breakaway, which was kept"

@@ -13,7 +13,7 @@ MAX_STEP = 0.5  # of a revolution: larger steps that are no wrap leave the direc
 MIN_SHARE_OF_WRAPS = 0.9  # of the steps by more than half a revolution, of an angle that wraps
 MAX_RANGE = 1.01  # revolutions: an angle that covers more does not wrap
 MIN_JUMP = 0.01  # of the range of an angle: smaller steps are none from one recording to another
-MIN_FACTOR_OF_JUMP = 5.0  # of the fastest motion, and of the steps beside it: no shaft moves so for one row
+MIN_FACTOR_OF_JUMP = 5.0  # of the fastest motion, and of the neighbouring steps: no shaft moves so for one row
 MAX_JUMPS = 10  # of a record: the fastest motion is that of the rows after these
 MIN_HELD = 3  # rows with one value
 MIN_CHANGES = 20  # of the value
@@ -72,8 +72,8 @@ def jumps(angle: Array, time: Array, speed: Array | None = None) -> Rows:
     if len(steps) < MIN_CHANGES + MAX_JUMPS or not rates.max() > 0.0:
         return np.zeros(0, np.int64)
     fastest = float(np.sort(rates)[-1 - MAX_JUMPS]) if speed is None else float(np.nanmax(np.abs(speed)))
-    beside = np.maximum(np.concatenate([[0.0], rates[:-1]]), np.concatenate([rates[1:], [0.0]]))
-    is_alone = rates > MIN_FACTOR_OF_JUMP * np.maximum(beside, fastest)
+    neighbours = np.maximum(np.concatenate([[0.0], rates[:-1]]), np.concatenate([rates[1:], [0.0]]))
+    is_alone = rates > MIN_FACTOR_OF_JUMP * np.maximum(neighbours, fastest)
     return np.flatnonzero(is_alone & (np.abs(steps) > MIN_JUMP * np.ptp(angle))) + 1
 
 

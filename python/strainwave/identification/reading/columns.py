@@ -9,7 +9,7 @@ from itertools import compress
 
 import numpy as np
 
-from strainwave.files.labels import Source, places_of
+from strainwave.files.labels import ColumnSource, places_of
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
@@ -57,7 +57,7 @@ def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     angles = max(groups.values(), key=len, default={})
     if len(angles) < 2:
         return []
-    numbers, _ = table.measured([Source(place, which, which, "1") for which, place in angles.items()])
+    numbers, _ = table.measured([ColumnSource(place, which, which, "1") for which, place in angles.items()])
     spans = {which: float(np.ptp(there)) for which, each in numbers.items() if (there := each[np.isfinite(each)]).size}
     least = MIN_MOTION * max(spans.values(), default=0.0)
     return [which for which, span in spans.items() if span > 0.0 and span >= least]

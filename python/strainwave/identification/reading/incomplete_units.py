@@ -23,7 +23,7 @@ MAX_OFF_COUNTS = 3e-3  # relative difference of the counts of a revolution from 
 
 
 def with_counts(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
-    """Return the columns, with the counts of a revolution if the speed beside an encoder determines them; and remarks."""
+    """Return the columns, with the counts of a revolution if the speed of an encoder determines them; and remarks."""
     time = next((convert(c.raw, c.unit, "s") for c in columns if c.channel.quantity == "time" and c.unit is not None), None)
     known, remarks = list(columns), list[str]()
     for angle, speed in pairs_of_shafts(columns):
@@ -72,7 +72,7 @@ def _usual_counts(per_turn: float) -> int | None:
 
 
 def _counts_by_joint(column: Column, columns: Sequence[Column], ratio: float | None) -> tuple[int, str] | None:
-    """Return the counts of a motor's encoder beside an angle of the joint, by a ratio that makes them 2^n; and why."""
+    """Return the counts of a motor's encoder from an angle of the joint and a ratio that makes them 2^n; and the reason."""
     joint = next((c for c in columns if c.channel.quantity == "angle" and c.unit and measures(c.unit, "rad")), None)
     if joint is None or joint.unit is None or column.channel.quantity != "angle":
         return None

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.tables import OpenTable
 from strainwave.identification.reading.names import QUANTITY_OF, meaning, words_of
 from strainwave.identification.reading.slopes import MIN_CORRELATION, PARTS, correlation
@@ -32,8 +32,8 @@ MIN_ROWS = 20  # of samples: fewer are a table
 
 
 @dataclass(frozen=True)
-class Layout:
-    """Which column of a matrix is which.
+class MatrixLayout:
+    """Meaning of the columns of a matrix.
 
     Args:
         names: of each column by its layout, as `q_2`, `dq_2` or `block3_2`; empty for one that belongs to none
@@ -79,7 +79,7 @@ def _columns(places: Sequence[int]) -> str:
     return f"column{'s' * (len(places) > 1)} {numbers}"
 
 
-def layout_of(table: OpenTable) -> Layout | None:
+def layout_of(table: OpenTable) -> MatrixLayout | None:
     """Return the layout of the columns of a table; None if a name means a motion or torque, or the numbers determine none.
 
     >>> import tempfile
@@ -100,12 +100,12 @@ def layout_of(table: OpenTable) -> Layout | None:
 
 
 @np.errstate(all="ignore")
-def _by_numbers(table: OpenTable, timed: int | None) -> Layout | None:
+def _by_numbers(table: OpenTable, timed: int | None) -> MatrixLayout | None:
     """Return the layout of a table by its numbers, and by the position of its time if a name contains it."""
     places = [place for place, content in enumerate(table.contents) if content == "numbers"]
     if len(places) < 3 or not nameless(table):
         return None
-    numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in places[:MAX_COLUMNS]])
+    numbers, _ = table.measured([ColumnSource(place, str(place), str(place), "1") for place in places[:MAX_COLUMNS]])
     begins = {int(place): values[:MAX_ROWS] for place, values in numbers.items()}
     finite = {place: np.where(np.isfinite(values), values, np.nan) for place, values in begins.items()}
     columns = {place: values for place, values in finite.items() if _may_be_measured(values)}
@@ -129,7 +129,7 @@ def nameless(table: OpenTable) -> bool:
     return is_matrix and any(word.isdigit() for each in words for word in each) and not set(most) & QUANTITY_OF.keys()
 
 
-def _blocks(pairs: Sequence[tuple[int, int]], places: Sequence[int], count: int, time: int | None) -> Layout | None:
+def _blocks(pairs: Sequence[tuple[int, int]], places: Sequence[int], count: int, time: int | None) -> MatrixLayout | None:
     """Return the layout of columns that contain these pairs of an angle and its speed, those that move most first."""
     order = {place: at for at, place in enumerate(places)}
     ranks = [(order[one], order[other]) for one, other in pairs if one in order and order.get(other, -1) > order[one]]
@@ -157,7 +157,7 @@ def _blocks(pairs: Sequence[tuple[int, int]], places: Sequence[int], count: int,
         names[place] = stem if joints == 1 else f"{stem}_{joint + 1}"
         if block >= len(stems):
             efforts.setdefault(stem, []).append(place)
-    return Layout(tuple(names), time, joints, {name: tuple(each) for name, each in efforts.items()})
+    return MatrixLayout(tuple(names), time, joints, {name: tuple(each) for name, each in efforts.items()})
 
 
 def rises_evenly(values: Array) -> bool:

@@ -1,4 +1,4 @@
-"""What a person states of files: the column of a channel, its unit, and numbers that no column contains; also in a TOML file.
+"""A user's statements on files: the column of a channel, its unit, and numbers that no column contains; also in a TOML file.
 
 side = "output"
 [columns]

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 MAX_SPEED_AT_REST = 0.02  # of the largest speed
 MAX_CHANGE = 0.05  # of the speed within a stretch
 MIN_ROWS_OF_STRETCH = 50  # at one speed
-MAX_NOISE = 2.0  # median deviations of the speed between medians of rows beside: 4 standard deviations of these
+MAX_NOISE = 2.0  # median deviations of the speed between medians of neighbouring rows: 4 standard deviations of these
 ROWS_OF_CHANGE = 10  # over which a change is computed
 
 

@@ -62,7 +62,7 @@ NEUTRAL = (
     "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
     "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady", "present",
 )  # fmt: skip
-# Words of what is no measurement of the quantity beside them.
+# Words of columns that are no measurement of the quantity in their names.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
@@ -228,9 +228,9 @@ def _without_unit(name: str) -> tuple[str, str | None]:
 def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]:
     """Return the quantity that words name, and the place of its word; if none does, what the unit measures, and -1."""
     places = [place for place, word in enumerate(words) if word in QUANTITY_OF]
-    beside = {*_SIDE_OF, *COMMANDED, *NEUTRAL}
+    qualifiers = {*_SIDE_OF, *COMMANDED, *NEUTRAL}
     places = [place for place in places if len(words[place]) > 1] or [
-        place for place in places[:1] if words[place] in ROBOT or all(word in beside for word in words[:place])
+        place for place in places[:1] if words[place] in ROBOT or all(word in qualifiers for word in words[:place])
     ]  # a letter behind another word is an index, but for the q of robots, unless it stands behind a letter, as in i_q
     named = [(QUANTITY_OF[words[place]], place) for place in places]
     twist = [each for each in named if each[0] == "twist"]

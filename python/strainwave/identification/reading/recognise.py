@@ -25,7 +25,7 @@ from strainwave.identification.reading.names import Side, meaning, which_of, wor
 from strainwave.identification.reading.roles import ColumnRoles, names_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
-from strainwave.identification.reading.source import MeasurementFile, beside, measurement_file
+from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
 from strainwave.identification.reading.values import read
 from strainwave.messages import as_option, listed, one_line, quoted
 
@@ -271,7 +271,7 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
     Raises:
         UndecidedError: no one named it; names the options
     """
-    if source.is_of_one_quantity and not source.parts and (others := beside(source.path)):
+    if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
         paths = " ".join(str(other) for other in (source.path, *others))
         raise UndecidedError(f"it has one quantity of a recording; name its files together: {paths}")
     named, layout = {CHANNELS[ALIASES.get(name, name)].quantity for name in given.columns}, source.layout

@@ -1,4 +1,4 @@
-"""Sides of channels whose names contain none: by words of robots, by their speed, and by the channels beside them."""
+"""Sides of channels whose names contain none: by words of robots, by their speed, and by the other channels."""
 
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ def side_of_table(speed: Column, torque: Column, given: Side | None) -> tuple[Si
     return "input", f"no side is stated, the input is taken ({_per_minute(fastest)} at most); otherwise add --side output"
 
 
-def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None, given: Side | None) -> tuple[Side, str]:
+def side_of_motion(column: Column, others: Sequence[Column], time: Column | None, given: Side | None) -> tuple[Side, str]:
     """Return the side of an angle or speed of a log, and what determines it.
 
     Args:
         column: the angle or speed
-        beside: motions and torques of the log
+        others: motions and torques of the log
         time: of the log
         given: the side that a person gave
 
@@ -72,7 +72,7 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
         is_word = found is not None and found.robot
         why = "what robots call a channel of a joint" if is_word else "a channel of one of several joints"
         return "output", f"{column.name} is {why}: it is taken to be at the output"
-    motions = [each for each in beside if {each.channel.quantity, column.channel.quantity} == {"angle", "speed"}]
+    motions = [each for each in others if {each.channel.quantity, column.channel.quantity} == {"angle", "speed"}]
     for other in motions:
         if (side := other.channel.side) and _are_of_one_side(column, other, time):
             return side, f"{column.name} runs as {other.name} does, so it is at the {side} too"
@@ -80,8 +80,8 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
     if fastest > MIN_MOTOR_SPEED:
         _check_unit(column, fastest)
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
-    if {other.channel.side or ("output" if other.robot else None) for other in beside} - {None} == {"output"}:
-        return "output", f"{column.name} stands beside channels of a joint: it is taken to be at the output"
+    if {other.channel.side or ("output" if other.robot else None) for other in others} - {None} == {"output"}:
+        return "output", f"{column.name} is recorded with channels of a joint: it is taken to be at the output"
     ways = " or ".join(f"--column {side}_{column.channel.quantity}={column.name}" for side in ("input", "output"))
     raise UndecidedError(
         f"the side of {column.name} is not determined, motor or output; give it, with {ways}, or with --side for all",
@@ -119,7 +119,7 @@ def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tupl
         return "output", f"{column.name} is what robots call the torque of a joint: it is counted at the output"
     if len(sides) == 1:
         (side,) = sides
-        return side, f"{column.name} stands beside motion of the {side} only: it is taken to be counted there"
+        return side, f"{column.name} is recorded with motion of the {side} only: it is taken to be counted there"
     ways = f"--column input_torque={column.name} or --column joint_torque={column.name}"
     question = f"the side at which {column.name} is counted is not determined, motor or output"
     raise UndecidedError(f"{question}; give it, with {ways}", (), ways)

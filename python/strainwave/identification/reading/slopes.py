@@ -1,4 +1,4 @@
-"""Slopes of angles, beside the speeds in the same record."""
+"""Slopes of angles, compared with the speeds in the same record."""
 
 from __future__ import annotations
 

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable, Grid, grid_table
 from strainwave.files.folder import FolderFiles, files_below
-from strainwave.files.labels import Label, Source, places_of
+from strainwave.files.labels import ColumnSource, Label, places_of
 from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS, OpenTable, is_table_of_numbers, open_table
 from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.layout import Layout, layout_of, nameless, rises_evenly
+from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint
 from strainwave.identification.reading.slopes import is_slope
 from strainwave.identification.reading.times import merged, with_one_time
@@ -65,7 +65,7 @@ class MeasurementFile:
         return with_one_time(self.raw)
 
     @cached_property
-    def layout(self) -> Layout | None:
+    def layout(self) -> MatrixLayout | None:
         """The layout of columns without names; None if they have some, or the numbers determine none."""
         return layout_of(self.timed)
 
@@ -201,8 +201,8 @@ def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
     return found
 
 
-def beside(path: Path) -> list[Path]:
-    """Return files in the folder of a file that are of its recording, by their names."""
+def files_of_same_recording(path: Path) -> list[Path]:
+    """Return the other files of a file's recording in its folder, by their names."""
     own = _quantity_in(path)
     if own is None or not path.is_file():
         return []
@@ -259,7 +259,7 @@ class _Part:
     def of(file: MeasurementFile) -> _Part:
         name = (_quantity_in(file.path) or ("",))[0]
         table = file.raw
-        numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in range(len(table.labels))])
+        numbers, _ = table.measured([ColumnSource(place, str(place), str(place), "1") for place in range(len(table.labels))])
         series = list(numbers.values())
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
-from strainwave.files.labels import Content, Label, Source
+from strainwave.files.labels import ColumnSource, Content, Label
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import meaning, words_of
@@ -35,7 +35,7 @@ def with_one_time(table: OpenTable) -> OpenTable:
     >>> from strainwave.files.tables import open_table
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = Path(folder, "log.csv").write_text("stamp.sec,stamp.nanosec,q\\n7,500000000,0.1\\n8,0,0.2\\n")
-    ...     numbers, _ = with_one_time(open_table(Path(folder, "log.csv"))).measured([Source(0, "time", "time", "s")])
+    ...     numbers, _ = with_one_time(open_table(Path(folder, "log.csv"))).measured([ColumnSource(0, "time", "time", "s")])
     ...     _ = Path(folder, "a.csv").write_text("t [ms];Position;t [ms];Torque\\n0;1,5;0;7\\n1;1,6;2;8\\n2;1,7;;\\n")
     ...     table = with_one_time(open_table(Path(folder, "a.csv")))
     >>> numbers["time"].tolist()
@@ -50,10 +50,10 @@ def _with_whole_time(table: OpenTable) -> OpenTable:
     """Return the table with the sum of a column of whole seconds and one of their parts, if it has both."""
     labels, ends = list(table.labels), [_end(label) for label in table.labels]
     for seconds, (before, unit) in enumerate(ends):
-        for part, (beside, size) in enumerate(ends) if unit in SECONDS else ():
-            if beside == before and size in PARTS and _are_one_time(table, seconds, part, PARTS[size]):
+        for part, (start, size) in enumerate(ends) if unit in SECONDS else ():
+            if start == before and size in PARTS and _are_one_time(table, seconds, part, PARTS[size]):
                 labels[seconds] = Label(f"{labels[seconds].text} and {labels[part].text}", "time", "s")
-                return SummedTime(table, labels, seconds, Source(part, "", "parts of seconds", "1"), PARTS[size])
+                return SummedTime(table, labels, seconds, ColumnSource(part, "", "parts of seconds", "1"), PARTS[size])
     return table
 
 
@@ -72,7 +72,7 @@ class SummedTime:
     table: OpenTable
     labels: Sequence[Label]
     seconds: int
-    parts: Source
+    parts: ColumnSource
     size: float
 
     @property
@@ -91,11 +91,11 @@ class SummedTime:
     def contents(self) -> Sequence[Content]:
         return ["other" if place == self.parts.position else content for place, content in enumerate(self.table.contents)]
 
-    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """Return the columns wanted, all of them numbers."""
         return self._summed(self.table.numbers([*sources, self.parts]), sources)
 
-    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """Return the columns wanted, nan in empty cells; and what was left out."""
         numbers, remarks = self.table.measured([*sources, self.parts])
         return self._summed(numbers, sources), remarks
@@ -103,7 +103,7 @@ class SummedTime:
     def place(self, row: int) -> str:
         return self.table.place(row)
 
-    def _summed(self, numbers: Mapping[str, Array], sources: Sequence[Source]) -> dict[str, Array]:
+    def _summed(self, numbers: Mapping[str, Array], sources: Sequence[ColumnSource]) -> dict[str, Array]:
         parts = {source.name: self.size * numbers[self.parts.name] for source in sources if source.position == self.seconds}
         return {source.name: numbers[source.name] + parts.get(source.name, 0.0) for source in sources}
 
@@ -120,7 +120,7 @@ def _are_one_time(table: OpenTable, seconds: int, part: int, size: float) -> boo
     """True if one column contains whole numbers, and the other one parts of one second."""
     if not table.contents[seconds] == table.contents[part] == "numbers":
         return False
-    numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in (seconds, part)])
+    numbers, _ = table.measured([ColumnSource(place, str(place), str(place), "1") for place in (seconds, part)])
     whole, parts = (values[np.isfinite(values)] for values in (numbers[str(seconds)], numbers[str(part)]))
     return bool(
         whole.size and parts.size and (whole == np.round(whole)).all() and parts.min() >= 0.0 and size * parts.max() < 1.0
@@ -128,7 +128,7 @@ def _are_one_time(table: OpenTable, seconds: int, part: int, size: float) -> boo
 
 
 def _with_own_times(table: OpenTable) -> OpenTable:
-    """Return the table with channels of equal times beside one time, if each channel has an increasing time before it."""
+    """Return the table with channels of equal times under one time, if each channel has an increasing time before it."""
     labels = [label for label in table.labels if label.text]
     is_time = [(found := meaning(label)) is not None and found.quantity == "time" for label in labels]
     pairs = len(labels) // 2
@@ -137,7 +137,7 @@ def _with_own_times(table: OpenTable) -> OpenTable:
     channels = {label.name: label.unit or "" for label in labels[1::2]}
     if len(channels) < pairs:
         return table
-    numbers, remarks = table.measured([Source(place, label.name, str(place), "1") for place, label in enumerate(labels)])
+    numbers, remarks = table.measured([ColumnSource(place, label.name, str(place), "1") for place, label in enumerate(labels)])
     grids = list[Grid]()
     for place, name in zip(range(0, len(labels), 2), channels, strict=True):
         time, values = numbers[str(place)], numbers[str(place + 1)]

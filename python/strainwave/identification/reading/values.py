@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Source
+from strainwave.files.labels import ColumnSource
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import convert, counts
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
@@ -36,7 +36,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
             listed(names) if len(names) <= MAX_LISTED else f"{listed(names[:MAX_LISTED])} and {len(names) - MAX_LISTED} more"
         )
         raise ValueError(one_line(f"{table.file}: no column has a name that is known: {there}; {_naming(table)}"))
-    sources = [Source(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
+    sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
     known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)
     known, counted = with_counts(known)

@@ -29,7 +29,7 @@ PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 
 @dataclass(frozen=True)
-class Change:
+class PartChange:
     """Change of a part of a saved gear or drive by a recording.
 
     Attributes:
@@ -66,7 +66,7 @@ class Direction(ComparedByFields):
     """Derivative of a channel by a part of a gear.
 
     Attributes:
-        name, unit, unchanged, smallest: as of a `Change`
+        name, unit, unchanged, smallest: as of a `PartChange`
         effect: derivative of the channel, shape (n,)
     """
 
@@ -102,7 +102,7 @@ def _viscous_numbers(gear: Any) -> dict[str, float]:
 
 def changes_of(
     left: Array, directions: Sequence[Direction], by_numbers: Array, covariance: Array, coherent: float = 0.0
-) -> tuple[tuple[Change, ...], Array]:
+) -> tuple[tuple[PartChange, ...], Array]:
     """Return changes of parts of a gear by a residual, and the part of the residual that they explain, shape (n,).
 
     Least squares of the residual on all directions together. Their variance is the scatter of contiguous blocks, within which
@@ -136,7 +136,7 @@ def changes_of(
         return (), np.zeros_like(left)
     shown = zip(asked, values.tolist(), sigma.tolist(), strict=True)
     changes = (
-        Change(each.name, each.unchanged + value, s, each.unit, each.unchanged, each.smallest) for each, value, s in shown
+        PartChange(each.name, each.unchanged + value, s, each.unit, each.unchanged, each.smallest) for each, value, s in shown
     )
     return tuple(changes), explained
 

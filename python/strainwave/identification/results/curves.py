@@ -12,7 +12,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.fit import Fit, Part
+from strainwave.identification.fitting.fit import Fit, RecordFit
 from strainwave.identification.results.file_result import Look, Picture
 from strainwave.messages import listed, quoted
 from strainwave.orders.two_encoders import TransmissionError
@@ -45,7 +45,7 @@ def pictures_of(fit: Fit, record: str | None = None) -> tuple[Picture, ...]:
     return tuple(Picture(_curves(part, place, sigma), look) for place, sigma in enumerate(sigmas))
 
 
-def part_named(fit: Fit, record: str | None) -> Part:
+def part_named(fit: Fit, record: str | None) -> RecordFit:
     """Return the part of a fit by the name of its record, the first one if no name is given.
 
     Raises:
@@ -60,7 +60,7 @@ def part_named(fit: Fit, record: str | None) -> Part:
     return fit.parts[names.index(record)]
 
 
-def _curves(part: Part, place: int, sigma: Array) -> Recording:
+def _curves(part: RecordFit, place: int, sigma: Array) -> Recording:
     """Return the curves of one channel; `sigma` is left out if it is not finite."""
     experiment, channel = part.experiment, part.experiment.channels[place]
     over, unit, x = _abscissa(experiment)

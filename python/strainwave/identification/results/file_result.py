@@ -66,15 +66,15 @@ class FileEstimate:
         """Part of the standard deviation that no other file shares."""
         return float(np.sqrt(max(self.sigma**2 - self.common**2, 0.0)))
 
-    def resting_on(self, relative: float, beside: float = 0.0) -> FileEstimate:
+    def resting_on(self, relative: float, offset: float = 0.0) -> FileEstimate:
         """Return the same with the uncertainty of the torque constant, if it grows with that.
 
         Args:
             relative: standard deviation of the torque constant over its value [1]
-            beside: part of the number that does not grow with the constant, as the inertia of the motor, or the voltage that a
+            offset: part of the number that does not grow with the constant, as the inertia of the motor, or the voltage that a
                 motor induces
         """
-        return self.sharing(relative * (abs(self.value) + beside)) if self.is_of_torque else self
+        return self.sharing(relative * (abs(self.value) + offset)) if self.is_of_torque else self
 
     def sharing(self, common: float) -> FileEstimate:
         """Return the same with more of its standard deviation in common with other files."""

@@ -78,7 +78,7 @@ class GearSoFar:
                 sources[path] = self.gear_set.sources[path]
             else:
                 leads = fitted.get(path.replace(".breakaway", ".coulomb")) if path.endswith(".breakaway") else None
-                why = "follows from the parameters fitted beside it" if path in before else "set by the method of the fit"
+                why = "follows from the parameters fitted with it" if path in before else "set by the method of the fit"
                 sigma = leads.sigma if leads is not None and np.isfinite(leads.sigma) else None
                 sources[path] = Entry(source=f"assumed: {why}; no file determines it", uncertainty=sigma)
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
@@ -142,7 +142,7 @@ class GearSoFar:
                 old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
                 sources[path] = (
-                    before[old] if kept else Entry(source=f"assumed beside the parameters that {one_line(name)} determines")
+                    before[old] if kept else Entry(source=f"assumed with the parameters that {one_line(name)} determines")
                 )
                 determined_by |= {path: self.determined_by[old]} if kept and old in self.determined_by else {}
         return replace(after, gear_set=replace(after.gear_set, sources=sources), determined_by=determined_by)
@@ -226,7 +226,7 @@ def _sigma(gear_set: GearSet, path: str, value: float) -> float:
 def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
     """Return a recording with a torque, from the current of the motor if need be, and its relative uncertainty [1].
 
-    Beside the speed or angle of the output the torque of the motor is counted there, by the ratio.
+    If the recording contains the speed or angle of the output, the torque of the motor is referred to it, by the ratio.
 
     Raises:
         ValueError: the torque constant is needed, and not known

@@ -12,7 +12,7 @@ from strainwave.files.entries import Entry
 from strainwave.identification.candidates.friction import STEADY_NUMBERS
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.fitting.influence import Influence
+from strainwave.identification.fitting.influence import InfluenceOfKept
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
 
 MAX_SIGMA_OF_PHASE = 0.5  # rad
@@ -24,7 +24,7 @@ MAX_CORRELATION = 0.98  # of two estimates; with a larger one, those that are un
 
 
 @dataclass(frozen=True)
-class Fitted:
+class JudgedFit:
     """A fit to a file, and the limits of its estimates.
 
     Attributes:
@@ -38,7 +38,7 @@ class Fitted:
 
     fit: Fit
     source: str
-    influence: Influence
+    influence: InfluenceOfKept
     explained: bool = True
     shared: Mapping[str, str] = field(default_factory=dict)
     prefix: str = "gear."

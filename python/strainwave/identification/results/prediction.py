@@ -11,10 +11,10 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
-from strainwave.identification.results.changes import DRY, FRICTION, GRAVITY, INERTIA, SIGNIFICANCE_SIGMA, Change
+from strainwave.identification.results.changes import DRY, FRICTION, GRAVITY, INERTIA, SIGNIFICANCE_SIGMA, PartChange
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import Picture
-from strainwave.orders.lines import Line
+from strainwave.orders.lines import SpectrumLine
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,9 +58,9 @@ class Prediction(ComparedByFields):
     plain: float = np.nan
     allowed: float = np.nan
     samples: int = 0
-    changes: tuple[Change, ...] = ()
+    changes: tuple[PartChange, ...] = ()
     error_with_changes: float = np.nan
-    lines: tuple[Line, ...] = ()
+    lines: tuple[SpectrumLine, ...] = ()
     curves: Recording | None = None
     checks: tuple[Check, ...] = ()
     remarks: tuple[str, ...] = ()
@@ -99,7 +99,7 @@ class Prediction(ComparedByFields):
         return any(check.failed for check in self.checks)
 
     @property
-    def changed(self) -> tuple[Change, ...]:
+    def changed(self) -> tuple[PartChange, ...]:
         """Significant changes."""
         return tuple(each for each in self.changes if each.significant)
 
@@ -111,7 +111,7 @@ class Prediction(ComparedByFields):
         """
         scales = {each.name: each for each in self.changes if each.unit == "1"}
         if GRAVITY in scales:
-            scales.pop(INERTIA, None)  # beside it turns that of the rotor, which no torque constant scales
+            scales.pop(INERTIA, None)  # it contains that of the rotor, which no torque constant scales
         significant = {name for name, each in scales.items() if each.significant}
         if not (significant & {DRY, FRICTION} and significant & {INERTIA, GRAVITY}):
             return None

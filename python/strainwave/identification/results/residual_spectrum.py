@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
-from strainwave.identification.fitting.fit import Part
+from strainwave.identification.fitting.fit import RecordFit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,7 +45,7 @@ def amplitude_spectra(time: Array, *series: Array) -> tuple[Array, ...]:
     return tuple(found)
 
 
-def spectrum_figure(part: Part, title: str) -> Figure:
+def spectrum_figure(part: RecordFit, title: str) -> Figure:
     """Return the figure of each channel, as `Fit.plot_residual_spectrum` describes it."""
     log: Any = part.experiment
     if not hasattr(log, "time"):

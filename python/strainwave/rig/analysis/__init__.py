@@ -1,1 +1,1 @@
-"""What a loop says: regimes, stiffness, lost motion, soft spots, and what loops say together."""
+"""Evaluation of loops: regimes, stiffness, lost motion, soft spots, and the comparison of several loops."""

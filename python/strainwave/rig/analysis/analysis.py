@@ -67,7 +67,7 @@ class LoopAnalysis(ComparedByFields):
         closure: angle at the end of the cycle less that at its beginning [rad]
         drift: movement of the middle of the loop per cycle [rad], where it has several cycles
         soft_spots: bands softer than the rest of their regime
-        catalogue: beside the figures of a gear set
+        catalogue: comparison with the figures of a gear set
         errors_stated: whether the loop came with errors; else these are of the scatter about straight stretches
         remarks: what a reader must know, in words
     """
@@ -110,7 +110,7 @@ class LoopAnalysis(ComparedByFields):
 
 
 @dataclass(frozen=True)
-class Row:
+class LoopSummary:
     """A row in the form of document T's Table 2.
 
     Attributes:
@@ -188,11 +188,11 @@ def _shortened(loop: Loop) -> Loop:
 
 def _with_scatter(loop: Loop) -> tuple[Segmented, float]:
     """Return the loop with the scatter about straight stretches as error of its angles, and its degrees of freedom."""
-    told = [fitted for regime in segment(loop).regimes if (fitted := segments_of(regime)) is not None and fitted.freedom > 0]
-    freedom = sum(each.freedom for each in told)
+    fits = [fitted for regime in segment(loop).regimes if (fitted := segments_of(regime)) is not None and fitted.freedom > 0]
+    freedom = sum(each.freedom for each in fits)
     if freedom == 0:
         return segment(loop), inf
-    scatter = float(np.sqrt(sum(each.freedom * each.scatter**2 for each in told) / freedom))
+    scatter = float(np.sqrt(sum(each.freedom * each.scatter**2 for each in fits) / freedom))
     least = 1e-9 * float(np.ptp(loop.angle))
     return segment(replace(loop, angle_sigma=np.full(len(loop), max(scatter, least)))), float(freedom)
 
@@ -269,7 +269,7 @@ def _of_closure(found: LoopAnalysis, gap: Result, wide: Width) -> Iterator[str]:
         return
     yield (
         f"the cycle ends {np.degrees(gap.value):.3g} degrees from where it began: drift, settling, or a first cycle that was "
-        "not yet steady. One cycle cannot tell these apart; the area is that of the loop closed by a straight line"
+        "not yet steady. One cycle does not separate these; the area is that of the loop closed by a straight line"
         if found.drift is None
         else f"the cycle ends {np.degrees(gap.value):.3g} degrees from where it began; the middle of the loop moves by "
         f"{np.degrees(found.drift.value):.3g} degrees per cycle"
@@ -319,7 +319,7 @@ def _of_peaks(found: LoopAnalysis) -> Iterator[str]:
         )
 
 
-def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[Row, ...]:
+def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[LoopSummary, ...]:
     """Rows in the form of document T's Table 2, one a loop.
 
     T's table is one of slopes of the softest stretch: under this reading its loops close (erratum E-T4). Where a regime is one
@@ -340,7 +340,7 @@ def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") 
     return tuple(_row(each, [each.stiffness_by(name, definition) for name in NAMES]) for each in analyses)
 
 
-def _row(analysis: LoopAnalysis, stiffnesses: Sequence[Result | None]) -> Row:
+def _row(analysis: LoopAnalysis, stiffnesses: Sequence[Result | None]) -> LoopSummary:
     down, soft_down, up, soft_up = stiffnesses
     width = None if analysis.hysteresis is None else analysis.hysteresis.width
-    return Row(analysis.loop.position, analysis.loop.unit, down, soft_down, up, soft_up, width)
+    return LoopSummary(analysis.loop.position, analysis.loop.unit, down, soft_down, up, soft_up, width)

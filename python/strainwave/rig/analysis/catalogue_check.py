@@ -1,4 +1,4 @@
-"""A measured loop beside the figures of a catalogue: K1, K2, K3, hysteresis loss, lost motion."""
+"""Comparison of a measured loop with the figures of a catalogue: K1, K2, K3, hysteresis loss, lost motion."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from strainwave.rig.loop import Loop, Side
 
 @dataclass(frozen=True)
 class CatalogueCheck:
-    """A figure of the catalogue beside what was measured.
+    """A figure of the catalogue and the measured one.
 
     Attributes:
         name: of the figure
@@ -41,7 +41,7 @@ class CatalogueCheck:
 
     @property
     def within(self) -> bool | None:
-        """Whether the measured figure lies within the spread and its own error; None where one of them is not known."""
+        """True if the measured figure lies within the spread and its own error; None if one of them is not known."""
         if self.measured is None or self.spread is None:
             return None
         error = 0.5 * (self.measured.high - self.measured.low)
@@ -75,7 +75,7 @@ def check_catalogue(
     rated_torque: float | None,
     freedom: float = inf,
 ) -> tuple[tuple[CatalogueCheck, ...], tuple[str, ...]]:
-    """Compares a loop with a set, and says what cannot be compared.
+    """Compare a loop with a gear set; the second result lists the figures that cannot be compared, with the reason.
 
     K1 is the secant of the loading branch from the middle of the loop to T1, K2 the slope from T1 to T2, K3 from T2 to the
     peak, the mean of both senses: what a first loading would show. The width of the set's own loop is that of its model under
@@ -125,10 +125,10 @@ def _stiffnesses(cut: Segmented, gear_set: GearSet, freedom: float) -> Iterator[
     for name, (low, high) in ends.items():
         entry = gear_set.sources.get(f"gear.stiffness.{name.lower()}")
         reached = low < high <= peak
-        told = reached and not cut.loop.input_friction
-        measured = _loading(cut.falling, cut.rising, low, high, cut.loop, freedom) if told else None
+        comparable = reached and not cut.loop.input_friction
+        measured = _loading(cut.falling, cut.rising, low, high, cut.loop, freedom) if comparable else None
         why = entry.source if entry is not None else ""
-        if reached and not told:
+        if reached and not comparable:
             why = "friction of the wave generator is in the loop and shifts its torques; take it out by a table (--friction)"
         elif not reached:
             over = f"{low:.3g} N.m and beyond" if name == "K3" else f"{low:.3g} to {high:.3g} N.m"
@@ -164,7 +164,7 @@ def _angle(branch: Branch, torque: float) -> float:
 
 
 def _own_loop(cut: Segmented, gear_set: GearSet) -> Segmented:
-    """What the model of the set would show under the same peaks."""
+    """Return the loop of the set's model under the same peaks."""
     assert cut.falling is not None
     assert cut.rising is not None
     loop, peak = cut.loop, 0.5 * (cut.rising.high - cut.falling.low)
@@ -175,7 +175,7 @@ def _own_loop(cut: Segmented, gear_set: GearSet) -> Segmented:
 
 
 def _widths(own: Segmented, at_zero: Result | None, lost: Result | None, rated: float | None) -> Iterator[CatalogueCheck]:
-    """Widths beside those of the set's own loop."""
+    """Compare widths with those of the set's own loop."""
     if own.falling is None or own.rising is None:
         return
     stated = separation(own.falling, own.rising, 0.0, own.loop)

@@ -1,4 +1,4 @@
-"""Loops of several positions or units beside each other: their spread, and whether they differ."""
+"""Comparison of loops of several positions or units: their spread, and a test for differences."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from strainwave.rig.analysis.analysis import Definition, LoopAnalysis
 from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.result import Result
 
-LEVEL = 0.05  # of a table of quantities: so seldom a difference is told where there is none
+SIGNIFICANCE_LEVEL = 0.05  # probability that a table of quantities shows any difference by chance [1]
 By = Literal["position", "unit"]
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedQuantity:
     """One quantity of several groups of loops.
 
     Attributes:
@@ -53,7 +53,7 @@ class Compared:
 
     @property
     def significant(self) -> bool | None:
-        """Whether the groups differ; None where neither errors nor repeats tell."""
+        """True if the groups differ; None if neither stated errors nor repeats determine it."""
         return None if isnan(self.probability) else self.probability < self.level
 
     def __str__(self) -> str:
@@ -75,11 +75,11 @@ class Comparison:
     Attributes:
         by: what the groups are
         quantities: stiffness of each regime, widths, area
-        remarks: what the comparison can and cannot say
+        remarks: what the comparison shows and what it does not
     """
 
     by: By
-    quantities: tuple[Compared, ...]
+    quantities: tuple[ComparedQuantity, ...]
     remarks: tuple[str, ...]
 
 
@@ -109,7 +109,7 @@ def compare(analyses: Sequence[LoopAnalysis], by: By = "position", definition: D
         raise ValueError(f"{len(analyses)} loops of one {by} ({', '.join(groups)}) cannot be compared by {by}")
     members = [[each for each, key in zip(analyses, keys, strict=True) if key == group] for group in groups]
     known = [(name, take) for name, take in _quantities(definition) if all(take(each) is not None for each in analyses)]
-    level = LEVEL / max(1, len(known))
+    level = SIGNIFICANCE_LEVEL / max(1, len(known))
     compared = tuple(_compared(name, take, groups, members, level) for name, take in known)
     return Comparison(by, compared, tuple(_remarks(analyses, by)))
 
@@ -132,13 +132,13 @@ def _compared(
     groups: tuple[str, ...],
     members: Sequence[Sequence[LoopAnalysis]],
     level: float,
-) -> Compared:
+) -> ComparedQuantity:
     results = [[found for each in group if (found := take(each)) is not None] for group in members]
     values = [np.array([found.value for found in group]) for group in results]
     means = np.array([float(each.mean()) for each in values])
     errors = np.array([np.sqrt(sum(found.random**2 for found in group)) / len(group) for group in results])
     spread = float(np.std(means, ddof=1))
-    return Compared(
+    return ComparedQuantity(
         name,
         results[0][0].unit,
         groups,
@@ -191,7 +191,7 @@ def by_welch(groups: Sequence[np.ndarray]) -> float:
 def _remarks(analyses: Sequence[LoopAnalysis], by: By) -> Iterator[str]:
     units = {each.loop.unit for each in analyses}
     if by == "position" and len(units) == 1:
-        yield "one specimen: how far units of this design differ, it cannot tell"
+        yield "one specimen: the comparison does not show how far units of this design differ"
     if by == "position" and len(units) > 1:
         yield f"loops of {len(units)} units are mixed: what differs between positions may be a difference of units"
     if len({_label(each, by) for each in analyses}) == len(analyses):

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-TURNS = 200  # of the iteration, at most; some ten are usual
-CONVERGED = 1e-13  # relative change of the slope
-EXACT = 1e-3  # of the usual error: a point is not taken to be better known than this, or it would carry the line alone
+MAX_ITERATIONS = 200  # of the line fit; about ten are usual
+SLOPE_TOLERANCE = 1e-13  # relative change of the slope at which the line fit ends [1]
+MIN_RELATIVE_SIGMA = 1e-3  # smallest error of a point over the usual one [1], so that no single point determines the line
 
 
 @dataclass(frozen=True)
-class Line:
+class FittedLine:
     """y = intercept + slope x through points with errors in both.
 
     Attributes:
@@ -38,7 +38,7 @@ class Line:
     bend: float
 
 
-def fit_line(x: Array, y: Array, sigma_x: Array, sigma_y: Array) -> Line:
+def fit_line(x: Array, y: Array, sigma_x: Array, sigma_y: Array) -> FittedLine:
     """Line of greatest likelihood, by York's equations for errors that are independent.
 
     Where no errors are stated, both axes err by the same share of their span, and the size is taken from the scatter: the
@@ -60,7 +60,7 @@ def fit_line(x: Array, y: Array, sigma_x: Array, sigma_y: Array) -> Line:
     if not stated:
         sigma_x, sigma_y = np.full(len(x), span_x), np.full(len(y), span_y)
     slope = float(np.sign(np.sum((x - x.mean()) * (y - y.mean()))) or 1.0) * span_y / span_x
-    for _ in range(TURNS):
+    for _ in range(MAX_ITERATIONS):
         before = slope
         weights = _weights(slope, sigma_x, sigma_y)
         middle_x, middle_y = weights @ x / weights.sum(), weights @ y / weights.sum()
@@ -70,14 +70,14 @@ def fit_line(x: Array, y: Array, sigma_x: Array, sigma_y: Array) -> Line:
         if not (across := float(pull @ from_x)):
             raise ValueError("angle and torque of a regime do not vary together; no line fits them: check the angles")
         slope = float(pull @ from_y) / across
-        if abs(slope - before) <= CONVERGED * abs(slope):
+        if abs(slope - before) <= SLOPE_TOLERANCE * abs(slope):
             break
     residual = y - middle_y - slope * from_x
     variances = np.array([slope**2 * np.sum((pull * sigma_x) ** 2), np.sum((pull * sigma_y) ** 2)]) / (pull @ from_x) ** 2
     freedom = len(x) - 2
     misfit = float(weights @ residual**2) / freedom if freedom else 0.0
     sigma = float(np.sqrt(variances.sum()))
-    return Line(
+    return FittedLine(
         slope,
         float(middle_y - slope * middle_x),
         sigma if stated else (sigma * float(np.sqrt(misfit)) if freedom else np.nan),
@@ -91,4 +91,4 @@ def fit_line(x: Array, y: Array, sigma_x: Array, sigma_y: Array) -> Line:
 def _weights(slope: float, sigma_x: Array, sigma_y: Array) -> Array:
     """One over the variance of each residual."""
     variance = sigma_y**2 + slope**2 * sigma_x**2
-    return np.asarray(1.0 / np.maximum(variance, EXACT**2 * variance.mean()))
+    return np.asarray(1.0 / np.maximum(variance, MIN_RELATIVE_SIGMA**2 * variance.mean()))

@@ -8,7 +8,7 @@ from math import hypot, inf, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.rig.analysis.regimes import MISSING, Branch, Segmented, part
+from strainwave.rig.analysis.regimes import CLOSING_TOLERANCE, Branch, Segmented, part
 from strainwave.rig.analysis.result import Result, result
 from strainwave.rig.loop import Loop
 
@@ -166,7 +166,7 @@ def closure(cut: Segmented, freedom: float = inf) -> Result | None:
 
 def _slope_at_end(cycle: Loop) -> float:
     """Return the change of angle per torque over the last points [rad/(N.m)]."""
-    away = np.abs(cycle.torque - cycle.torque[-1]) > MISSING * np.ptp(cycle.torque)
+    away = np.abs(cycle.torque - cycle.torque[-1]) > CLOSING_TOLERANCE * np.ptp(cycle.torque)
     first = int(np.flatnonzero(away)[-1])
     return float((cycle.angle[-1] - cycle.angle[first]) / (cycle.torque[-1] - cycle.torque[first]))
 

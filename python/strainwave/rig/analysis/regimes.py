@@ -21,12 +21,12 @@ RegimeName = Literal["positive_unloading", "negative_loading", "negative_unloadi
 NAMES: tuple[RegimeName, ...] = ("positive_unloading", "negative_loading", "negative_unloading", "positive_loading")
 FALLING, RISING = -1, 1
 
-MAJOR = 0.5  # of the span: a run that comes back by less is no branch of the cycle
-REACHED = 0.1  # of the span of torque: a branch that begins or ends so near an extreme reaches it
-MISSING = 0.05  # of the span of torque, or one and a half steps: what a cycle may lack where it closes
-DETOURS = 0.1  # turns per point that lead to no peak: more, and the points do not follow each other as measured
-LEAST = 4  # such turns, below which they may be smaller loops
-BACK = 0.1  # of the span: what goes back by more while the other of torque and angle goes one way is no elastic gear
+MIN_RUN_SHARE = 0.5  # share of the span [1]: a run that comes back by less is no branch of the cycle
+PEAK_TOLERANCE = 0.1  # share of the span of torque [1]: a branch that ends this near to an extreme reaches it
+CLOSING_TOLERANCE = 0.05  # share of the span of torque [1], or one and a half steps, that a closed cycle may lack
+MAX_DETOURS_PER_POINT = 0.1  # turns that lead to no peak [1]; with more, the points are not in the order measured
+MAX_SMALL_LOOP_TURNS = 4  # count of such turns that smaller loops may explain
+MAX_BACKWARD_SHARE = 0.1  # share of the span [1] by which an elastic gear may go back while the other quantity goes one way
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +83,12 @@ class Regime(ComparedByFields):
 
     @property
     def from_zero(self) -> bool:
-        """Whether it begins or ends at zero torque; else the branch begins or ends a little before."""
+        """True if the regime begins or ends at zero torque; else the branch begins or ends a little before."""
         return bool(np.any(self.torque == 0.0))
 
     @property
     def measured(self) -> NDArray[np.bool_]:
-        """Which of its points were measured, shape (n,)."""
+        """Return a mask of the points that were measured, shape (n,)."""
         return np.asarray(self.rows >= 0)
 
 
@@ -115,7 +115,7 @@ class Segmented(ComparedByFields):
 
     @property
     def closed(self) -> bool:
-        """Whether it comes back to the torque it began at, over both peaks."""
+        """True if the loop returns over both peaks to the torque at which it began."""
         return len(self.cycle) > 0
 
 
@@ -189,13 +189,13 @@ def _check(loop: Loop) -> None:
     ends, minor = _ends(loop)
     inner = [_Run(loop, first, last, minor) for first, last in pairwise(ends)][1:-1]
     detours = len(minor) + sum(not run.complete for run in inner)
-    if detours > max(LEAST, DETOURS * n):
+    if detours > max(MAX_SMALL_LOOP_TURNS, MAX_DETOURS_PER_POINT * n):
         raise ValueError(
             f"{loop.name}: torque and angle turn back {detours} times in {n} points without reaching a peak; "
             "put the points in the order measured, not sorted by torque or angle"
         )
     for name, other in (("angle", loop.torque), ("torque", loop.angle)):
-        if runs_one_way(getattr(loop, name)) and _goes_back(other) > BACK * np.ptp(other):
+        if runs_one_way(getattr(loop, name)) and _goes_back(other) > MAX_BACKWARD_SHARE * np.ptp(other):
             raise ValueError(
                 f"{loop.name}: its points are sorted by {name}, which mixes the branches; put the points in the order measured"
             )
@@ -207,7 +207,7 @@ def _check(loop: Loop) -> None:
 
 
 def _goes_back(values: Array) -> float:
-    """How far a series comes back at most on its way from its beginning to its end."""
+    """Return the largest backward change of a series between its beginning and its end."""
     forward = values if values[-1] >= values[0] else -values
     return float(np.max(np.maximum.accumulate(forward) - forward))
 
@@ -222,7 +222,7 @@ def _ends(loop: Loop) -> tuple[list[int], list[int]]:
     path = _path(loop)
     turns = turning_points(path)
     ends = [0, *turns, len(path) - 1]
-    least = MAJOR * float(np.ptp(path))
+    least = MIN_RUN_SHARE * float(np.ptp(path))
     while len(ends) > 3:  # smaller loops go, the smallest first; the first and the last run may be short
         ranges = np.abs(np.diff(path[ends]))[1:-1]
         if not ranges.min() < least:
@@ -246,7 +246,7 @@ class _Run:
             kept &= (rows <= turn) | (self.sense * path[rows] > self.sense * path[turn])
         self.rows = rows[kept]
         torque = loop.torque
-        tolerance = REACHED * float(np.ptp(torque))
+        tolerance = PEAK_TOLERANCE * float(np.ptp(torque))
         low, high = sorted((float(torque[first]), float(torque[last])))
         self.low, self.high = low, high
         self.complete = low <= torque.min() + tolerance and high >= torque.max() - tolerance
@@ -291,7 +291,7 @@ def _cycle(loop: Loop, runs: Sequence[_Run]) -> tuple[Rows, Branch | None, Branc
 
 
 def _best(loop: Loop, runs: Sequence[_Run]) -> tuple[Branch | None, Branch | None]:
-    """Of a loop that has no whole branch: the longest run of each sense."""
+    """Return the longest run of each sense, for a loop without a whole branch."""
     found: list[Branch | None] = []
     for sense in (FALLING, RISING):
         same = [run for run in runs if run.sense == sense]
@@ -300,15 +300,15 @@ def _best(loop: Loop, runs: Sequence[_Run]) -> tuple[Branch | None, Branch | Non
 
 
 def _meet(loop: Loop, late: _Run, early: _Run) -> bool:
-    """Whether the end of a loop comes back to the torque of its beginning."""
+    """True if the end of a loop comes back to the torque of its beginning."""
     torque = loop.torque
     step = float(np.median(np.abs(np.diff(torque))))
     lacking = late.sense * (float(torque[early.first]) - float(torque[late.last]))
-    return lacking <= max(MISSING * float(np.ptp(torque)), 1.5 * step)
+    return lacking <= max(CLOSING_TOLERANCE * float(np.ptp(torque)), 1.5 * step)
 
 
 def _completes(loop: Loop, early: _Run, late: _Run) -> bool:
-    """Whether the beginning of a loop has the peak that its end does not come back to."""
+    """True if the beginning of a loop has the peak that its end does not come back to."""
     torque, sense = loop.torque, late.sense
     lacking = float((sense * torque[early.rows]).max() - sense * torque[late.last])
     step = float(np.median(np.abs(np.diff(torque))))
@@ -346,7 +346,7 @@ def _regime(name: RegimeName, falling: Branch | None, rising: Branch | None, loo
     peak = float((sign * loop.torque).max())
     if branch is None or peak <= 0.0:
         return None
-    ends, near = sorted((sign * branch.low, sign * branch.high)), REACHED * float(np.ptp(loop.torque))
+    ends, near = sorted((sign * branch.low, sign * branch.high)), PEAK_TOLERANCE * float(np.ptp(loop.torque))
     if ends[0] > near or ends[1] < peak - near:
         return None
     torque = loop.torque[branch.rows]

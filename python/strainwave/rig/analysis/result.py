@@ -5,20 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot, inf, isnan, nan
 
-CONFIDENCE = 0.95
+CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a result [1]
 
 
 @dataclass(frozen=True)
 class Result:
     """A number with its standard deviation and its interval of 95 %.
 
-    What two tests on one rig share, such as the radius of its disk, shifts both alike: `random` leaves it out, and tells
-    whether the two differ. `sigma` has it in, and tells how far the number may be from the truth.
+    Errors that two tests on one rig share, such as that of the radius of its disk, shift both results alike. `random` excludes
+    them and serves to compare two tests; `sigma` includes them and bounds the distance from the true value.
 
     Attributes:
         value: the number, in `unit`
         unit: its unit
-        random: standard deviation by what is this number's alone, in `unit`; not a number where nothing tells it
+        random: standard deviation by what is this number's alone, in `unit`; not a number if nothing determines it
         shared: standard deviation by the scales that all numbers of the rig share, in `unit`
         low, high: ends of the interval that holds the true value with 95 %, shared part included
 
@@ -63,7 +63,7 @@ def inverse(found: Result, unit: str) -> Result:
     return Result(value, unit, found.random * value**2, found.shared * value**2, 1.0 / found.high, high)
 
 
-def student(freedom: float, confidence: float = CONFIDENCE) -> float:
+def student(freedom: float, confidence: float = CONFIDENCE_LEVEL) -> float:
     """Half the width of the interval of Student's variable with this probability; of the normal one for endless freedom.
 
     >>> round(student(inf), 4), round(student(4.0), 4)

@@ -12,16 +12,16 @@ from strainwave.rig.analysis.result import Result, result
 
 Array = NDArray[np.float64]
 
-KNEES = 2  # at most: stiff, soft, stiff again
-SHORTEST = 0.04  # of the torque of a regime: a shorter stretch is none
-CANDIDATES = 24  # places tried for a knee
-SEARCHED = 500  # points, at most, by which the first place of a knee is found; it is then moved by all
-STARTS = 4  # places of knees, the best on the grid, from which these are moved: the very best may lead astray
-CLEARLY = 0.9  # of a misfit: starts that lead to nearly the same are the same
-PRICE = 2.0  # per parameter, in logarithms of the number of points: a knee that noise brings forth is to be rare
-BLUNT = 3e-5  # of the span of the angle: residuals so small call for no knee; the digits of a file leave as much
-ROUNDING = 1e-7  # of the span: a point so near to a knee lies on it
-ROUNDS = 25  # of Gauss and Newton
+MAX_KNEES = 2  # stiff, soft, stiff again
+MIN_SEGMENT_SHARE = 0.04  # share of the torque of a regime [1] that a straight stretch covers
+MAX_KNEE_PLACES = 24  # torques tried for a knee
+MAX_SEARCH_POINTS = 500  # points that determine the first place of a knee; all points then move it
+MAX_SEARCH_STARTS = 4  # best places on the grid from which knees are moved: the best alone may lead to a local minimum
+MAX_MISFIT_RATIO = 0.9  # a later start replaces the best one only below this share of its misfit [1]
+PENALTY_PER_PARAMETER = 2.0  # in logarithms of the number of points [1]; noise alone then seldom causes a knee
+NEGLIGIBLE_RESIDUAL = 3e-5  # share of the span of the angle [1]: rounding of the digits in a file leaves as much
+KNEE_TOLERANCE = 1e-7  # share of the span of torque [1]: a point this near to a knee lies on it
+MAX_GAUSS_NEWTON_STEPS = 25  # count
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Segments(ComparedByFields):
 
     @property
     def softest(self) -> int:
-        """Which stretch has the greatest compliance."""
+        """Return the index of the stretch with the greatest compliance."""
         return int(np.argmax(self.compliances))
 
     def stretch(self, number: int) -> tuple[float, float]:
@@ -81,12 +81,12 @@ def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: 
         known = tried[-1].knees if tried else np.empty(0)
         tried.append(_best(torque, angle, variance if stated else np.ones(len(torque)), count, known))
     n = len(torque)
-    exact = (BLUNT * float(np.ptp(angle))) ** 2
+    exact = (NEGLIGIBLE_RESIDUAL * float(np.ptp(angle))) ** 2
 
     def price(each: _Chain) -> float:
         squares = each.residual**2
         misfit = np.sum(squares / np.maximum(variance, exact)) if stated else n * np.log(max(float(squares.mean()), exact))
-        return float(misfit + PRICE * np.log(n) * each.parameters)
+        return float(misfit + PENALTY_PER_PARAMETER * np.log(n) * each.parameters)
 
     best = min(tried, key=price)
     if stated and np.any(torque_sigma > 0.0):  # each stretch turns errors of torque into angle by its own compliance
@@ -97,9 +97,9 @@ def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: 
 
 
 def _counts(torque: Array) -> range:
-    """Numbers of knees that so many points can tell."""
+    """Return the numbers of knees that these points can determine."""
     different = len(np.unique(torque))
-    return range(0, min(KNEES, max(0, (different - 2) // 2)) + 1)
+    return range(0, min(MAX_KNEES, max(0, (different - 2) // 2)) + 1)
 
 
 def _variance(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array, compliance: Array) -> Array:
@@ -143,7 +143,7 @@ class _Chain(ComparedByFields):
 
 
 def _knee(torque: Array, knee: float, number: int, knees: Array, sigma: float) -> Result:
-    """A knee; beside a stretch of fewer than three points it lies anywhere between its neighbours."""
+    """Return a knee; next to a stretch of fewer than three points it may lie anywhere between its neighbours."""
     below = torque[(torque < knee) & (torque > (knees[number - 1] if number else -np.inf))]
     above = torque[(torque > knee) & (torque < (knees[number + 1] if number + 1 < len(knees) else np.inf))]
     if min(len(below), len(above)) >= 2:
@@ -153,7 +153,7 @@ def _knee(torque: Array, knee: float, number: int, knees: Array, sigma: float) -
 
 
 def _best(torque: Array, angle: Array, variance: Array, count: int, known: Array) -> _Chain:
-    """The best chain with so many knees: from places on a grid, or beside the knee that is known, which lies between them.
+    """Return the best chain with `count` knees, found from places on a grid and from pairs of a place and the known knee.
 
     Two knees of the grid around a sharp one would else hide another that is less sharp.
     """
@@ -161,23 +161,23 @@ def _best(torque: Array, angle: Array, variance: Array, count: int, known: Array
         return _refined(torque, angle, variance, np.empty(0))
     span = float(torque[-1] - torque[0])
     between = np.unique(np.concatenate((torque[1:-1], 0.5 * (torque[1:] + torque[:-1]))))
-    between = between[(between > torque[0] + SHORTEST * span) & (between < torque[-1] - SHORTEST * span)]
-    places = between[np.unique(np.linspace(0, len(between) - 1, CANDIDATES).astype(int))] if len(between) else between
+    between = between[(between > torque[0] + MIN_SEGMENT_SHARE * span) & (between < torque[-1] - MIN_SEGMENT_SHARE * span)]
+    places = between[np.unique(np.linspace(0, len(between) - 1, MAX_KNEE_PLACES).astype(int))] if len(between) else between
     chosen = places[:, np.newaxis]
     if count == 2:
         first, second = np.triu_indices(len(places), 1)
         chosen = np.column_stack((places[first], places[second]))
-        beside = np.column_stack((places, np.broadcast_to(known, len(places))))
-        chosen = np.concatenate((chosen, np.sort(beside, axis=1))) if len(known) == 1 else chosen
-        chosen = chosen[chosen[:, 1] - chosen[:, 0] > SHORTEST * span]
+        with_known = np.column_stack((places, np.broadcast_to(known, len(places))))
+        chosen = np.concatenate((chosen, np.sort(with_known, axis=1))) if len(known) == 1 else chosen
+        chosen = chosen[chosen[:, 1] - chosen[:, 0] > MIN_SEGMENT_SHARE * span]
     if not len(chosen):
         return _refined(torque, angle, variance, np.empty(0))
-    every = -(-len(torque) // SEARCHED)
+    every = -(-len(torque) // MAX_SEARCH_POINTS)
     some = torque[::every], angle[::every], variance[::every]
-    starts = chosen[np.argsort(_misfits(*some, chosen))[:STARTS]]
+    starts = chosen[np.argsort(_misfits(*some, chosen))[:MAX_SEARCH_STARTS]]
     best, *others = (_refined(*some, start) for start in starts)
     for other in others:
-        best = other if other.misfit < CLEARLY * best.misfit else best
+        best = other if other.misfit < MAX_MISFIT_RATIO * best.misfit else best
     return best if every == 1 else _refined(torque, angle, variance, best.knees)
 
 
@@ -198,14 +198,14 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
     """Moves the knees to the best place: the lines are linear in the rest, and a knee moves by what its hinge calls for."""
     span = float(torque[-1] - torque[0])
     best = _lines(torque, angle, variance, knees)
-    for _ in range(ROUNDS if len(knees) else 0):
+    for _ in range(MAX_GAUSS_NEWTON_STEPS if len(knees) else 0):
         lengths = _lengths(best.columns)
         step = np.linalg.lstsq(best.columns / lengths, best.residual / np.sqrt(variance), rcond=1e-10)[0] / lengths
         step = step[2 + len(knees) :]
         scale, better = 1.0, None
         while better is None and scale > 1e-3:
             moved = best.knees + scale * step
-            if np.all(np.diff([torque[0], *moved, torque[-1]]) > SHORTEST * span):
+            if np.all(np.diff([torque[0], *moved, torque[-1]]) > MIN_SEGMENT_SHARE * span):
                 tried = _lines(torque, angle, variance, moved)
                 better = tried if tried.misfit < best.misfit else None
             scale *= 0.5
@@ -219,14 +219,14 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
 
 
 def _past(torque: Array, knees: Array) -> Array:
-    """How far each torque is past each knee; 0 for a point on it, which belongs half to either side."""
+    """Return the distance of each torque past each knee; 0 for a point on the knee, which belongs half to either side."""
     past = torque[:, np.newaxis] - knees
-    past[np.abs(past) < ROUNDING * (torque[-1] - torque[0])] = 0.0
+    past[np.abs(past) < KNEE_TOLERANCE * (torque[-1] - torque[0])] = 0.0
     return past
 
 
 def _lengths(columns: Array) -> Array:
-    """Of each column, 1 where it is empty; columns of unit length make the answer the same in all units."""
+    """Return the length of each column, 1 for an empty one; scaled by it, the solution is the same in all units."""
     lengths = np.sqrt(np.sum(columns**2, axis=0))
     return np.asarray(np.where(lengths > 0.0, lengths, 1.0))
 

@@ -57,7 +57,7 @@ def referred(loop: Loop, ratio: float, side: Side) -> Loop:
 
 
 def without_friction(loop: Loop, friction: Value) -> Loop:
-    """A loop from the input without the friction of the wave generator, which another measurement has told.
+    """Return a loop from the input without the friction of the wave generator, which another measurement determined.
 
     At a reversal friction turns over before the gear is unloaded: the torque on the gear follows that of the shaft with a play
     of the friction either way. A loop that closes is run twice, so that it begins as it ends.
@@ -96,7 +96,7 @@ def without_friction(loop: Loop, friction: Value) -> Loop:
 
 
 def _behind_play(torque: Array, half: float, start: float) -> Array:
-    """What follows a torque with a play: it moves only where it is taken along."""
+    """Return the torque behind a play: it changes only if it differs by more than half the play."""
     followed, last = np.empty_like(torque), start
     for i, value in enumerate(torque.tolist()):
         last = followed[i] = min(max(last, value - half), value + half)

@@ -13,8 +13,8 @@ from strainwave.rig.analysis.regimes import RegimeName
 from strainwave.rig.analysis.result import student
 from strainwave.rig.analysis.stiffness import LocalStiffness, Stiffness
 
-MULTIPLE = 1.5  # of the compliance of the regime's regression: softer is a soft spot
-CONFIDENCE = 0.95  # that no regime without one shows one
+SOFT_COMPLIANCE_RATIO = 1.5  # a soft spot has more than this times the compliance of the regime's regression [1]
+CONFIDENCE_LEVEL = 0.95  # probability that a regime without a soft spot shows none [1]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class SoftSpot:
         return f"{name}: {self.multiple:.2g} times as soft as the regime from {self.low:.3g} to {self.high:.3g} N.m{beyond}"
 
 
-def soft_spots(stiffnesses: Sequence[Stiffness], multiple: float = MULTIPLE) -> tuple[SoftSpot, ...]:
+def soft_spots(stiffnesses: Sequence[Stiffness], multiple: float = SOFT_COMPLIANCE_RATIO) -> tuple[SoftSpot, ...]:
     """Bands in which the local compliance exceeds a multiple of the compliance of the regime's regression.
 
     It must exceed it by more than chance does: the level is shared out among the stretches of a regime (Bonferroni), so that of
@@ -71,7 +71,7 @@ def _spots(stiffness: Stiffness, multiple: float) -> Iterator[SoftSpot]:
 
 
 def _bands(soft: NDArray[np.bool_], local: LocalStiffness) -> list[tuple[int, int]]:
-    """First stretch of each band, and the one beyond its last; bands nearer than the slopes can tell apart are one."""
+    """Return the first stretch of each band and the one after its last; bands closer than the slopes resolve are merged."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], soft, [False])).astype(int))).tolist()
     bands: list[tuple[int, int]] = []
     for first, beyond in zip(edges[::2], edges[1::2], strict=True):
@@ -86,7 +86,7 @@ def _ratio(stiffness: Stiffness) -> tuple[NDArray[np.float64], NDArray[np.float6
     """Local compliance over that of the regression, and how far chance may take it."""
     local, regression = stiffness.local, stiffness.regression.value
     stretches = max(1, len(local.torque))
-    quantile = student(inf, 2.0 * (1.0 - (1.0 - CONFIDENCE) / stretches) - 1.0)
+    quantile = student(inf, 2.0 * (1.0 - (1.0 - CONFIDENCE_LEVEL) / stretches) - 1.0)
     return local.compliance * regression, quantile * np.nan_to_num(local.sigma, nan=inf) * abs(regression)
 
 
@@ -98,8 +98,8 @@ def _edge(local: LocalStiffness, row: int, towards: int) -> float:
     return float(local.torque[row] + 0.5 * towards * local.width[row])
 
 
-def words_on_band(stiffness: Stiffness, low: float, high: float, multiple: float = MULTIPLE) -> str:
-    """Whether a regime has a soft spot between two torques of either sign [N.m], in a sentence.
+def words_on_band(stiffness: Stiffness, low: float, high: float, multiple: float = SOFT_COMPLIANCE_RATIO) -> str:
+    """Return a sentence: whether a regime has a soft spot between two torques [N.m].
 
     Args:
         stiffness: of the regime

@@ -1,4 +1,4 @@
-"""What the steps of a loop leave to be said before its numbers are read."""
+"""Remarks on the steps of a loop: gaps, steps that go back, and steps that stand out."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from strainwave.rig.loop import Loop
 
-USUAL = 0.6  # of the steps of torque that must be alike for another to be called a gap
-LONG = 1.5  # of the usual step: longer is a gap
-SHOWN = 4  # gaps that are told one by one
-MIXED = 0.1  # share of the steps that go back, beyond which points that are sorted may be those of two branches
+MIN_ALIKE_SHARE = 0.6  # share of the steps of torque that must be alike before another is called a gap [1]
+MIN_GAP_RATIO = 1.5  # a longer step is a gap, in usual steps [1]
+MAX_GAPS_SHOWN = 4  # gaps that a remark lists
+MAX_BACKWARD_SHARE = 0.1  # share of the steps that go back [1]; beyond it, sorted points may be those of two branches
 
 
 class Quarter(Protocol):
@@ -46,7 +46,7 @@ def remarks_on_steps(loop: Loop, turns: Iterable[int], regimes: Sequence[Quarter
 
 
 def runs_one_way(values: NDArray[np.float64]) -> bool:
-    """Whether a series never falls, or never rises."""
+    """True if a series never falls, or never rises."""
     steps = np.diff(values)
     return bool(np.all(steps >= 0.0) or np.all(steps <= 0.0))
 
@@ -55,7 +55,7 @@ def _of_sorted(loop: Loop) -> Iterator[str]:
     """Points in the order of their angle or torque: one way by itself, or a whole loop that somebody has sorted."""
     for name, other, values in (("angle", "torque", loop.torque), ("torque", "angle", loop.angle)):
         sense = np.sign(values[-1] - values[0])
-        if runs_one_way(getattr(loop, name)) and np.mean(sense * np.diff(values) < 0.0) > MIXED:
+        if runs_one_way(getattr(loop, name)) and np.mean(sense * np.diff(values) < 0.0) > MAX_BACKWARD_SHARE:
             yield (
                 f"the {name} goes one way through all points while the {other} goes to and fro: if the file holds a whole "
                 f"loop, it was sorted by {name}, and its branches are mixed; put the points in the order measured"
@@ -74,15 +74,15 @@ def _of_gaps(loop: Loop) -> Iterator[str]:
     steps = np.abs(np.diff(loop.torque))
     usual = float(np.median(steps))
     alike = np.abs(steps - usual) < 0.05 * usual
-    if usual == 0.0 or np.mean(alike) < USUAL:
+    if usual == 0.0 or np.mean(alike) < MIN_ALIKE_SHARE:
         return
-    rows = np.flatnonzero(steps > LONG * usual).tolist()
+    rows = np.flatnonzero(steps > MIN_GAP_RATIO * usual).tolist()
     if not rows:
         return
-    told = ", ".join(f"{row + 1} and {row + 2} by {steps[row]:.4g} N.m" for row in rows[:SHOWN])
-    more = f" and {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""
+    listed = ", ".join(f"{row + 1} and {row + 2} by {steps[row]:.4g} N.m" for row in rows[:MAX_GAPS_SHOWN])
+    more = f" and {len(rows) - MAX_GAPS_SHOWN} more" if len(rows) > MAX_GAPS_SHOWN else ""
     yield (
-        f"the torque changes between points {told}{more}, and by {usual:.4g} N.m as a rule: steps were left out, or "
+        f"the torque changes between points {listed}{more}, and by {usual:.4g} N.m as a rule: steps were left out, or "
         "not recorded. Values between are taken on a straight line"
     )
 

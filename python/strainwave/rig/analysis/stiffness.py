@@ -19,8 +19,8 @@ from strainwave.rig.loop import Loop
 
 Array = NDArray[np.float64]
 
-WINDOW = 0.1  # of the torque of a regime: a local slope is that of the points within
-PLACES = 400  # of local slopes along a regime, at most
+LOCAL_SLOPE_WINDOW = 0.1  # share of the torque of a regime within which points determine a local slope [1]
+MAX_LOCAL_SLOPES = 400  # along a regime
 MIN_COMPLIANCE = 1e-30  # rad/(N.m): rounding; nothing is stiffer, and the square is still a number
 UNIT, COMPLIANCE = "N.m/rad", "rad/(N.m)"
 
@@ -59,7 +59,7 @@ class LocalStiffness(ComparedByFields):
 
 @dataclass(frozen=True, eq=False)
 class Stiffness(ComparedByFields):
-    """What a regime says of the stiffness, by three definitions that agree where its points lie on one straight line.
+    """Stiffness of a regime by three definitions, which agree if its points lie on one straight line.
 
     Attributes:
         name: of the regime
@@ -85,7 +85,7 @@ class Stiffness(ComparedByFields):
 
     @property
     def whole(self) -> bool:
-        """Whether the softest stretch is the whole regime."""
+        """True if the softest stretch is the whole regime."""
         return len(self.segments.knees) == 0
 
     @property
@@ -193,7 +193,7 @@ def _softest(segments: Segments, loop: Loop, freedom: float) -> Result:
 
 
 def _end(segments: Segments, torque: float, loop: Loop) -> Result:
-    """Where a stretch ends: a knee with its error, or the end of the regime."""
+    """Return the end of a stretch: a knee with its error, or the end of the regime."""
     for knee in segments.knee_results:
         if knee.value == torque:
             grown = Result(torque, "N.m", knee.random, abs(torque) * loop.torque_scale, knee.low, knee.high)
@@ -208,14 +208,14 @@ def local_stiffness(torque: Array, angle: Array, angle_sigma: Array, torque_sigm
     >>> local_stiffness(torque, 0.5 * torque, np.full(5, 0.01), np.zeros(5)).stiffness.round(9).tolist()
     [2.0, 2.0, 2.0]
     """
-    half = 0.5 * WINDOW * float(torque[-1] - torque[0])
+    half = 0.5 * LOCAL_SLOPE_WINDOW * float(torque[-1] - torque[0])
     n, found, seen = len(torque), [], set()
-    middles = torque if n <= PLACES else torque[np.linspace(0, n - 1, PLACES).astype(int)]
+    middles = torque if n <= MAX_LOCAL_SLOPES else torque[np.linspace(0, n - 1, MAX_LOCAL_SLOPES).astype(int)]
     for middle in middles.tolist():
         first, last = int(np.searchsorted(torque, middle - half)), int(np.searchsorted(torque, middle + half, "right")) - 1
         while (last - first < 2 or torque[last] - torque[first] < half) and (first > 0 or last < n - 1):
             first, last = max(first - 1, 0), min(last + 1, n - 1)
-        at_end = middle in (torque[0], torque[-1])  # of a few points: the neighbour says the same
+        at_end = middle in (torque[0], torque[-1])  # of a few points: the neighbour has the same slope
         if (first, last) in seen or last - first < (3 if at_end else 2) or torque[last] == torque[first]:
             continue
         seen.add((first, last))
@@ -239,7 +239,7 @@ def _inverse(compliance: Array) -> Array:
 
 
 def closure_of_secants(stiffnesses: ArrayLike, torque: float) -> float:
-    """How far a cycle comes out from where it began, if these are the secants of its quarters from zero to the peak [rad].
+    """Return the closing error of a cycle [rad] whose quarters, from zero to the peak, have these secants.
 
     Args:
         stiffnesses: of positive unloading, negative loading, negative unloading, positive loading [N.m/rad], shape (4,)

@@ -15,12 +15,12 @@ from typing import Annotated, Any
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
 from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
 from strainwave.files.gear_file import at, document
-from strainwave.files.gear_set import CATALOGUE
+from strainwave.files.gear_set import CATALOGUE_FOLDER
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted
 from strainwave.rig.bench.setup import Camera, Masses, Rig, Value
 
-FOLDER = CATALOGUE / "rigs"
+RIG_FOLDER = CATALOGUE_FOLDER / "rigs"  # the rigs of the catalogue
 
 # Each number with the unit that it has here, in the tables of a file.
 NUMBERS: dict[str, dict[str, str]] = {
@@ -52,7 +52,7 @@ def rigs() -> list[str]:
     >>> rigs()
     ['couple-rig']
     """
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+    return sorted(path.stem for path in RIG_FOLDER.glob("*.toml"))
 
 
 def load(name_or_path: str | Path) -> Rig:
@@ -109,7 +109,7 @@ def _file(name_or_path: str | Path) -> Path:
         hint = f"; near it are {listed(near)}" if near else ""
         there = f"there are {listed(rigs())}, and the path of a file ends in .toml"
         raise ValueError(f"no rig {quoted(name_or_path)} comes with the package{hint}; {there}")
-    return FOLDER / f"{name_or_path}.toml"
+    return RIG_FOLDER / f"{name_or_path}.toml"
 
 
 # Reading
@@ -229,7 +229,7 @@ def _text(rig: Rig) -> str:
         written.add("note", rig.note)
     for table, numbers in NUMBERS.items():
         choices = {key: getattr(rig, key) for key in _CHOICES} if table == "loading" else {}
-        entries = {key: _entry(getattr(rig, key), unit) for key, unit in numbers.items() if _said(rig, key)}
+        entries = {key: _entry(getattr(rig, key), unit) for key, unit in numbers.items() if _is_stated(rig, key)}
         if content := choices | entries:
             written.add(table, content)
     if rig.masses:
@@ -239,8 +239,8 @@ def _text(rig: Rig) -> str:
     return tomlkit.dumps(written)
 
 
-def _said(rig: Rig, key: str) -> bool:
-    """Whether a rig has something to say of a number: nothing where it is as if it were left out."""
+def _is_stated(rig: Rig, key: str) -> bool:
+    """True if a rig states a number, so that it differs from the default of a file that omits it."""
     return getattr(rig, key) not in (None, _DEFAULTS[key])
 
 

@@ -67,7 +67,7 @@ class Masses:
 
 @dataclass(frozen=True)
 class Camera:
-    """What the picture of a plane target does to lengths, so that it can be undone; the defaults undo nothing.
+    """Distortion of a plane target by its picture; the defaults describe an undistorted one.
 
     Args:
         aspect: width of a pixel over its height [1]
@@ -121,7 +121,7 @@ class Rig:
         note: anything else
 
     Raises:
-        ValueError: a number is out of its range, or a word is not known; says which, the range and the unit
+        ValueError: a number is out of its range, or a word is not known; the message names it, its range and its unit
 
     >>> rig = Rig("bench", "input", disk_radius=Value(0.1, 5e-5, "calliper"))
     >>> rig.compliance

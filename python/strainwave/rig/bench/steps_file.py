@@ -99,7 +99,7 @@ def write_steps(steps: Sequence[Step], path: str | Path) -> None:
 def append_step(step: Step, path: str | Path) -> None:
     """Adds a step to the record of a test, which it begins where there is none yet.
 
-    The file is complete at any moment: it is written anew beside its place, with all that it held, and then moved there.
+    The file is complete at any moment: a new file with all steps is written next to it and then replaces it.
 
     Args:
         step: the step

@@ -1,1 +1,1 @@
-"""What load, ratio, material, preload and temperature do to a loop, modelled and measured."""
+"""Influence of load, ratio, material, preload and temperature on a loop, modelled and measured."""

@@ -14,14 +14,14 @@ from strainwave.rig.loop import COLUMNS, Side, positive
 
 Array = NDArray[np.float64]
 
-POINTS = 200  # of a quarter of a cycle: the area is then within 1e-4 of the exact one
-ENDS = 1  # of a quarter where its ends alone are asked for: the laws are exact over any monotone step
-SETTLING = 2  # cycles run; the last one counts
+POINTS_PER_QUARTER = 200  # of a cycle: the area is then within 1e-4 of the exact one
+POINTS_FOR_ENDS = 1  # of a quarter if only its ends are needed: the laws are exact over any monotone step
+CYCLES_RUN = 2  # the last one counts
 
 
 @dataclass(frozen=True)
 class Factors:
-    """What parts of a gear are multiplied by: torques of its spring, of its hysteresis, and of its friction at the input."""
+    """Factors of the torques of a gear: of its spring, of its hysteresis, and of its friction at the input."""
 
     stiffness: float = 1.0
     hysteresis: float = 1.0
@@ -86,7 +86,7 @@ class Cycle(ComparedByFields):
         return (self.torque[: turn + 1], self.angle[: turn + 1]), (self.torque[turn:], self.angle[turn:])
 
     def _levels(self) -> Array:
-        return np.linspace(-self.peak, self.peak, 4 * POINTS + 1)
+        return np.linspace(-self.peak, self.peak, 4 * POINTS_PER_QUARTER + 1)
 
     def _separations(self) -> Array:
         (down, back), (up, forth) = self._branches()
@@ -100,7 +100,7 @@ def _mean_stiffness(regimes: list[tuple[Array, Array, float]]) -> float:
     compliances = []
     for torque, angle, sign in regimes:
         order = np.argsort(torque)
-        levels = np.linspace(0.0, sign * np.abs(torque).max(), POINTS + 1)
+        levels = np.linspace(0.0, sign * np.abs(torque).max(), POINTS_PER_QUARTER + 1)
         compliances.append(np.polyfit(levels, np.interp(levels, torque[order], angle[order]), 1)[0])
     return float(1.0 / np.mean(compliances))
 
@@ -146,14 +146,14 @@ def cycle(gear: Gear, amplitude: float, *, side: Side = "output", factors: Facto
     0.5
     """
     _check(gear, side)
-    return _cycle(gear, positive("amplitude", amplitude, "N.m"), side, factors, POINTS)
+    return _cycle(gear, positive("amplitude", amplitude, "N.m"), side, factors, POINTS_PER_QUARTER)
 
 
 def _cycle(gear: Gear, amplitude: float, side: Side, factors: Factors, points: int) -> Cycle:
     quarter = np.linspace(0.0, amplitude, points + 1)
     down = np.concatenate((quarter[::-1], -quarter[1:]))
     once = np.concatenate((down, -down[1:]))
-    path = np.concatenate((quarter, *[once[1:]] * SETTLING))
+    path = np.concatenate((quarter, *[once[1:]] * CYCLES_RUN))
     twist = scaled(gear, factors).twist(path)
     last = slice(-len(once), None)
     if side == "output":
@@ -198,11 +198,11 @@ def cycle_to(gear: Gear, peak: float, *, side: Side = "output", factors: Factors
     _check(gear, side)
     peak = positive("peak", peak, "N.m")
     if side == "output":
-        return _cycle(gear, peak, side, factors, POINTS)
+        return _cycle(gear, peak, side, factors, POINTS_PER_QUARTER)
     most = peak * abs(float(gear.kinematics.ratio))
 
     def beyond(amplitude: float) -> float:
-        return _cycle(gear, amplitude, side, factors, ENDS).peak - peak
+        return _cycle(gear, amplitude, side, factors, POINTS_FOR_ENDS).peak - peak
 
     least = 1e-6 * most
     if beyond(least) >= 0.0:
@@ -210,7 +210,7 @@ def cycle_to(gear: Gear, peak: float, *, side: Side = "output", factors: Factors
             f"peak = {peak:g} N.m does not turn the input: its friction holds as much; take a larger torque, or load the output"
         )
     amplitude = most if beyond(most) <= 0.0 else float(brentq(beyond, least, most, xtol=1e-9 * most))
-    return _cycle(gear, amplitude, side, factors, POINTS)
+    return _cycle(gear, amplitude, side, factors, POINTS_PER_QUARTER)
 
 
 def _check(gear: Gear, side: Side) -> None:

@@ -1,4 +1,4 @@
-"""What influences a torsion loop: document T's Table 3, row by row, by the models and by measured series."""
+"""Influences on a torsion loop: document T's Table 3, row by row, by the models and by measured series."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ from strainwave.rig.influence.cycle import Cycle, Factors, cycle, cycle_to
 from strainwave.rig.influence.series import Series, analyse_series
 from strainwave.rig.influence.trend import Slope, Trend, regress
 from strainwave.rig.loop import Side, positive
-from strainwave.rig.virtual.printed import PEAK, printed_gear
+from strainwave.rig.virtual.printed import PEAK_TORQUE, printed_gear
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)  # of the largest torque
-USUAL = 0.2  # share from which document T's sweep of amplitudes is taken to begin
+LOWEST_SHARE = 0.2  # share of the peak torque at which document T's sweep of amplitudes begins (assumed) [1]
 DRAWN = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares whose loops are drawn
 MAX_HALVINGS = 50  # of the interval in which a threshold of the torque lies: then it is as narrow as rounding
 MIN_LOSSLESS = 1e-3  # of the largest torque: below, a loss that grows with the torque cannot be separated from rounding
-NOTHING = 1e-9  # of the largest torque times the largest angle: a smaller area is that of rounding
+NEGLIGIBLE_AREA = 1e-9  # share of the largest torque times the largest angle [1]: a smaller area is rounding
 PRELOADS = (0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0)  # of the friction at the input
-SAFELY = 1.5  # times its friction, which the input must turn at for the table's numbers
-SLIDES = 0.98  # of the torque: where friction holds more, there is no loop to speak of
+MIN_TORQUE_RATIO = 1.5  # peak torque at the input over its friction from which the table's numbers can be computed [1]
+MAX_FRICTION_SHARE = 0.98  # share of the peak torque [1]: with more friction there is no loop
 MODULI = (0.8, 0.9, 1.0, 1.1, 1.2)
 WARMTH = tuple(273.15 + each for each in (-20.0, 0.0, 20.0, 40.0, 60.0))  # K
 FAMILY = "hfuc"  # the only one with ratio 30
 FIGURES = ("area", "width", "width_at_zero", "stiffness", "high_stiffness", "low_stiffness")
 
 # ASME B31.3, Table C-6: modulus of carbon steel with 0.3 % carbon or less, 203.4 GPa at 21 degC, 198.6 GPa at 93 degC.
-STEEL = log(203.4 / 198.6) / 72.0  # 1/K
+STEEL_SOFTENING_RATE = log(203.4 / 198.6) / 72.0  # 1/K
 # Groups of ferritic steel at 21 degC in the same table: least and largest modulus, GPa.
 STEELS = (191.7, 203.4)
 # Friction current of joint 3 of a UR3 at work, 230 cycles from 32 to 43 degC (UCI 963, CC BY 4.0): 354 mA on average, less
 # 8.27 mA per kelvin; 95 %: 2.7 to 13.8 mA.
-JOINT = 8.27e-3 / 0.3535  # 1/K
+JOINT_FRICTION_FALL_RATE = 8.27e-3 / 0.3535  # 1/K
 LOSS_FACTOR = 1e-3  # of steel, order of magnitude
 
 
@@ -65,7 +65,7 @@ class Sweep(ComparedByFields):
     def of(cls, levels: Sequence[float], loops: Sequence[Cycle]) -> Sweep:
         """The figures of loops at levels."""
         figures = {name: np.array([getattr(loop, name) for loop in loops]) for name in FIGURES}
-        nothing = np.array([NOTHING * loop.peak * float(np.ptp(loop.angle)) for loop in loops])
+        nothing = np.array([NEGLIGIBLE_AREA * loop.peak * float(np.ptp(loop.angle)) for loop in loops])
         for name in ("area", "width", "width_at_zero"):
             figures[name] = np.where(figures["area"] > nothing, figures[name], 0.0)
         return cls(np.array(levels), figures, loops[0].side)
@@ -97,7 +97,7 @@ def power(x: Array, y: Array) -> Slope:
 
 
 @dataclass(frozen=True)
-class Rates:
+class TemperatureRates:
     """Relative falls per kelvin, each with where it comes from.
 
     Attributes:
@@ -111,14 +111,14 @@ class Rates:
     sources: tuple[str, str, str]
 
     def factors(self, temperature: float, reference: float) -> Factors:
-        """What the parts are multiplied by at a temperature [K]."""
+        """Return the factors of the torques at a temperature [K]."""
         falls = (self.stiffness, self.hysteresis, self.friction)
         return Factors(*(float(np.exp(-fall * (temperature - reference))) for fall in falls))
 
 
 @dataclass(frozen=True)
 class CatalogueRow:
-    """What the maker states of a gear: K1, K2, K3 [N.m/rad] and T1 [N.m] at the output; half his bound on the loop [rad]."""
+    """Figures of a gear by its maker: K1, K2, K3 [N.m/rad] and T1 [N.m] at the output; half the bound on the loop [rad]."""
 
     size: int
     ratio: int
@@ -159,7 +159,7 @@ class Influence(ComparedByFields):
     material: Sweep
     preload: Sweep | None
     temperature: Sweep
-    rates: Rates
+    rates: TemperatureRates
     friction: float
     shares: Mapping[str, float]
     series: Series | None = None
@@ -177,13 +177,13 @@ OWN, SPECIMEN = "gear", "document T"
 def influence(
     gear_set: GearSet, torque: float | None = None, series: Series | None = None, *, progress: Progress = lambda _: None
 ) -> Influence:
-    """Varies what document T's Table 3 names, with the models, and tests what a measured series shows.
+    """Vary the influences of document T's Table 3 with the models, and test a measured series for them.
 
     Args:
         gear_set: the gear, without stages
         torque: largest torque at the output [N.m]; the rated torque of the set if not given
         series: what was measured
-        progress: is told what is being done
+        progress: is called with the name of each step
 
     Raises:
         ValueError: the set has no rated torque and none is given; friction at the input holds all of the torque; or as
@@ -228,8 +228,8 @@ def influence(
 def _document_t() -> tuple[Sweep, tuple[Cycle, ...]]:
     """The loops of document T's gear at its input: over the torque, and those that are drawn."""
     tested = printed_gear(0)
-    loops = tuple(cycle_to(tested, share * PEAK, side="input") for share in DRAWN)
-    return over_torque(tested, PEAK, "input"), loops
+    loops = tuple(cycle_to(tested, share * PEAK_TORQUE, side="input") for share in DRAWN)
+    return over_torque(tested, PEAK_TORQUE, "input"), loops
 
 
 @cache
@@ -237,7 +237,7 @@ def _lossless_of_document_t() -> float:
     """The torque at the input up to which a loop of document T's gear loses nothing [N.m]; it has no friction there."""
     tested = printed_gear(0)
     ratio = abs(float(tested.kinematics.ratio))
-    return lossless_torque(tested, PEAK * ratio) / ratio
+    return lossless_torque(tested, PEAK_TORQUE * ratio) / ratio
 
 
 def lossless_torque(gear: Gear, torque: float) -> float:
@@ -259,7 +259,7 @@ def lossless_torque(gear: Gear, torque: float) -> float:
 
     def loses(amplitude: float) -> bool:
         loop = cycle(gear, amplitude)
-        return loop.area > NOTHING * loop.peak * float(np.ptp(loop.angle))
+        return loop.area > NEGLIGIBLE_AREA * loop.peak * float(np.ptp(loop.angle))
 
     low, high = 0.0, torque
     if not loses(high):
@@ -282,21 +282,22 @@ def _over(levels: Sequence[float], loop: Callable[[float], Cycle]) -> Sweep:
 
 def _at_input(gear: Gear, peak: float, held: float, factors: Mapping[float, Factors]) -> Sweep:
     """Loops at the input, but for levels at which friction holds the shaft."""
-    turning = {level: each for level, each in factors.items() if each.friction * held < SLIDES * peak}
+    turning = {level: each for level, each in factors.items() if each.friction * held < MAX_FRICTION_SHARE * peak}
     return Sweep.of(list(turning), [cycle_to(gear, peak, side="input", factors=each) for each in turning.values()])
 
 
 def _check_turns(torque: float, peak: float, held: float) -> None:
-    if SAFELY * held >= SLIDES * peak:
+    if MIN_TORQUE_RATIO * held >= MAX_FRICTION_SHARE * peak:
         raise ValueError(
             f"torque = {torque:g} N.m at the output is {peak:.4g} N.m at the input, where friction holds {held:.4g} N.m: "
-            f"too little to vary the friction; take {torque * SAFELY * held / (SLIDES * peak):.3g} N.m or more"
+            f"too little to vary the friction; take {torque * MIN_TORQUE_RATIO * held / (MAX_FRICTION_SHARE * peak):.3g} N.m "
+            "or more"
         )
 
 
 def _rated(gear_set: GearSet) -> float:
     if "rated_torque" not in gear_set.ratings:
-        raise ValueError(f"{gear_set.name} has no rated torque; say up to which torque [N.m] at the output the loops go")
+        raise ValueError(f"{gear_set.name} has no rated torque; give the torque [N.m] at the output up to which the loops go")
     return float(gear_set.ratings["rated_torque"].value)
 
 
@@ -311,17 +312,17 @@ def _reference(gear: Gear) -> float:
     return float(gear.softening.reference_temperature)
 
 
-def rates_of(gear: Gear) -> Rates:
-    """How the gear changes as it warms up: as its own laws say, or as steel and the friction of a measured joint do."""
+def rates_of(gear: Gear) -> TemperatureRates:
+    """Return the rates of change with temperature: by the gear's own laws, else of steel and of a measured joint's friction."""
     softening, reference = gear.softening, _reference(gear)
     levels = [
         np.asarray(gear.friction_input.quasistatic([0.0, 1.0], temperature=t)).max() for t in (reference, reference + 10.0)
     ]
     own = levels[0] > 0.0 and levels[1] != levels[0]
-    return Rates(
-        softening.stiffness_fall if softening.active else STEEL,
+    return TemperatureRates(
+        softening.stiffness_fall if softening.active else STEEL_SOFTENING_RATE,
         softening.hysteresis_fall,
-        log(levels[0] / levels[1]) / 10.0 if own else JOINT,
+        log(levels[0] / levels[1]) / 10.0 if own else JOINT_FRICTION_FALL_RATE,
         (
             "the gear's softening" if softening.active else "modulus of carbon steel, ASME B31.3, Table C-6",
             "the gear's softening" if softening.active else "assumed: none",
@@ -332,7 +333,7 @@ def rates_of(gear: Gear) -> Rates:
 
 @cache
 def catalogue_rows() -> tuple[CatalogueRow, ...]:
-    """What the catalogue states of all gears of the family with ratio 30, by size and ratio."""
+    """Return the catalogue's figures of all gears of the family with ratio 30, by size and ratio."""
     return tuple(_catalogue_row(name) for name in catalogue() if name.startswith(f"{FAMILY}-"))
 
 

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 
 class Factor(NamedTuple):
-    """What can be varied: its words, its unit, the law by which loops are taken to depend on it, and the step told of."""
+    """A quantity that a series varies: its name, its unit, the law of its influence, and the change that a report states."""
 
     words: str
     unit: str
@@ -142,7 +142,7 @@ def analyse_series(series: Series) -> list[Trend]:
     """Tests each measured quantity for a dependence on each factor that was varied.
 
     Raises:
-        ValueError: nothing was varied, or there are too few measurements to tell
+        ValueError: nothing was varied, or there are too few measurements for a test
     """
     if not series.varied:
         raise ValueError(f"in {series.name or 'the series'} nothing was varied: {listed(series.factors)} stayed the same")
@@ -213,9 +213,9 @@ def series_of(loops: Sequence[str]) -> Series:
 
 
 def _with_condition(text: str) -> tuple[Path, dict[str, float]]:
-    path, *said = [each.strip() for each in text.split(",")]
+    path, *conditions = [each.strip() for each in text.split(",")]
     condition = {}
-    for each in said:
+    for each in conditions:
         found = re.fullmatch(rf"(\w+)\s*=\s*({NUMBER})\s*(\D.*)?", each)
         if found is None or found[1] not in FACTORS:
             raise ValueError(f"{quoted(each)} of the loop {path} must be name=number, with one of {listed(FACTORS)}")
@@ -231,7 +231,7 @@ def _values(numbers: Recording, name: str, unit: str) -> Array:
 def figures_of(loops: Sequence[Loop]) -> dict[str, list[float]]:
     """Area [J], width [rad] and stiffnesses [N.m/rad] of loops: from peak to peak, and of the four regimes by regression.
 
-    The two regimes of unloading, and the two of loading, are told by the mean of their compliances.
+    The mean of their compliances represents the two regimes of unloading, and likewise the two of loading.
 
     Raises:
         ValueError: a loop does not close, so that it has no area, or it lacks a regime that others have
@@ -240,7 +240,7 @@ def figures_of(loops: Sequence[Loop]) -> dict[str, list[float]]:
     names = dict.fromkeys(name for each in found for name in each)
     for loop, each in zip(loops, found, strict=True):
         if missing := [name for name in names if name not in each]:
-            raise ValueError(f"{loop.name}: the loop does not tell its {QUANTITIES[missing[0]][0]}, which other loops do")
+            raise ValueError(f"{loop.name}: the loop does not determine its {QUANTITIES[missing[0]][0]}, which other loops do")
     return {name: [each[name] for each in found] for name in names}
 
 

@@ -1,4 +1,4 @@
-"""Whether a measured quantity depends on what was varied: regressions, and tests corrected for their number."""
+"""Dependence of a measured quantity on what was varied: regressions, and tests corrected for their number."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from strainwave.equality import ComparedByFields
 Array = NDArray[np.float64]
 Law = Literal["power", "exponential", "linear"]
 
-LEVEL = 0.05  # of significance, of all tests of a series together
-SHUFFLES = 1999
-SEED = 20240229  # of the shuffles: the same series gives the same numbers
-NEAR = 0.02  # of the span of a column: rows that differ by less are repeats
-ROUNDING = 1e-12  # of the values: residuals and effects that are no more than that are none
-TOGETHER = 0.95  # share of a factor's variance that others explain, beyond which its effect is not its own
+SIGNIFICANCE_LEVEL = 0.05  # of all tests of a series together [1]
+SHUFFLE_COUNT = 1999  # permutations of a test
+SHUFFLE_SEED = 20240229  # the same series gives the same numbers
+REPEAT_TOLERANCE = 0.02  # share of the span of a column [1]: rows that differ by less are repeats
+ROUNDING_TOLERANCE = 1e-12  # share of the values [1]: smaller residuals and effects are rounding
+MAX_EXPLAINED_SHARE = 0.95  # share of a factor's variance that others may explain [1]; beyond it the effect may be theirs
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class Slope:
     """A coefficient of a regression.
 
     Attributes:
-        value: the coefficient; not a number where the data cannot tell it
+        value: the coefficient; not a number if the data do not determine it
         sigma: its standard deviation
         freedom: degrees of freedom that the residuals have
-        p: probability of a coefficient as far from zero, were it zero (t-test); 1 where the data cannot tell
+        p: probability of a coefficient as far from zero, were it zero (t-test); 1 if the data do not determine it
     """
 
     value: float
@@ -40,7 +40,7 @@ class Slope:
 
     @property
     def half_width(self) -> float:
-        """Of the 95 % interval."""
+        """Return half the width of the 95 % interval."""
         from scipy.stats import t
 
         return float(t.ppf(0.975, self.freedom) * self.sigma)
@@ -48,7 +48,7 @@ class Slope:
 
 @dataclass(frozen=True)
 class Trend:
-    """How a quantity depends on a factor, the other factors and the units taken out.
+    """Dependence of a quantity on a factor, without the effects of the other factors and of the units.
 
     Attributes:
         factor: what was varied
@@ -76,13 +76,13 @@ class Trend:
 
     @property
     def significant(self) -> bool:
-        """Whether there is an effect, at 5 % for all tests of the series together."""
-        return self.corrected < LEVEL
+        """True if there is an effect, at 5 % for all tests of the series together."""
+        return self.corrected < SIGNIFICANCE_LEVEL
 
     @property
     def bent(self) -> bool:
-        """Whether repeated conditions show that the law has not the shape of what was measured."""
-        return self.misfit < LEVEL
+        """True if repeated conditions show that the measurements do not follow the law."""
+        return self.misfit < SIGNIFICANCE_LEVEL
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -108,7 +108,7 @@ def regress(columns: Array, values: Array) -> list[Slope]:
     """
     n, m = columns.shape
     if n <= m:
-        raise ValueError(f"{n} measurements do not tell {m} coefficients with an interval; {m + 1} or more are needed")
+        raise ValueError(f"{n} measurements do not determine {m} coefficients with an interval; {m + 1} or more are needed")
     size = np.linalg.norm(columns, axis=0)
     basis, triangle = np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))
     if np.abs(np.diag(triangle)).min() < 1e-9:
@@ -118,7 +118,7 @@ def regress(columns: Array, values: Array) -> list[Slope]:
     variance = float(residual @ residual) / (n - m)
     inverse = np.linalg.inv(triangle)
     sigmas = np.sqrt(variance * np.sum(inverse**2, axis=1)) / size
-    solution = np.where(np.abs(solution) > ROUNDING * np.linalg.norm(values), solution, 0.0)
+    solution = np.where(np.abs(solution) > ROUNDING_TOLERANCE * np.linalg.norm(values), solution, 0.0)
     return [_slope(float(value), float(sigma), n - m) for value, sigma in zip(solution / size, sigmas, strict=True)]
 
 
@@ -147,14 +147,14 @@ def lack_of_fit(columns: Array, values: Array) -> float:
     from scipy.special import fdtrc
 
     spans = np.ptp(columns, axis=0)
-    cells = np.round((columns - columns.min(axis=0)) / np.where(spans > 0.0, NEAR * spans, 1.0))
+    cells = np.round((columns - columns.min(axis=0)) / np.where(spans > 0.0, REPEAT_TOLERANCE * spans, 1.0))
     different, of = np.unique(cells, axis=0, return_inverse=True)
     of = of.ravel()
     residual = values - columns @ np.linalg.lstsq(columns, values)[0]
     means = np.bincount(of, weights=residual) / np.bincount(of)
     pure, left = len(values) - len(different), len(different) - int(np.linalg.matrix_rank(columns))
     error = float(np.sum((residual - means[of]) ** 2))
-    if pure < 1 or left < 1 or float(residual @ residual) <= ROUNDING**2 * float(values @ values):
+    if pure < 1 or left < 1 or float(residual @ residual) <= ROUNDING_TOLERANCE**2 * float(values @ values):
         return float("nan")
     beyond = float(np.sum(means[of] ** 2))
     return float(fdtrc(left, pure, (beyond / left) / (error / pure))) if error > 0.0 else 0.0
@@ -185,7 +185,7 @@ def holm(probabilities: Sequence[float]) -> list[float]:
     return corrected
 
 
-def shuffled(others: Array, factor: Array, values: Array, shuffles: int = SHUFFLES, seed: int = SEED) -> float:
+def shuffled(others: Array, factor: Array, values: Array, shuffles: int = SHUFFLE_COUNT, seed: int = SHUFFLE_SEED) -> float:
     """Probability that shuffled residuals show a dependence on the factor as strong (Freedman and Lane 1983).
 
     Args:
@@ -216,7 +216,7 @@ def _strengths(residuals: Array, factor: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Design(ComparedByFields):
-    """What was varied: a column for each factor as its law takes it, and which specimen.
+    """Conditions of a series: a column for each factor as its law takes it, and the specimen of each measurement.
 
     Args:
         laws: of each factor
@@ -244,10 +244,10 @@ class Design(ComparedByFields):
         return np.column_stack((self.levels(), *rest))
 
     def together(self, factor: str) -> tuple[str, ...]:
-        """Which other factors changed along with one: each explains nearly all of it, or all of them do."""
-        alone = [each for each in self.columns if each != factor and _explained(self, factor, [each]) > TOGETHER]
+        """Return the factors that changed along with one: each explains nearly all of it, or all of them do."""
+        alone = [each for each in self.columns if each != factor and _explained(self, factor, [each]) > MAX_EXPLAINED_SHARE]
         rest = [each for each in self.columns if each != factor]
-        return tuple(alone) or (tuple(rest) if rest and _explained(self, factor, rest) > TOGETHER else ())
+        return tuple(alone) or (tuple(rest) if rest and _explained(self, factor, rest) > MAX_EXPLAINED_SHARE else ())
 
 
 def _explained(design: Design, factor: str, by: Sequence[str]) -> float:
@@ -279,8 +279,8 @@ def trends(design: Design, quantities: Mapping[str, Array]) -> list[Trend]:
     """
     found = [trend for name, values in quantities.items() for trend in _of_quantity(design, name, values)]
     corrected = holm([each.slope.p for each in found])
-    told = {each.quantity: each.misfit for each in found if not np.isnan(each.misfit)}
-    misfits = dict(zip(told, holm(list(told.values())), strict=True))
+    tested = {each.quantity: each.misfit for each in found if not np.isnan(each.misfit)}
+    misfits = dict(zip(tested, holm(list(tested.values())), strict=True))
     return [
         replace(each, corrected=value, misfit=misfits.get(each.quantity, each.misfit))
         for each, value in zip(found, corrected, strict=True)
@@ -298,8 +298,8 @@ def _of_quantity(design: Design, name: str, values: Array) -> list[Trend]:
     slopes, misfit = regress(columns, fitted)[levels.shape[1] :], lack_of_fit(columns, fitted)
     found = []
     for factor, slope in zip(factors, slopes, strict=True):
-        told = bool(np.isfinite(slope.value))
-        p = shuffled(design.others(factor), design.taken(factor), fitted) if told else 1.0
+        determined = bool(np.isfinite(slope.value))
+        p = shuffled(design.others(factor), design.taken(factor), fitted) if determined else 1.0
         together = design.together(factor)
         found.append(Trend(factor, name, design.laws[factor], slope, p, slope.p, misfit, together, len(values)))
     return found

@@ -21,7 +21,7 @@ from strainwave.rig.vision.angle import Angles
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """What a test found.
+    """Result of a test.
 
     Attributes:
         name: of the test
@@ -52,7 +52,7 @@ class Evaluation:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """What each loop is called: unit, position of the flexspline and, where several are alike, a number."""
+        """Return the label of each loop: unit, position of the flexspline and, if several are alike, a number."""
         return tuple(_labels(self.loops))
 
 

@@ -30,10 +30,10 @@ from strainwave.rig.vision.angle import Angles, Frame, follow, look
 Array = NDArray[np.float64]
 RIG, PLAN = "rig.toml", "plan.csv"
 Place = tuple[float, str]  # position of the flexspline [rad] and specimen
-_AGAINST = 5.0  # standard deviations that an angle must move against the torque to be told
+_BACKWARD_SIGMA = 5.0  # standard deviations that an angle must move against the torque before a remark reports it
 
 
-class Reading(NamedTuple):
+class AngleReading(NamedTuple):
     """The angle of a step as it was read.
 
     Attributes:
@@ -81,8 +81,8 @@ def read_test(
     """Reads the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds the
-    steps that were planned, `plan.csv`, the record is held against them.
+    E-T11). The remarks list each photograph without an angle; the other steps remain. If the folder contains the
+    planned steps, `plan.csv`, the record is compared with them.
 
     Args:
         folder: of the test
@@ -156,7 +156,7 @@ def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = (
         angles: of the photographs; a step without one has its own angle, or is left out
 
     Returns:
-        Loops in the order measured, each with what is to be said of it. What leads up to the first peak belongs to no cycle.
+        Loops in the order measured, each with its remarks. Steps before the first peak belong to no cycle.
 
     Raises:
         ValueError: a cord from a fixed point has been turned beyond its arm
@@ -182,7 +182,7 @@ def _places(steps: Sequence[Step]) -> dict[Place, list[Step]]:
 
 
 def _at_peak(steps: Sequence[Step]) -> str:
-    """The first photograph at the largest torque, of those that tell an angle."""
+    """Return the first photograph at the largest torque among those with an angle."""
     loads = [step.mass_positive - step.mass_negative if step.torque is None else step.torque for step in steps]
     return str(steps[int(np.argmax(loads))].image)
 
@@ -223,21 +223,21 @@ def _loops_of(place: Place, steps: Sequence[Step], rig: Rig, pictures: Sequence[
     return _cycles(whole)
 
 
-def _readings(steps: Sequence[Step], pictures: Sequence[Angles]) -> tuple[list[Reading], int | None]:
+def _readings(steps: Sequence[Step], pictures: Sequence[Angles]) -> tuple[list[AngleReading], int | None]:
     """The angle of each step, not-a-number where there is none; and the step whose angle is 0 by choice."""
     seen = {
-        frame.name: Reading(float(angle), float(sigma))
+        frame.name: AngleReading(float(angle), float(sigma))
         for angles in pictures
         for frame, angle, sigma in zip(angles.useful, angles.angle, angles.sigma, strict=True)
     }
-    nothing = Reading(np.nan, 0.0)
-    found = [seen.get(step.image or "", nothing if step.angle is None else Reading(step.angle, 0.0)) for step in steps]
+    nothing = AngleReading(np.nan, 0.0)
+    found = [seen.get(step.image or "", nothing if step.angle is None else AngleReading(step.angle, 0.0)) for step in steps]
     references = {angles.reference for angles in pictures}
     return found, next((row for row, step in enumerate(steps) if step.image in references), None)
 
 
 def _scale(steps: Sequence[Step], pictures: Sequence[Angles]) -> float:
-    """What the angles of the photographs share, relative to the angle."""
+    """Return the error that the angles of the photographs share, relative to the angle."""
     named = {step.image for step in steps}
     return max((each.scale for each in pictures if named & {frame.name for frame in each.useful}), default=0.0)
 
@@ -259,18 +259,18 @@ def _cycles(loop: Loop) -> list[Loop]:
 
 
 def _remarks(
-    steps: Sequence[Step], readings: Sequence[Reading], torque: Torque, pictures: Sequence[Angles], rig: Rig
+    steps: Sequence[Step], readings: Sequence[AngleReading], torque: Torque, pictures: Sequence[Angles], rig: Rig
 ) -> Iterator[str]:
     faults = {frame.name: frame.fault for angles in pictures for frame in angles.frames if frame.markers is None}
     for step, reading in zip(steps, readings, strict=True):
         if not np.isfinite(reading.angle):
-            missing = "the photograph told no angle" if step.image else "no angle and no photograph"
+            missing = "the photograph gives no angle" if step.image else "no angle and no photograph"
             reason = faults.get(step.image or "", missing)
             yield f"step {step.number} is left out: {f'{step.image}: ' if step.image else ''}{reason}"
         if step.mass_positive and step.mass_negative:
             yield f"step {step.number} has masses on both pairs of pans; their difference counts"
     if any(step.torque is not None for step in steps):
-        yield "the torque was measured, and steps.csv tells no error of it: intervals leave out those of the sensor"
+        yield "the torque was measured, and steps.csv contains no error of it: intervals leave out those of the sensor"
     for before, after in pairwise(steps):
         if after.number > before.number + 1:
             yield f"between steps {before.number} and {after.number} the numbers leave {after.number - before.number - 1} out"
@@ -281,15 +281,18 @@ def _remarks(
             yield f"{values.count(None)} of {len(values)} steps have no {name}; that of the others is left out"
 
 
-def _remarks_on_motion(steps: Sequence[Step], readings: Sequence[Reading], torque: Torque) -> Iterator[str]:
+def _remarks_on_motion(steps: Sequence[Step], readings: Sequence[AngleReading], torque: Torque) -> Iterator[str]:
     """Steps that the pulleys held, and steps that went against the torque."""
     held = [step.number for step, sense in zip(steps[1:], torque.sense[1:], strict=True) if sense == 0.0]
     changed = [after.number for before, after in pairwise(steps) if _load(before) != _load(after)]
     if stuck := [str(number) for number in held if number in changed]:
-        yield f"the pulleys hold more than the change of torque at step {listed(stuck)}: the shaft got less than the masses say"
+        yield (
+            f"the pulleys hold more than the change of torque at step {listed(stuck)}: the torque on the shaft is less than "
+            "that of the masses"
+        )
     for (before, after), (one, other), sense in zip(pairwise(steps), pairwise(readings), torque.sense[1:], strict=True):
         turned = other.angle - one.angle
-        if turned * sense < -_AGAINST * np.hypot(one.sigma, other.sigma) < 0.0:
+        if turned * sense < -_BACKWARD_SIGMA * np.hypot(one.sigma, other.sigma) < 0.0:
             words = f"from step {before.number} to {after.number} the shaft turned against the torque"
             yield f"{words}, by {degrees(abs(turned)):.3g} degrees"
 

@@ -20,8 +20,8 @@ from strainwave.rig.reading.recorded import read_loop
 
 
 @dataclass(frozen=True)
-class Given:
-    """What is known of tests and loops beside their files; None where it is not given.
+class EvaluationOptions:
+    """Options of `evaluate_paths` that the files of tests and loops do not contain; None if not given.
 
     Attributes:
         rig: instead of `rig.toml` of a test
@@ -44,13 +44,13 @@ class Given:
 
 
 def evaluate_paths(
-    paths: Sequence[Path], given: Given, progress: Callable[[str], None] = lambda stage: None
+    paths: Sequence[Path], given: EvaluationOptions, progress: Callable[[str], None] = lambda stage: None
 ) -> tuple[Evaluation, list[Path]]:
     """Reads folders of tests and files of loops, and evaluates them together.
 
     Args:
         paths: folders and files
-        given: what is known beside them
+        given: what the files do not contain
         progress: is called with the name of each photograph before it is read
 
     Returns:
@@ -80,7 +80,7 @@ def evaluate_paths(
 
 
 def _read(
-    paths: Sequence[Path], given: Given, progress: Callable[[str], None]
+    paths: Sequence[Path], given: EvaluationOptions, progress: Callable[[str], None]
 ) -> tuple[list[TorsionTest], list[Loop], list[Path]]:
     if missing := [path for path in paths if not path.exists()]:
         raise FileNotFoundError(f"{missing[0]}: there is no such folder or file")
@@ -116,7 +116,7 @@ def _check_test(folder: Path, rig: Rig | None) -> None:
 
 
 def _deviations(tests: Sequence[TorsionTest]) -> list[str] | None:
-    """Where tests depart from the plans beside them; None where there are none."""
+    """Return the deviations of tests from the plans in their folders; None if there is no plan."""
     planned = [test.deviations for test in tests if test.deviations is not None]
     return [words for of_test in planned for words in of_test] if planned else None
 

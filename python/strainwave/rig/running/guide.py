@@ -15,19 +15,19 @@ import numpy as np
 from strainwave.files.writing import DRAFT
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import FILE, append_step, read_steps
-from strainwave.rig.running.sources import Source
+from strainwave.rig.running.sources import PictureSource
 
-AGREE = 0.99  # of readings at rest taken as at rest
-CELSIUS = 273.15  # K
+AT_REST_PROBABILITY = 0.99  # share of readings at rest that count as at rest [1]
+ZERO_CELSIUS = 273.15  # K
 
 
 class Look(NamedTuple):
-    """What a picture told.
+    """Angle of a picture.
 
     Attributes:
-        angle: from the reference [rad]; not-a-number if it told none
+        angle: from the reference [rad]; not-a-number if the picture gives none
         sigma: its standard deviation [rad]
-        fault: why it told none, empty otherwise
+        fault: the reason if it gives none, else empty
     """
 
     angle: float
@@ -37,12 +37,12 @@ class Look(NamedTuple):
 
 @dataclass(frozen=True)
 class Settling:
-    """When the shaft counts as at rest.
+    """Condition for the shaft to count as at rest.
 
     Attributes:
         pictures: so many in a row must agree within what their own uncertainty explains; 1 takes the first as it is
         interval: from one to the next [s]
-        patience: after which it is told that it does not settle [s]
+        patience: after which the shaft is reported as not settling [s]
     """
 
     pictures: int = 5
@@ -50,10 +50,10 @@ class Settling:
     patience: float = 60.0
 
     def range(self) -> float:
-        """How far so many readings at rest lie apart at most, in standard deviations: the studentized range."""
+        """Return the largest range of the readings at rest, in standard deviations: the studentized range."""
         from scipy.stats import studentized_range
 
-        return float(studentized_range.ppf(AGREE, self.pictures, np.inf)) if self.pictures > 1 else 0.0
+        return float(studentized_range.ppf(AT_REST_PROBABILITY, self.pictures, np.inf)) if self.pictures > 1 else 0.0
 
 
 class Rest(NamedTuple):
@@ -61,7 +61,7 @@ class Rest(NamedTuple):
 
     Attributes:
         picture: its file; None if no useful one came
-        look: what it told
+        look: its angle
         settled: whether the last pictures agree
         spread: how far the last pictures differ [rad]
     """
@@ -74,7 +74,7 @@ class Rest(NamedTuple):
 
 @dataclass(frozen=True)
 class Reply:
-    """What whoever stands at the rig answered.
+    """Answer of the operator at the rig.
 
     Attributes:
         temperature: of the gear [K], or None
@@ -111,15 +111,15 @@ def reply(text: str) -> Reply:
         numbers = [np.nan]
     if word in ("", "q", "r") and not numbers:
         return Reply(stop=word == "q", record=word == "r")
-    if word == "t" and len(numbers) == 1 and -CELSIUS < numbers[0] < 1e3:
-        return Reply(temperature=numbers[0] + CELSIUS)
+    if word == "t" and len(numbers) == 1 and -ZERO_CELSIUS < numbers[0] < 1e3:
+        return Reply(temperature=numbers[0] + ZERO_CELSIUS)
     if word == "m" and len(numbers) == 2 and min(numbers) >= 0.0 and np.all(np.isfinite(numbers)):
         return Reply(masses=(numbers[0] / 1e3, numbers[1] / 1e3))
     raise ValueError(HELP)
 
 
 def settle(
-    source: Source,
+    source: PictureSource,
     folder: Path,
     look: Callable[[Path], Look],
     settling: Settling,
@@ -134,7 +134,7 @@ def settle(
         folder: where they are put
         look: reads the angle of a picture
         settling: when the shaft counts as at rest
-        seen: is called with what each picture told
+        seen: is called with the angle of each picture
         now, pause: the clock [s]
     """
     last: list[Look] = []
@@ -156,7 +156,7 @@ def settle(
 
 
 def began(steps: Sequence[Step], folder: Path) -> float:
-    """When a test began, on the clock of its photographs [s]; now if it has not."""
+    """Return the time at which a test began [s], on the clock of its photographs; now if it has not begun."""
     for step in steps:
         if step.image is not None and step.time is not None and (folder / step.image).exists():
             return (folder / step.image).stat().st_mtime - step.time
@@ -167,22 +167,22 @@ class Talk(Protocol):
     """Speaks with whoever stands at the rig."""
 
     def ask(self, step: Step, before: Step | None) -> str:
-        """Says what to lay on and take off for a step, and returns what was answered once that is done."""
+        """Show which masses to add and remove for a step, and return the operator's answer once that is done."""
 
     def hint(self, words: str) -> str:
-        """Says what went wrong, and returns what was answered."""
+        """Show what went wrong, and return the operator's answer."""
 
     def seen(self, look: Look) -> None:
-        """Shows what a picture told."""
+        """Show the angle of a picture."""
 
     def done(self, steps: Sequence[Step], looks: Mapping[int, Look]) -> None:
-        """Shows the test so far: the steps, and what the photographs of this session told by the number of the step."""
+        """Show the test so far: the steps, and the angles of this session's photographs by the number of the step."""
 
 
 def conduct(
     plan: Sequence[Step],
     folder: Path,
-    source: Source,
+    source: PictureSource,
     look: Callable[[Path, Step], Look],
     talk: Talk,
     settling: Settling = Settling(),
@@ -200,7 +200,7 @@ def conduct(
         look: reads the angle of a picture that belongs to a step
         talk: speaks with whoever stands at the rig
         settling: when the shaft counts as at rest
-        load: is told the number of each step before its pictures; a virtual rig lays on its masses so
+        load: is called with the number of each step before its pictures; a virtual rig then lays on its masses
 
     Returns:
         The steps done by now, those before a break too; fewer than planned if it was stopped.
@@ -254,13 +254,13 @@ def _answer(talk: Talk, text: str) -> Reply:
 def _at_rest(
     planned: Step,
     drafts: Path,
-    source: Source,
+    source: PictureSource,
     look: Callable[[Path, Step], Look],
     talk: Talk,
     settling: Settling,
     answered: Reply,
 ) -> tuple[Rest, Reply]:
-    """Waits until the shaft rests, or whoever stands there says what to do instead."""
+    """Wait until the shaft rests, or until the operator answers."""
     while not answered.stop:
         source.take(drafts)  # what was taken before the masses lay there
         rest = settle(source, drafts, lambda picture: look(picture, planned), settling, talk.seen)

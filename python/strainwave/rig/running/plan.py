@@ -24,11 +24,11 @@ Pans = Literal["equal", "unequal"]
 SIDES = ("positive", "negative")
 STAGES = ("peak", "positive unloading", "negative loading", "negative unloading", "positive loading")
 MAX_STEPS = 100_000  # of a plan: a month at 25 seconds a step
-_NEXT = 1e-6  # of the smallest mass: two totals nearer than this are the same
+_MASS_TOLERANCE = 1e-6  # share of the smallest mass [1]: totals that differ by less are equal
 Laid = tuple[Counter[float], Counter[float]]  # how many of each mass lie on the two pans of a pair
 
 
-class Stage(NamedTuple):
+class PlannedStep(NamedTuple):
     """One step of a plan.
 
     Attributes:
@@ -62,18 +62,18 @@ class Plan:
     'positive pans: take 25 g off each'
     """
 
-    stages: tuple[Stage, ...]
+    stages: tuple[PlannedStep, ...]
     wanted: float
     peak: float
     remarks: tuple[str, ...] = ()
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """What lies on the pans at each step."""
+        """Return the masses on the pans at each step."""
         return tuple(stage.step for stage in self.stages)
 
     def __str__(self) -> str:
-        """The plan as a table to be printed and laid beside the rig."""
+        """Return the plan as a table to be printed for the rig."""
         head = f"{'step':>4}  {'position':>8}  {'torque':>9}  {'positive':>8}  {'negative':>8}  {'stage':<18}  task"
         units = f"{'':>4}  {'[deg]':>8}  {'[N.m]':>9}  {'[g]':>8}  {'[g]':>8}"
         rows = [_row(stage) for stage in self.stages]
@@ -146,11 +146,11 @@ def reachable(rig: Rig, torque: float, pans: Pans = "equal") -> tuple[float, flo
     """
     unit = _quantum(rig, pans) * _torque_of_mass(rig)
     count = torque / unit
-    return unit * math.floor(count + _NEXT), unit * math.ceil(count - _NEXT)
+    return unit * math.floor(count + _MASS_TOLERANCE), unit * math.ceil(count - _MASS_TOLERANCE)
 
 
 def task(rig: Rig, before: Step | None, step: Step, pans: Pans = "equal") -> str:
-    """What to lay on and take off between two steps that stand in no plan, in words; the largest masses come first.
+    """Return in words which masses to add and remove between two steps outside a plan; the largest masses come first.
 
     Args:
         rig: its masses
@@ -189,7 +189,7 @@ def _check_reach(rig: Rig, pans: Pans, wanted: float, total: float) -> None:
     """Refuses a peak for which all masses of the rig do not suffice."""
     pieces = 2 if pans == "equal" else 1  # both pans of a pair need a mass of each kind, or either may have it
     most = sum(masses.mass * (masses.count // pieces) * pieces for masses in rig.masses)
-    if total > most + _NEXT * min(masses.mass for masses in rig.masses):
+    if total > most + _MASS_TOLERANCE * min(masses.mass for masses in rig.masses):
         raise ValueError(
             f"peak = {wanted:g} N.m: the masses ({_there(rig)}) do not make {_grams(total)} on a pair of pans that carry "
             f"{_carry(pans)}; at most {_grams(most)}, which is {most * _torque_of_mass(rig):.4g} N.m: ask for less, or give "
@@ -198,7 +198,7 @@ def _check_reach(rig: Rig, pans: Pans, wanted: float, total: float) -> None:
 
 
 def _stacks(rig: Rig, pans: Pans, quantum: float, top: int, stride: int) -> dict[int, Laid]:
-    """What lies on a pair of pans at each level, counted in quanta: piled up step by step, so that nothing is exchanged.
+    """Return the masses on a pair of pans at each level, in quanta: added step by step, so that none is exchanged.
 
     Where the small masses do not suffice for that, each level is made of the largest masses that fit.
     """
@@ -229,10 +229,10 @@ def _picked(left: Counter[float], total: float, pieces: int) -> Counter[float] |
     picked: Counter[float] = Counter()
     rest = total
     for mass in sorted(left, reverse=True):
-        if number := min(left[mass] // pieces, int(rest / mass + _NEXT)):
+        if number := min(left[mass] // pieces, int(rest / mass + _MASS_TOLERANCE)):
             picked[mass] = number
             rest -= number * mass
-    if rest > _NEXT * min(left):
+    if rest > _MASS_TOLERANCE * min(left):
         return None
     left.subtract({mass: pieces * number for mass, number in picked.items()})
     return picked
@@ -242,7 +242,7 @@ def _composed(rig: Rig, pans: Pans, total: float) -> Laid:
     """A total on a pair of pans, made of the largest masses that fit."""
     left = Counter({masses.mass: masses.count for masses in rig.masses})
     count = round(total / min(left))
-    laid = _taken(left, pans, total, count, 0) if abs(count * min(left) - total) < _NEXT * min(left) + 1e-12 else None
+    laid = _taken(left, pans, total, count, 0) if abs(count * min(left) - total) < _MASS_TOLERANCE * min(left) + 1e-12 else None
     if laid is None:
         raise ValueError(f"the masses ({_there(rig)}) do not make {_grams(total)} on a pair of pans that carry {_carry(pans)}")
     return laid
@@ -261,7 +261,7 @@ def _carry(pans: Pans) -> str:
 
 def _stages(
     rig: Rig, loads: Sequence[int], stacks: Mapping[int, Laid], places: Sequence[tuple[float, str]], quantum: float
-) -> Iterator[Stage]:
+) -> Iterator[PlannedStep]:
     number = 0
     for place, (position, unit) in enumerate(places):
         before: int | None = None
@@ -271,7 +271,7 @@ def _stages(
             words = _first(position, unit, place) if before is None else ""
             words += _changes(stacks, before or 0, load)
             step = Step(number, round(masses[0], 12), round(masses[1], 12), position=position, unit=unit)
-            yield Stage(step, _stage(before, load), load * quantum * _torque_of_mass(rig), words)
+            yield PlannedStep(step, _stage(before, load), load * quantum * _torque_of_mass(rig), words)
             before = load
 
 
@@ -296,7 +296,7 @@ def _changes(stacks: Mapping[int, Laid], before: int, load: int) -> str:
 
 
 def _change(side: str, before: Laid, after: Laid) -> str:
-    """What to do on a pair of pans, in words; nothing where nothing changes."""
+    """Return the change on a pair of pans in words; empty if nothing changes."""
     if before[0] == before[1] and after[0] == after[1]:
         words = _moved(before[0], after[0], " each")
         return f"{side} pans: {words}" if words else ""
@@ -319,7 +319,7 @@ def _grams(mass: float) -> str:
     return f"{1e3 * mass:.6g} g"
 
 
-def _row(stage: Stage) -> str:
+def _row(stage: PlannedStep) -> str:
     step = stage.step
     place = f"{math.degrees(step.position):g}" + (f" {step.unit}" if step.unit else "")
     masses = f"{1e3 * step.mass_positive:>8.6g}  {1e3 * step.mass_negative:>8.6g}"

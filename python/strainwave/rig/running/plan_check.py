@@ -15,13 +15,13 @@ from strainwave.rig.running.plan import Plan
 Kind = Literal[
     "skipped", "swapped", "repeated", "extra", "wrong masses", "not made", "unplanned", "peak", "not closed", "unfinished"
 ]
-_GRAIN = 1e-6  # kg: totals that differ by less are the same
+_MASS_RESOLUTION = 1e-6  # kg: totals that differ by less are equal
 Masses = tuple[int, int]  # on the positive and the negative pans [mg]
 
 
 @dataclass(frozen=True)
-class Finding:
-    """Where a record departs from its plan.
+class Deviation:
+    """A deviation of a record from its plan.
 
     Attributes:
         kind: how
@@ -37,7 +37,7 @@ class Finding:
         return self.words
 
 
-def check(steps: Sequence[Step], plan: Plan | Sequence[Step]) -> list[Finding]:
+def check(steps: Sequence[Step], plan: Plan | Sequence[Step]) -> list[Deviation]:
     """Holds a record against its plan: of each position and unit, the order of masses that needs the fewest changes.
 
     Args:
@@ -55,12 +55,12 @@ def check(steps: Sequence[Step], plan: Plan | Sequence[Step]) -> list[Finding]:
     """
     planned = plan.steps if isinstance(plan, Plan) else plan
     of_plan, of_record = _places(planned), _places(steps)
-    findings: list[Finding] = []
+    findings: list[Deviation] = []
     for place in dict.fromkeys((*of_plan, *of_record)):
         if place not in of_record:
-            findings.append(Finding("not made", 0, f"{_called(place)}: planned, but not made"))
+            findings.append(Deviation("not made", 0, f"{_called(place)}: planned, but not made"))
         elif place not in of_plan:
-            findings.append(Finding("unplanned", of_record[place][0].number, f"{_called(place)}: made, but not planned"))
+            findings.append(Deviation("unplanned", of_record[place][0].number, f"{_called(place)}: made, but not planned"))
         else:
             findings += _of_place(of_plan[place], of_record[place])
     return findings
@@ -78,14 +78,14 @@ def _called(place: tuple[float, str]) -> str:
 
 
 def _masses(step: Step) -> Masses:
-    return round(step.mass_positive / _GRAIN), round(step.mass_negative / _GRAIN)
+    return round(step.mass_positive / _MASS_RESOLUTION), round(step.mass_negative / _MASS_RESOLUTION)
 
 
-def _said(step: Step) -> str:
+def _in_words(step: Step) -> str:
     return f"{1e3 * step.mass_positive:.6g} g on the positive pans, {1e3 * step.mass_negative:.6g} g on the negative ones"
 
 
-def _of_place(planned: Sequence[Step], made: Sequence[Step]) -> Iterator[Finding]:
+def _of_place(planned: Sequence[Step], made: Sequence[Step]) -> Iterator[Deviation]:
     changes = _changes([_masses(step) for step in planned], [_masses(step) for step in made])
     end = len(changes)
     while end and changes[end - 1][0] == "skipped":
@@ -98,37 +98,39 @@ def _of_place(planned: Sequence[Step], made: Sequence[Step]) -> Iterator[Finding
             f"steps {missing[0]} to {missing[-1]} of the plan are" if len(missing) > 1 else f"step {missing[0]} of the plan is"
         )
         words = f"the record ends after step {made[-1].number}: {rest} still to be made"
-        yield Finding("unfinished", made[-1].number, words)
+        yield Deviation("unfinished", made[-1].number, words)
     yield from _of_peaks(planned, made, finished=end == len(changes))
 
 
-def _told(kind: str, planned: Sequence[Step], made: Sequence[Step], row: int, place: int) -> Iterator[Finding]:
+def _told(kind: str, planned: Sequence[Step], made: Sequence[Step], row: int, place: int) -> Iterator[Deviation]:
     """A change in words; `row` and `place` are those that it begins with in plan and record."""
     if kind == "skipped":
         step = planned[row]
-        yield Finding("skipped", step.number, f"step {step.number} of the plan is skipped: {_said(step)}")
+        yield Deviation("skipped", step.number, f"step {step.number} of the plan is skipped: {_in_words(step)}")
     elif kind == "extra":
         step = made[place]
         again = place > 0 and _masses(made[place - 1]) == _masses(step)
-        here = "repeats the one before" if again else f"is not in the plan: {_said(step)}"
+        here = "repeats the one before" if again else f"is not in the plan: {_in_words(step)}"
         words = f"step {step.number} {here}"
-        yield Finding("repeated" if again else "extra", step.number, words)
+        yield Deviation("repeated" if again else "extra", step.number, words)
     elif kind == "wrong":
         step = made[place]
-        yield Finding("wrong masses", step.number, f"step {step.number} has {_said(step)}; planned are {_said(planned[row])}")
+        yield Deviation(
+            "wrong masses", step.number, f"step {step.number} has {_in_words(step)}; planned are {_in_words(planned[row])}"
+        )
     elif kind == "swapped":
-        yield Finding("swapped", made[place].number, f"steps {made[place].number} and {made[place + 1].number} are swapped")
+        yield Deviation("swapped", made[place].number, f"steps {made[place].number} and {made[place + 1].number} are swapped")
 
 
-def _of_peaks(planned: Sequence[Step], made: Sequence[Step], finished: bool) -> Iterator[Finding]:
+def _of_peaks(planned: Sequence[Step], made: Sequence[Step], finished: bool) -> Iterator[Deviation]:
     for name, pans in (("mass_positive", "positive"), ("mass_negative", "negative")):
         wanted, reached = (max(getattr(step, name) for step in steps) for steps in (planned, made))
-        if finished and reached < wanted - _GRAIN:
+        if finished and reached < wanted - _MASS_RESOLUTION:
             words = f"the {pans} peak is not reached: at most {1e3 * reached:.6g} g of {1e3 * wanted:.6g} g lay on its pans"
-            yield Finding("peak", 0, words)
+            yield Deviation("peak", 0, words)
     if finished and _masses(made[-1]) != _masses(planned[-1]):
-        words = f"the last step, {made[-1].number}, does not return to where the cycle began: {_said(made[-1])}"
-        yield Finding("not closed", made[-1].number, words)
+        words = f"the last step, {made[-1].number}, does not return to where the cycle began: {_in_words(made[-1])}"
+        yield Deviation("not closed", made[-1].number, words)
 
 
 def _changes(planned: Sequence[Masses], made: Sequence[Masses]) -> list[tuple[str, int, int]]:
@@ -154,7 +156,7 @@ def _changes(planned: Sequence[Masses], made: Sequence[Masses]) -> list[tuple[st
 def _ways(
     planned: Sequence[Masses], made: Sequence[Masses], cost: np.ndarray[tuple[int, int], np.dtype[np.int_]], i: int, j: int
 ) -> Iterator[tuple[str, int, int, int]]:
-    """How plan and record can go on from step i and j: what, how far on in both, and at what cost until the end."""
+    """Yield the ways to continue from steps i and j: kind, steps taken in plan and record, and cost until the end."""
     more_planned, more_made = len(planned) - i, len(made) - j
     if more_planned and more_made:
         alike = planned[i] == made[j]

@@ -1,4 +1,4 @@
-"""Where pictures come from while a test is being run: a camera, a folder that another program fills, or a virtual rig."""
+"""Sources of pictures while a test is being run: a camera, a folder that another program fills, or a virtual rig."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from strainwave.rig.vision.image import pictures_in
 Array = NDArray[np.float64]
 
 
-class Source(Protocol):
+class PictureSource(Protocol):
     """Gives pictures of the target, one after the other."""
 
     def take(self, folder: Path) -> Path | None:

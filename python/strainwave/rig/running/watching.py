@@ -22,7 +22,7 @@ class Watched(NamedTuple):
 
     Attributes:
         name: of its file
-        torque: on the shaft [N.m]; None where neither the record nor a plan tells it
+        torque: on the shaft [N.m]; None if neither the record nor a plan contains it
         look: the angle from the first photograph of its position and unit
         warnings: what makes it doubtful
     """
@@ -35,7 +35,7 @@ class Watched(NamedTuple):
 
 @dataclass
 class Watch:
-    """What is new in a folder, look by look.
+    """New photographs of a folder, each time it is looked at.
 
     Torques come from `steps.csv` once it has a row for a photograph; else from a plan, photograph by photograph.
 
@@ -81,7 +81,7 @@ class Watch:
         return size > 0 and size == before
 
     def _steps(self, recorded: dict[str | None, Step]) -> list[Step | None]:
-        """Of each photograph so far, the step that it belongs to."""
+        """Return the step of each photograph so far."""
         return [recorded.get(frame.name) or self._planned(place) for place, frame in enumerate(self.frames)]
 
     def _planned(self, place: int) -> Step | None:
@@ -132,7 +132,7 @@ class Reader:
     first: dict[tuple[float, str], Frame] = field(default_factory=dict)
 
     def __call__(self, picture: Path, step: Step) -> Look:
-        """What a picture of a step tells; the last one of a step is taken as its photograph."""
+        """Return the angle of a picture of a step; the last picture of a step is its photograph."""
         frame = look(picture, camera=self.camera)
         place = (step.position, step.unit)
         before = [
@@ -145,7 +145,7 @@ class Reader:
 
 
 def angle_of(frames: Sequence[Frame], camera: Camera) -> tuple[Frame, Look]:
-    """The last of some photographs, with what it is doubted for, and its angle from the first one that told one."""
+    """Return the last photograph with its warnings, and its angle from the first photograph that gives one."""
     if frames[-1].markers is None:
         return frames[-1], Look(np.nan, np.nan, frames[-1].fault or "no markers")
     angles = follow(frames, camera=camera)

@@ -16,12 +16,12 @@ from strainwave.rig.bench.steps import Step
 from strainwave.rig.torque.torque import arm, mass_sigma, shared_errors
 
 Kind = Literal["random", "common", "by direction"]
-PICTURE = "shape of the picture, as the markers tell it"
+PICTURE = "shape of the picture, by the markers"
 
 
 @dataclass(frozen=True)
 class Contribution:
-    """What one number adds to the uncertainty of a result.
+    """Contribution of one number to the uncertainty of a result.
 
     Attributes:
         name: what it comes from

@@ -1,4 +1,4 @@
-r"""Whether the torque was a pure couple: a shaft that is pushed aside as well moves the centre about which its markers turn.
+r"""Test for a pure couple: a shaft that is pushed aside as well moves the centre about which its markers turn.
 
 The point midway between the markers is, at angle :math:`\theta` and torque T,
 
@@ -23,13 +23,13 @@ from strainwave.rig.vision.angle import Angles
 from strainwave.rig.vision.camera import changes_nothing, flat
 
 Array = NDArray[np.float64]
-SURE = 4.0  # standard deviations beyond which a shift is told
-LEAST = 6  # photographs: three vectors are fitted
+SIGNIFICANCE_SIGMA = 4.0  # standard deviations beyond which a shift is reported
+MIN_PHOTOGRAPHS = 6  # three vectors are fitted
 
 
 @dataclass(frozen=True)
 class Couple:
-    """How the centre of a turning shaft goes with the torque.
+    """Shift of the centre of a turning shaft with the torque.
 
     Attributes:
         shift: of the centre per torque, right and up in the picture [px/(N.m)]
@@ -47,13 +47,13 @@ class Couple:
 
     @property
     def size(self) -> float:
-        """Of the shift [px/(N.m)]."""
+        """Return the size of the shift [px/(N.m)]."""
         return float(np.hypot(*self.shift))
 
     @property
     def pure(self) -> bool:
-        """Whether the shift can be chance."""
-        return self.size <= SURE * self.sigma
+        """True if the shift can be chance."""
+        return self.size <= SIGNIFICANCE_SIGMA * self.sigma
 
     def __str__(self) -> str:
         """The finding in one line."""
@@ -76,7 +76,7 @@ def couple(middle: Array, angle: Array, torque: Array, scale: float | None = Non
         scale: size of a pixel at the target [m]
 
     Raises:
-        ValueError: too few photographs, or torque and angle do not tell the three apart
+        ValueError: too few photographs, or torque and angle do not separate the three
 
     >>> angle, torque = np.array([0.0, -0.3, -0.9, -1.0, -0.6, -0.1]), np.array([0.3, 0.1, -0.2, -0.3, 0.0, 0.3])
     >>> arm = np.stack([30.0 * np.cos(angle), 30.0 * np.sin(angle)], axis=1)
@@ -85,15 +85,15 @@ def couple(middle: Array, angle: Array, torque: Array, scale: float | None = Non
     (2.0, False)
     """
     n = len(angle)
-    if n < LEAST:
-        raise ValueError(f"the centre of rotation needs {LEAST} photographs or more, not {n}")
+    if n < MIN_PHOTOGRAPHS:
+        raise ValueError(f"the centre of rotation needs {MIN_PHOTOGRAPHS} photographs or more, not {n}")
     one, zero, c, s = np.ones(n), np.zeros(n), np.cos(angle), np.sin(angle)
     right = np.stack([one, zero, c, -s, torque, zero], axis=1)
     up = np.stack([zero, one, s, c, zero, torque], axis=1)
     design, seen = np.concatenate([right, up]), np.concatenate([middle[:, 0], middle[:, 1]])
     fit, _, rank, _ = np.linalg.lstsq(design, seen)
     if rank < 6:
-        raise ValueError("torque and angle go together: they do not tell a shift of the shaft from its turn")
+        raise ValueError("torque and angle change together: they do not separate a shift of the shaft from its turn")
     residual = seen - design @ fit
     variance = float(residual @ residual) / (2 * n - 6)
     sigma = float(np.sqrt(variance * np.linalg.inv(design.T @ design)[4, 4]))
@@ -101,7 +101,7 @@ def couple(middle: Array, angle: Array, torque: Array, scale: float | None = Non
 
 
 def couple_of(angles: Angles, steps: Sequence[Step], torque: Torque, rig: Rig) -> Couple:
-    """How the centre of rotation went with the torque in a test.
+    """Fit the shift of the centre of rotation with the torque in a test.
 
     Args:
         angles: of the photographs
@@ -129,7 +129,7 @@ def _centres(angles: Angles, row: int, rig: Rig) -> Array:
 
 
 def remarks_on_couple(angles: Angles, steps: Sequence[Step], torque: Torque, rig: Rig) -> Iterator[str]:
-    """What the centre of rotation says against a pure couple; nothing where it cannot tell."""
+    """Yield a remark if the centre of rotation contradicts a pure couple; none if the test does not determine it."""
     if not {frame.name for frame in angles.useful} & {step.image for step in steps}:
         return
     try:

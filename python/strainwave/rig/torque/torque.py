@@ -25,7 +25,7 @@ from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import Loop
 
 Array = NDArray[np.float64]
-CONFIDENCE = 0.95
+CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a torque [1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +181,7 @@ def without_compliance(angle: Array, torque: Array, compliance: Value) -> Array:
     return angle - compliance.value * torque
 
 
-def blank(loop: Loop, confidence: float = CONFIDENCE) -> Value:
+def blank(loop: Loop, confidence: float = CONFIDENCE_LEVEL) -> Value:
     r"""Compliance of coupling and frame, from a run with a rigid dummy in place of the gear.
 
     It is the slope of the regression of angle on torque. Its standard deviation joins the scatter about the line with what all

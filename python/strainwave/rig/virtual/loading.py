@@ -17,15 +17,15 @@ from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 
 Array = NDArray[np.float64]
-POINTS = 64  # of a stretch that is searched at once
-GROWTH = 4.0  # of the stretches: each is looked at in parts of 1/16 of its distance or less
-ROUNDS = 9  # 64^-9 of the first stretch: below rounding
+POINTS_PER_STRETCH = 64  # evaluated at once in a search
+STRETCH_GROWTH = 4.0  # ratio of a stretch to the one before [1]: the spacing is 1/16 of the distance or less
+SEARCH_REFINEMENTS = 9  # of the first stretch, each by 1/64: 64^-9 is below rounding
 FIRST, FARTHEST = 1e-7, 1e5  # rad, of the shaft: where a search begins and where it gives up
 
 
 @dataclass(frozen=True, eq=False)
 class Loading(ComparedByFields):
-    """What a gear and its rig did under the steps of a test, each of shape (n,).
+    """Angles and torques of a gear and its rig under the steps of a test, each of shape (n,).
 
     Attributes:
         angle: of the disk, from where it is at the first step [rad]
@@ -66,7 +66,7 @@ def load_by_steps(
         gear: which gear
         rig: which rig; the values of its numbers are taken to be true
         steps: as made; a torque measured otherwise is taken as that of the shaft, without cords and pulleys
-        wait: between the change of the masses and the photograph, where steps do not tell their times [s]
+        wait: between the change of the masses and the photograph, if steps have no times [s]
         settling: time constant with which the disk comes to rest [s]; 0 if at once
         virgin: whether the gear was never loaded before; else it goes through all the steps once beforehand
 
@@ -122,7 +122,7 @@ def _seen(angle: Array, waits: Array, settling: float) -> Array:
 
 @dataclass(frozen=True)
 class _State:
-    """Where everything rests: angle of the disk, torques, twist."""
+    """State of rest: angle of the disk, torques, twist."""
 
     disk: float = 0.0
     applied: float = 0.0
@@ -220,7 +220,7 @@ class _Shaft:
 
 
 def _moved(shaft: _Shaft, rig: Rig, state: _State, weights: _Weights) -> _State:
-    """Where the disk comes to rest under other weights."""
+    """Return the state of rest under other weights."""
     here = np.array([state.disk])
     for sense in (1.0, -1.0):
         push = float(weights.behind_pulleys(here, sense)[0]) - state.torque
@@ -230,7 +230,7 @@ def _moved(shaft: _Shaft, rig: Rig, state: _State, weights: _Weights) -> _State:
 
 
 def _followed(shaft: _Shaft, compliance: float, state: _State, weights: _Weights, sense: float) -> _State:
-    """Where the disk comes to rest in the direction it moves in. The coupling gives way first, then the shaft breaks away."""
+    """Return the state of rest in the direction of motion. The coupling gives way first, then the shaft breaks away."""
     still = float(shaft.path[-1])
 
     def rest(torque: float, angle: float) -> _State:
@@ -260,10 +260,10 @@ def _followed(shaft: _Shaft, compliance: float, state: _State, weights: _Weights
 
 
 def _searched(lacking: Callable[[Array], Array], start: float, sense: float) -> float:
-    """Where what is lacking first becomes nothing, on the way from the start."""
+    """Return the first zero of the lacking torque on the way from the start."""
     near, reach = 0.0, FIRST
-    while lacking(start + sense * np.linspace(near, reach, POINTS)[1:]).min() > 0.0:
-        near, reach = reach, GROWTH * reach
+    while lacking(start + sense * np.linspace(near, reach, POINTS_PER_STRETCH)[1:]).min() > 0.0:
+        near, reach = reach, STRETCH_GROWTH * reach
         if reach > FARTHEST:
             raise ValueError("nothing holds the disk: the gear, or the arm of the cord, gives way for ever")
     return _crossing(lacking, start + sense * near, start + sense * reach)
@@ -271,8 +271,8 @@ def _searched(lacking: Callable[[Array], Array], start: float, sense: float) -> 
 
 def _crossing(lacking: Callable[[Array], Array], low: float, high: float) -> float:
     """The first point between two, as fine as numbers are, where what is lacking is nothing."""
-    for _ in range(ROUNDS):
-        points = np.linspace(low, high, POINTS)
+    for _ in range(SEARCH_REFINEMENTS):
+        points = np.linspace(low, high, POINTS_PER_STRETCH)
         beyond = np.flatnonzero(lacking(points[1:]) <= 0.0)
         if not len(beyond):
             return high

@@ -14,9 +14,9 @@ TABLE_2 = {
     60: (4.36, 0.29, 3.59, 0.33, 51.9),
     120: (4.19, 0.32, 5.08, 0.33, 49.4),
 }
-PEAK = 0.36  # N.m
-ONSET = 0.03  # N.m, assumed: where the soft regimes set in, of which the table says nothing (erratum E-T4)
-NOTHING = 1e-6  # N.m/rad, of a spring beside which all of the gear's torque is the hysteresis's
+PEAK_TORQUE = 0.36  # N.m
+SOFT_ONSET = 0.03  # N.m, assumed: torque at which the soft regimes begin, which the table does not state (erratum E-T4)
+NEGLIGIBLE_STIFFNESS = 1e-6  # N.m/rad, of the spring of a gear whose torque is all hysteresis
 
 
 def printed_gear(position: int) -> Gear:
@@ -33,7 +33,7 @@ def printed_gear(position: int) -> Gear:
     if position not in TABLE_2:
         raise ValueError(f"position = {position} degrees must be 0, 60 or 120: the rows of document T's Table 2")
     *slopes, width = TABLE_2[position]
-    return gear_of_regimes(*slopes, width=math.radians(width), peak=PEAK)
+    return gear_of_regimes(*slopes, width=math.radians(width), peak=PEAK_TORQUE)
 
 
 def peak_needed(position: int) -> float:
@@ -43,11 +43,11 @@ def peak_needed(position: int) -> float:
     [0.322, 0.353, 0.339]
     """
     down, soft_down, up, soft_up, width = TABLE_2[position]
-    return max(_needed(*pair, math.radians(width), ONSET) for pair in ((soft_up, down), (soft_down, up)))
+    return max(_needed(*pair, math.radians(width), SOFT_ONSET) for pair in ((soft_up, down), (soft_down, up)))
 
 
 def _needed(loading: float, unloading: float, width: float, onset: float) -> float:
-    """Where a soft regime from the onset on has opened the loop to its width [N.m]."""
+    """Return the torque at which a soft regime from the onset on has opened the loop to its width [N.m]."""
     return onset + width / (1.0 / loading - 1.0 / unloading)
 
 
@@ -59,7 +59,7 @@ def gear_of_regimes(
     *,
     width: float,
     peak: float,
-    onset: float = ONSET,
+    onset: float = SOFT_ONSET,
     ratio: float = 100.0,
 ) -> Gear:
     """The gear whose loop at the input, output held, has these stiffnesses in its four regimes and this width.
@@ -96,4 +96,6 @@ def gear_of_regimes(
                 f"width = {width:g} rad asks for {needed:.3g} N.m at a loading stiffness of {loading:g} N.m/rad; "
                 f"the peak of {peak:g} N.m does not reach that"
             )
-    return Gear(kinematics=kinematics.PlainRatio(reduction=ratio), stiffness=stiffness.Linear(k=NOTHING), hysteresis=law)
+    return Gear(
+        kinematics=kinematics.PlainRatio(reduction=ratio), stiffness=stiffness.Linear(k=NEGLIGIBLE_STIFFNESS), hysteresis=law
+    )

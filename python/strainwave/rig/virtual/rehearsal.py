@@ -32,7 +32,7 @@ def gear_named(name: str) -> Gear | Callable[[Step], Gear]:
 
 
 def narrower(positions: Sequence[float], peak: float) -> list[str]:
-    """Which rows of document T's Table 2 do not reach their printed width under a peak torque [N.m], in words.
+    """Return in words the rows of document T's Table 2 that do not reach their printed width under a peak torque [N.m].
 
     >>> narrower([0.0], 0.343)
     []

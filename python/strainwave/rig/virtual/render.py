@@ -14,8 +14,8 @@ from strainwave import arguments
 from strainwave.rig.bench.setup import Camera, Rig
 
 Array = NDArray[np.float64]
-FINE = 4  # cells of a pixel, each way, on which edges are computed
-CURVE = 2048  # points of a marker's edge: its sagitta between two is 5e-5 px at a radius of 40 px
+CELLS_PER_PIXEL = 4  # each way, on which edges are computed
+POINTS_PER_EDGE = 2048  # of a marker: the sagitta between two is 5e-5 px at a radius of 40 px
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Scene:
             raise ValueError(f"bits = {self.bits} must be 8 or 16")
 
     def centres(self, angle: float) -> Array:
-        """Where the centres of the markers are seen once the target has turned by `angle` [rad], px, shape (2, 2)."""
+        """Return the centres of the markers in the picture after a turn by `angle` [rad], px, shape (2, 2)."""
         return seen(self._flat_centres(angle), self.camera, self.size)
 
     def _flat_centres(self, angle: float) -> Array:
@@ -92,7 +92,7 @@ class Scene:
 
 
 def usual_scene(rig: Rig) -> Scene:
-    """What the camera of a rig sees: two markers, noise of an 8-bit camera, light from one side.
+    """Return the scene of a rig's camera: two markers, noise of an 8-bit camera, light from one side.
 
     >>> from strainwave.rig import load
     >>> round(255.0 * usual_scene(load("couple-rig")).noise, 9)
@@ -102,7 +102,7 @@ def usual_scene(rig: Rig) -> Scene:
 
 
 def seen(points: Array, camera: Camera, size: tuple[int, int]) -> Array:
-    """Where a camera sees points of the plane of the target.
+    """Return the places in the picture of points in the plane of the target.
 
     The plane is turned by the tilt about a line through the centre, seen in perspective, distorted by the lens, and divided
     into pixels, in this order. A camera that does nothing sees each point where it is.
@@ -187,7 +187,7 @@ class _Edge:
     slope: Array
 
     def inside(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """How far points lie inside the edge [px], and the direction of its normal [rad]; exact near the edge."""
+        """Return the depth of points inside the edge [px], and the direction of its normal [rad]; exact near the edge."""
         right, down = x - self.centre[0], y - self.centre[1]
         at = np.arctan2(down, right)
         slope = np.interp(at, self.turn, self.slope)
@@ -196,7 +196,7 @@ class _Edge:
 
 
 def _edge(scene: Scene, centre: Array) -> _Edge:
-    turn = 2.0 * np.pi * np.arange(CURVE) / CURVE
+    turn = 2.0 * np.pi * np.arange(POINTS_PER_EDGE) / POINTS_PER_EDGE
     circle = centre + scene.radius * np.column_stack((np.cos(turn), np.sin(turn)))
     image, (middle,) = seen(circle, scene.camera, scene.size), seen(centre[None], scene.camera, scene.size)
     (right, down) = (image - middle).T
@@ -211,7 +211,7 @@ def _edge(scene: Scene, centre: Array) -> _Edge:
 def _add(light: NDArray[np.float32], step: float, scene: Scene, edge: _Edge) -> None:
     """Adds a blurred marker that differs by a step of brightness from what is there."""
     taps = _spread(scene.blur)
-    beyond = len(taps) // FINE // 2  # pixels that a point spreads over, each way
+    beyond = len(taps) // CELLS_PER_PIXEL // 2  # pixels that a point spreads over, each way
     low, high = (edge.centre + sign * (edge.reach.max() + beyond) for sign in (-1.0, 1.0))
     first, last = np.floor(low).astype(int), np.ceil(high).astype(int)
     x, y = (np.arange(a - beyond, b + beyond + 1) for a, b in zip(first, last, strict=True))
@@ -224,22 +224,22 @@ def _add(light: NDArray[np.float32], step: float, scene: Scene, edge: _Edge) -> 
 
 
 def _blurred(share: Array, taps: Array) -> Array:
-    """What each pixel takes from the cells above and below it."""
-    windows = np.lib.stride_tricks.sliding_window_view(share, len(taps), axis=0)[::FINE]
+    """Return the share of each pixel, from the cells above and below it."""
+    windows = np.lib.stride_tricks.sliding_window_view(share, len(taps), axis=0)[::CELLS_PER_PIXEL]
     taken: Array = np.einsum("ijk,k->ij", windows, taps)
     return taken
 
 
 def _covered(edge: _Edge, x: NDArray[np.int_], y: NDArray[np.int_]) -> Array:
-    """The share of each cell of these pixels that the marker covers, shape (FINE len(y), FINE len(x))."""
+    """The share of each cell of these pixels that the marker covers, shape (CELLS_PER_PIXEL len(y), CELLS_PER_PIXEL len(x))."""
     depth, _ = edge.inside(*np.broadcast_arrays(x.astype(float), y[:, None].astype(float)))
-    share: Array = np.repeat(np.repeat((depth > 0.0).astype(np.float64), FINE, axis=0), FINE, axis=1)
+    share: Array = np.repeat(np.repeat((depth > 0.0).astype(np.float64), CELLS_PER_PIXEL, axis=0), CELLS_PER_PIXEL, axis=1)
     row, column = np.nonzero(np.abs(depth) < 1.5)
-    within = (np.arange(FINE) + 0.5) / FINE - 0.5
-    fine_x = np.broadcast_to(x[column][:, None, None] + within, (len(row), FINE, FINE))
-    fine_y = np.broadcast_to(y[row][:, None, None] + within[:, None], (len(row), FINE, FINE))
+    within = (np.arange(CELLS_PER_PIXEL) + 0.5) / CELLS_PER_PIXEL - 0.5
+    fine_x = np.broadcast_to(x[column][:, None, None] + within, (len(row), CELLS_PER_PIXEL, CELLS_PER_PIXEL))
+    fine_y = np.broadcast_to(y[row][:, None, None] + within[:, None], (len(row), CELLS_PER_PIXEL, CELLS_PER_PIXEL))
     covered = _half_plane(*edge.inside(fine_x, fine_y))
-    cells = share.reshape(len(y), FINE, len(x), FINE).transpose(0, 2, 1, 3)
+    cells = share.reshape(len(y), CELLS_PER_PIXEL, len(x), CELLS_PER_PIXEL).transpose(0, 2, 1, 3)
     cells[row, column] = covered
     return share
 
@@ -249,7 +249,7 @@ def _half_plane(depth: Array, normal: Array) -> Array:
 
     A square's shadow along the normal is that of two boxes, one after the other: a trapezium, here integrated.
     """
-    wide, narrow = (np.maximum(np.abs(f(normal)), 1e-7) / FINE for f in (np.cos, np.sin))
+    wide, narrow = (np.maximum(np.abs(f(normal)), 1e-7) / CELLS_PER_PIXEL for f in (np.cos, np.sin))
     corners = ((1.0, 1.0, 1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0), (1.0, -1.0, -1.0))
     area = sum(sign * np.maximum(depth + (a * wide + b * narrow) / 2.0, 0.0) ** 2 for sign, a, b in corners)
     share: Array = np.clip(np.asarray(area) / (2.0 * wide * narrow), 0.0, 1.0)
@@ -258,11 +258,11 @@ def _half_plane(depth: Array, normal: Array) -> Array:
 
 @cache
 def _spread(blur: float) -> Array:
-    """What a pixel takes from each cell of a row in whose middle it lies: blur, then the pixel's own width."""
+    """Return the weights by which a pixel averages the cells of its row: blur, then the pixel's own width."""
     from scipy.special import ndtr
 
     beyond = math.ceil(6.0 * blur)
-    ends = np.arange(-beyond * FINE, (beyond + 1) * FINE + 1) / FINE - 0.5
+    ends = np.arange(-beyond * CELLS_PER_PIXEL, (beyond + 1) * CELLS_PER_PIXEL + 1) / CELLS_PER_PIXEL - 0.5
 
     def step(t: Array) -> Array:  # blurred, and integrated
         if blur == 0.0:

@@ -1,4 +1,4 @@
-"""A torsion test that never took place: its folder as a real one leaves it, and beside it the truth."""
+"""A simulated torsion test: its folder as a real one leaves it, and the true values."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def simulate_test(
     """Runs a torsion test on a virtual rig and writes its folder as a real one leaves it.
 
     The folder holds `rig.toml`, a photograph `step-001.png` of each step, and `steps.csv`, to which each step is added once its
-    photograph is there: who follows the folder sees a test being run. Beside them, `truth.json` has the true angles, torques
+    photograph is there: who follows the folder sees a test being run. In addition, `truth.json` has the true angles, torques
     and masses, and `truth-1.toml` and so on the true gears. Every file is whole or not there, and none is left
     where the run is interrupted.
 
@@ -100,11 +100,11 @@ def simulate_test(
         folder: where to write; it must not hold a test yet
         scene: what the camera sees; the usual one of the rig, with noise and light from one side, if not given
         seed: of all that is random
-        stated: the rig as `rig.toml` tells it; the true one if not given
+        stated: the rig that `rig.toml` describes; the true one if not given
         wait: between the change of the masses and the photograph [s]
         settling: time constant with which the disk comes to rest [s]; 0 if at once
         virgin: whether the gear was never loaded before; else it goes through all the steps once beforehand
-        mass_errors: whether each mass of the set is off by an error of its standard deviation, or exactly what it is said to be
+        mass_errors: whether each mass of the set is off by an error of its standard deviation, or exactly as stated
         faults: what goes wrong, by the number of the step: a photograph "blurred", "over-exposed", with a "marker missing" or
             "swapped" with that of the next step; or a step that is made but "skipped" in the record
         progress: whether a bar shows how far it is
@@ -219,9 +219,9 @@ def _weighed(steps: Sequence[Step], rig: Rig, random: np.random.Generator) -> li
     return weighed
 
 
-def _weight(said: float, left: list[tuple[float, float]]) -> float:
-    """The true mass of what is said to lie there, made of the largest pieces that are left; a rest has no error."""
-    true, rest = 0.0, said
+def _weight(stated: float, left: list[tuple[float, float]]) -> float:
+    """Return the true mass for a stated one, made of the largest pieces that are left; a rest has no error."""
+    true, rest = 0.0, stated
     for piece in list(left):
         if piece[0] <= rest + 1e-9:
             left.remove(piece)
@@ -232,7 +232,7 @@ def _weight(said: float, left: list[tuple[float, float]]) -> float:
 def _loaded(
     gear: Gear | Callable[[Step], Gear], rig: Rig, steps: Sequence[Step], given: Mapping[str, Any]
 ) -> tuple[list[Gear], list[Loading]]:
-    """Of each position and unit in a row the gear and what it did."""
+    """Return the gear and its loading for each position and unit in turn."""
     gears, loadings = [], []
     for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
         own = list(group)
@@ -276,7 +276,7 @@ def _write_truth(test: VirtualTest, scene: Scene, seed: int, faults: Mapping[int
 
 
 def _shown(steps: Sequence[Step], faults: Mapping[int, Fault]) -> list[int]:
-    """Of each photograph, which state it shows."""
+    """Return the index of the state that each photograph shows."""
     shown = list(range(len(steps)))
     for k, step in enumerate(steps):
         if faults.get(step.number) == "swapped":

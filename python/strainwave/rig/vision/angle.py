@@ -39,14 +39,14 @@ def measure_angles(
     Args:
         images: files, or pictures as `read_image` and `as_image` give them; or a folder, or a video
         camera: what it does to lengths
-        reference: name of the image whose angle is 0; the first that tells one if None
+        reference: name of the image whose angle is 0; the first with an angle if None
         radius: the smallest and the largest that a marker may have [px]; from 6 px to half the picture if None
         dark: whether markers are darker than the ground; either if None
-        progress: told the name of each image as it begins
+        progress: is called with the name of each image as it begins
 
     Raises:
         OSError: there is no such folder or video
-        ValueError: no image tells an angle; the reference is none of them, or tells none; a number is out of its range
+        ValueError: no image gives an angle; the reference is none of them, or gives none; a number is out of its range
         ImportError: a video, and opencv is not installed
 
     >>> from strainwave.rig.vision.image import as_image
@@ -64,7 +64,7 @@ def measure_angles(
 
 
 def turn(before: tuple[Point, Point], after: tuple[Point, Point]) -> float:
-    """How far two markers have turned, against the clock as one looks at the picture, within half a turn [rad].
+    """Return the turn of two markers, counter-clockwise in the picture, within half a turn [rad].
 
     It is the angle between the vectors from the first marker to the second, by atan2 of their cross and dot products; the
     difference of two arctangents of slopes wraps (erratum T1).

@@ -1,4 +1,4 @@
-"""Where in a picture round spots may be: the coarse search, to a few pixels."""
+"""Coarse search for round spots in a picture, to a few pixels."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Grey = NDArray[np.float32]
-_BLOCK = 4  # cells of a block, each way, of which the local brightness is taken
-_LEAST = 0.15  # contrast of a spot, of the contrast of the picture
-_NOISE = 4.0  # contrast of a spot, of the noise of a cell
+_CELLS_PER_BLOCK = 4  # each way; the local brightness is the mean of a block
+_MIN_CONTRAST_SHARE = 0.15  # contrast of a spot, as a share of the contrast of the picture [1]
+_MIN_CONTRAST_NOISE = 4.0  # contrast of a spot over the noise of a cell [1]
 MAX_SPOTS = 1000  # whose edges are looked at, which takes a few milliseconds each; a target has two
 MAX_AREAS = 50_000  # connected cells of the size of a spot, of any shape
 
@@ -61,7 +61,7 @@ def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
 
 
 def _too_many(count: int, most: int) -> str:
-    return f"{count} spots may be markers, and {most} can be looked at; say which by radius=(least, most) in px"
+    return f"{count} spots may be markers, and {most} can be looked at; limit them by radius=(least, most) in px"
 
 
 def averaged(grey: Grey, side: int) -> Grey:
@@ -88,22 +88,22 @@ def _middle(cells: Grey) -> tuple[Grey, Grey, NDArray[np.bool_]]:
     from scipy.ndimage import maximum_filter, minimum_filter
 
     height, width = cells.shape
-    padded = np.pad(cells, ((0, -height % _BLOCK), (0, -width % _BLOCK)), mode="edge")
-    blocks = averaged(padded, _BLOCK)
+    padded = np.pad(cells, ((0, -height % _CELLS_PER_BLOCK), (0, -width % _CELLS_PER_BLOCK)), mode="edge")
+    blocks = averaged(padded, _CELLS_PER_BLOCK)
     window = max(3, min(blocks.shape) // 2)
     brightest, darkest = maximum_filter(blocks, window), minimum_filter(blocks, window)
     contrast = brightest - darkest
-    least = max(_LEAST * float(blocks.max() - blocks.min()), _NOISE * _noise(cells))
+    least = max(_MIN_CONTRAST_SHARE * float(blocks.max() - blocks.min()), _MIN_CONTRAST_NOISE * _noise(cells))
 
     def spread(values: NDArray[np.generic]) -> NDArray[np.generic]:
-        return np.repeat(np.repeat(values, _BLOCK, axis=0), _BLOCK, axis=1)[:height, :width]
+        return np.repeat(np.repeat(values, _CELLS_PER_BLOCK, axis=0), _CELLS_PER_BLOCK, axis=1)[:height, :width]
 
     middle: Grey = spread((brightest + darkest) * np.float32(0.5)).astype(np.float32, copy=False)
     return middle, contrast, spread(contrast > least).astype(bool, copy=False)
 
 
 def _noise(cells: Grey) -> float:
-    """Of a cell, from how it differs from its neighbour; edges are few and do not count in a median."""
+    """Return the noise of a cell, from differences of neighbours; edges are few and do not change the median."""
     sample = cells[:: max(1, cells.shape[0] // 32)]
     return float(np.median(np.abs(np.diff(sample, axis=1))) / (0.6745 * np.sqrt(2.0)))
 
@@ -128,5 +128,5 @@ def _spots(mask: NDArray[np.bool_], contrast: Grey, side: int, dark: bool, low: 
         if not low * 0.8 <= radius <= high + 2.0 * side or (whole and (slender or share < 0.5)) or share < 0.3:
             continue
         column, row = ((part.start + part.stop) / 2.0 for part in (right, down))
-        around = float(contrast[int(row) // _BLOCK, int(column) // _BLOCK])
+        around = float(contrast[int(row) // _CELLS_PER_BLOCK, int(column) // _CELLS_PER_BLOCK])
         yield Blob(side * column - 0.5, side * row - 0.5, float(radius), dark, whole, around)

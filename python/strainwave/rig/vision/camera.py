@@ -11,11 +11,11 @@ from strainwave.rig.bench.setup import Camera
 
 Array = NDArray[np.float64]
 PERFECT = Camera()
-_ROUNDS = 50
+_MAX_ITERATIONS = 50  # of the inverse of the distortion
 
 
 def flat(points: Array, camera: Camera, shape: tuple[int, int]) -> Array:
-    """Where points of a picture lie in the plane of the target.
+    """Return the points of a picture in the plane of the target.
 
     Undoes, in this order, the shape of the pixels, the distortion of the lens, the perspective, and the foreshortening by the
     tilt. The plane touches the picture at the centre: there, a length across the direction of the tilt keeps its size.
@@ -62,7 +62,7 @@ def in_picture(point: Array, camera: Camera, shape: tuple[int, int], near: Array
         near: a point of the picture near the result, where the search begins [px]
     """
     at = np.array(near, np.float64)
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ITERATIONS):
         slopes = slopes_at(at, camera, shape)
         step = np.linalg.solve(slopes, point - flat(at[None], camera, shape)[0])
         at += step
@@ -80,7 +80,7 @@ def slopes_at(point: Array, camera: Camera, shape: tuple[int, int]) -> Array:
 
 
 def changes_nothing(camera: Camera) -> bool:
-    """Whether lengths are in the picture what they are on the target."""
+    """True if lengths are the same in the picture and on the target."""
     return replace(camera, sources={}, centre=None, distance=None, tilt_direction=0.0) == PERFECT
 
 
@@ -88,7 +88,7 @@ def _without_distortion(reach: Array, radial: tuple[float, float]) -> Array:
     """The radius before the lens over that behind it, `reach`, by Newton's method."""
     k1, k2 = radial
     before = reach.copy()
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ITERATIONS):
         square = before * before
         slope = 1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square
         if np.any(slope <= 0.0):

@@ -20,7 +20,7 @@ from strainwave.equality import ComparedByFields
 
 Array = NDArray[np.float64]
 Series = Sequence[float] | Array
-_ROUNDS = 100
+_MAX_ITERATIONS = 100  # of the circle fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ def geometric(x: Series, y: Series) -> Circle:
     at = np.array([start.x - points.middle[0], start.y - points.middle[1], start.radius]) / points.scale
     distance, slopes = points.distances(*at)
     damping = 0.0
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ITERATIONS):
         square = slopes.T @ slopes
         step = np.linalg.solve(square + damping * np.diag(np.diag(square)), -(slopes.T @ distance))
         further, there = points.distances(*(at + step))
@@ -166,7 +166,7 @@ class _Points:
     def conic(self, a: float, b: float, c: float, d: float) -> Circle:
         """The circle a (u^2 + v^2) + b u + c v + d = 0."""
         if abs(a) <= 1e-10 * np.hypot(b, c):
-            raise ValueError("the points lie on a line, as far as their noise tells; a circle needs three that do not")
+            raise ValueError("the points lie on a line within their noise; a circle needs three that do not")
         return self.circle(-b / (2.0 * a), -c / (2.0 * a), float(np.sqrt(b * b + c * c - 4.0 * a * d) / (2.0 * abs(a))))
 
     def circle(self, a: float, b: float, radius: float) -> Circle:

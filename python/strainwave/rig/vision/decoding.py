@@ -59,7 +59,7 @@ def decoded(data: bytes) -> tuple[Grey, datetime | None]:
     kind = next((kind for begin, kind in SIGNATURES.items() if data.startswith(begin)), None)
     if kind is None:
         raise RefusedFile("is not a picture that can be read; PNG, JPEG, TIFF, BMP or PGM can")
-    with warnings.catch_warnings(action="ignore"):  # of odd entries beside the picture
+    with warnings.catch_warnings(action="ignore"):  # of odd entries next to the picture
         try:
             if kind == "PPM":
                 return _netpbm(data), None
@@ -174,12 +174,12 @@ def _by_pillow(data: bytes, kind: str, tags: Tags) -> tuple[Grey, datetime | Non
     picture.load()
     if kind == "TIFF":  # which pillow turns upright itself
         return _grey(picture, 1), tags.taken
-    tags = _tags_beside(picture.info.get("exif", b""))
+    tags = _tags_in(picture.info.get("exif", b""))
     return _grey(picture, tags.orientation), tags.taken
 
 
-def _tags_beside(exif: bytes) -> Tags:
-    """The tags beside a PNG or JPEG; none if they cannot be read, since the picture can be."""
+def _tags_in(exif: bytes) -> Tags:
+    """Return the tags of a PNG or JPEG; none if they cannot be read, since the picture can be."""
     try:
         return tags_of(exif[:MAX_EXIF_BYTES].removeprefix(b"Exif\0\0"))
     except (RefusedFile, struct.error):
@@ -206,7 +206,7 @@ def _netpbm(data: bytes) -> Grey:
 def _numbers(data: bytes, start: int, kind: np.dtype[Any], count: int, *, plain: bool) -> NDArray[Any]:
     """The pixels of a PGM or PPM file, written in digits or as bytes."""
     if plain:
-        found = np.fromstring(data[start:], kind, sep=" ")[:count]  # told the count, numpy adds what the memory contains
+        found = np.fromstring(data[start:], kind, sep=" ")[:count]  # given the count, numpy adds what the memory contains
     else:
         found = np.frombuffer(data, kind, min(count, (len(data) - start) // kind.itemsize), start)
     if len(found) < count:

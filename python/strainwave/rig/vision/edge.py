@@ -1,9 +1,9 @@
 """The edge of a round marker, to some hundredths of a pixel at each of its points.
 
 All pixels near an outline are compared with a sharp edge that is blurred by a Gaussian. Each pixel belongs to the sector of the
-edge that it is nearest to, and each sector, a radial profile of some thirty pixels, tells how far the edge lies from the
-curve. No pixel is interpolated and none is used twice: the errors of the sectors are independent, and their scatter tells how
-well the centre is known. What the sectors share is the brightness inside and outside, a plane each, since light
+edge that it is nearest to, and each sector, a radial profile of some thirty pixels, gives the distance of the edge from the
+curve. No pixel is interpolated and none is used twice: the errors of the sectors are independent, and their scatter gives the
+standard deviation of the centre. All sectors share the brightness inside and outside, a plane each, since light
 changes over a marker; a wrong slope of a plane shifts the whole edge, which is added.
 """
 
@@ -21,18 +21,18 @@ from strainwave.rig.vision.outline import Outline, median, near_curve, scatter, 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Grey = NDArray[np.float32]
-SECTOR = 3.5  # px of the edge
+SECTOR_LENGTH = 3.5  # px of the edge
 _FEWEST, _MOST = 24, 180  # sectors
 _LEAST_USED = 8
-_BAND = 3.5  # of the blur: how far from the edge pixels still tell of it
-_FARTHEST = 3.0  # of the blur: beyond, what a pixel tells of the edge is not linear at all
-_OUTLIER = 4.5  # times the scatter
-_MISFIT = 4.0  # times the usual variance of the pixels of a sector
-_FEW = 0.003  # share of the pixels of a side whose leaving out or not does not matter
-_PASSES = 5
+_BAND_BLURS = 3.5  # distance from the edge, in blurs, within which pixels determine it [1]
+_MAX_SHIFT_BLURS = 3.0  # shift of a sector, in blurs [1]; beyond it the first-order fit does not hold
+_OUTLIER_SCATTER = 4.5  # distance over the scatter from which a point is an outlier [1]
+_MAX_VARIANCE_RATIO = 4.0  # variance of the pixels of a sector over the usual one [1]
+_NEGLIGIBLE_PIXEL_SHARE = 0.003  # share of the pixels of a side that may change between two passes at the end [1]
+_MAX_PASSES = 5  # of the edge fit
 _MOVED, _WIDENED = 0.15, 0.06  # px, and of the blur: what the next pass would still change is the square of it
-_NEARLY = 0.7  # of that: so far below it no ellipse is tried
-_ROUND = 12.0  # ratio of variances above which points are an ellipse's: 4e-5 of all circles of 70 points reach it
+_ELLIPSE_TRIAL_SHARE = 0.7  # share of the next limit below which no ellipse is fitted [1]
+_ELLIPSE_VARIANCE_RATIO = 12.0  # beyond it the points are an ellipse's [1]: 4e-5 of all circles of 70 points reach it
 WIDE_ARC = 0.6  # share of the edge that an ellipse needs
 
 
@@ -42,7 +42,7 @@ class Edge:
 
     Attributes:
         x, y: of each point [px], shape (n,)
-        curve: the ellipse through them, which is a circle unless they say otherwise
+        curve: the ellipse through them, a circle unless the points contradict it
         covariance: of x and y of its centre [px^2], shape (2, 2)
         residual: rms distance of the points from the curve [px]
         inside, outside: brightness of the marker and of the ground around it, of the full scale
@@ -78,7 +78,7 @@ class _Pixels:
 def edge(grey: Grey, found: Outline) -> Edge | None:
     """The edge near an outline, or None where there is none."""
     curve = found.curve
-    width = min(_BAND * found.blur + 1.0, 0.6 * curve.radius)
+    width = min(_BAND_BLURS * found.blur + 1.0, 0.6 * curve.radius)
     around, distance = _around(grey, curve, width + max(4.0, 0.25 * curve.radius))
     inside = around[distance < -width]
     outside = around[distance > width]
@@ -114,9 +114,9 @@ class _Fit:
 def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fit | None:
     """The edge among the pixels near it; None where too few sectors show one."""
     curve, blur = found.curve, found.blur
-    sectors = int(np.clip(2.0 * np.pi * curve.radius / SECTOR, _FEWEST, _MOST))
+    sectors = int(np.clip(2.0 * np.pi * curve.radius / SECTOR_LENGTH, _FEWEST, _MOST))
     low, high = (level.at(band.x, band.y) for level in levels)
-    for _ in range(_PASSES):
+    for _ in range(_MAX_PASSES):
         before, blur_before = curve, blur
         profiles = _profiles(band, low, high - low, curve, blur, sectors)
         if np.count_nonzero(profiles.good) < _LEAST_USED:
@@ -125,7 +125,7 @@ def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fi
         for _ in range(2):
             curve = near_curve(x[good], y[good], float(np.mean(good)), curve)
             off, count = np.abs(curve.distance(x, y)), np.count_nonzero(good)
-            good = good & (off <= max(_OUTLIER * scatter(off[good]), 1e-3))
+            good = good & (off <= max(_OUTLIER_SCATTER * scatter(off[good]), 1e-3))
             if np.count_nonzero(good) < _LEAST_USED:
                 return None
             if np.count_nonzero(good) == count:
@@ -171,8 +171,8 @@ def _level(pixels: _Pixels, curve: Ellipse) -> _Level:
     used = np.zeros(len(rest), bool)
     for _ in range(3):
         spread, before = np.abs(rest), used
-        used = spread <= max(_OUTLIER * scatter(spread[::4]), 1e-6)
-        if np.count_nonzero(used) < 12 or np.count_nonzero(used != before) <= _FEW * len(used):
+        used = spread <= max(_OUTLIER_SCATTER * scatter(spread[::4]), 1e-6)
+        if np.count_nonzero(used) < 12 or np.count_nonzero(used != before) <= _NEGLIGIBLE_PIXEL_SHARE * len(used):
             break
         columns = np.stack((np.ones(np.count_nonzero(used)), right[used], down[used]))
         inverse[:] = np.linalg.inv(columns @ columns.T)
@@ -206,14 +206,14 @@ def _profiles(band: _Pixels, low: Array, step: Array, curve: Ellipse, blur: floa
         sums: Array = np.bincount(sector, weights=values, minlength=sectors).astype(np.float64, copy=False)
         return sums
 
-    known, told, count = total(square), total(slope * rest), np.bincount(sector, minlength=sectors)
+    known, weighted, count = total(square), total(slope * rest), np.bincount(sector, minlength=sectors)
     usual = median(known[known > 0.2 * np.max(known)]) if np.any(known > 0.0) else np.inf
     seen = (known > 0.5 * usual) & (count > 2)
     known[~seen] = 1.0
-    move = told / known
-    seen &= np.abs(move) < _FARTHEST * blur
-    misfit = (total(rest * rest) - told * move) / np.maximum(count - 1, 1)
-    good = seen & (misfit <= max(_MISFIT * median(misfit[seen]), 1e-6)) if np.any(seen) else seen
+    move = weighted / known
+    seen &= np.abs(move) < _MAX_SHIFT_BLURS * blur
+    misfit = (total(rest * rest) - weighted * move) / np.maximum(count - 1, 1)
+    good = seen & (misfit <= max(_MAX_VARIANCE_RATIO * median(misfit[seen]), 1e-6)) if np.any(seen) else seen
     x, y = curve.points(np.where(seen, total(square * turn) / known, turns(sectors)))
     move[~seen] = 0.0
     right, down = curve.normal(x, y)
@@ -239,17 +239,18 @@ def fit_points(x: Array, y: Array, arc: float) -> tuple[Ellipse, Array, float]:
     if arc < WIDE_ARC or n < 10:
         return plain
     squeezed, sigma = oblong(x, y, plain[0], fit.rms)
-    if abs(squeezed) ** 2 < _NEARLY * 2.0 * _ROUND * sigma**2:  # what an ellipse would gain, to first order
+    limit = _ELLIPSE_TRIAL_SHARE * _ELLIPSE_VARIANCE_RATIO
+    if abs(squeezed) ** 2 < 2.0 * limit * sigma**2:  # the gain of an ellipse, to first order
         return plain
     curve = fit_ellipse(x, y, plain[0])
     rest = float(np.sum(curve.distance(x, y) ** 2))
-    if (n * fit.rms**2 - rest) / 2.0 <= _ROUND * rest / (n - 5):
+    if (n * fit.rms**2 - rest) / 2.0 <= _ELLIPSE_VARIANCE_RATIO * rest / (n - 5):
         return plain
     return curve, centre_covariance(curve, x, y) * (rest / (n - 5)), float(np.sqrt(rest / n))
 
 
 def oblong(x: Array, y: Array, curve: Ellipse, residual: float) -> tuple[complex, float]:
-    """How far points of an edge are from round: the share by which one axis is shorter, and where it lies.
+    """Return the flattening of the points of an edge: the share by which one axis is shorter, and its direction.
 
     A circle squeezed by e lies e R/2 cos(2 (turn - direction)) inside of the mean circle. Of points that scatter by s, both
     parts err by s sqrt(2/n), so that a mean over many pictures shows what each by itself does not.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_ROUNDS = 20
+_MAX_ITERATIONS = 20  # of the ellipse fit
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Ellipse:
 
     @property
     def short_direction(self) -> float:
-        """Of the shorter axis, from x towards the top of the picture, from -pi/2 to pi/2 [rad]."""
+        """Return the direction of the shorter axis, from x towards the top of the picture, from -pi/2 to pi/2 [rad]."""
         return float(-0.5 * np.arctan2(2.0 * self.xy, self.xx - self.yy))
 
     def points(self, turn: Array) -> tuple[Array, Array]:
@@ -56,7 +56,7 @@ class Ellipse:
         return turn
 
     def distance(self, x: Array, y: Array) -> Array:
-        """How far outside points lie [px], to first order."""
+        """Return the distance of points outside the ellipse [px], to first order."""
         u, v = self._scaled(x, y)
         reach = np.maximum(np.sqrt(u * u + v * v), 1e-9)
         a, b = self.xx * u + self.xy * v, self.xy * u + self.yy * v
@@ -94,7 +94,7 @@ def fit_ellipse(x: Array, y: Array, start: Ellipse, tolerance: float = 1e-8) -> 
     """
     at, scale = np.array([start.x, start.y, start.xx, start.xy, start.yy]), start.radius
     size = np.array([scale, scale, 1.0 / scale, 1.0 / scale, 1.0 / scale])
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ITERATIONS):
         distance, slopes = _slopes(Ellipse(*at.tolist()), x, y)
         square = slopes.T @ slopes
         step = np.linalg.solve(square, -(slopes.T @ distance))
@@ -107,7 +107,7 @@ def fit_ellipse(x: Array, y: Array, start: Ellipse, tolerance: float = 1e-8) -> 
 
 
 def centre_covariance(curve: Ellipse, x: Array, y: Array) -> Array:
-    """Of x and y of the centre of an ellipse that is fitted to points, over the variance of a distance, shape (2, 2)."""
+    """Return the covariance of a fitted ellipse's centre over the variance of a distance, shape (2, 2)."""
     _, slopes = _slopes(curve, x, y)
     covariance: Array = np.linalg.inv(slopes.T @ slopes)[:2, :2].astype(np.float64)
     return covariance

@@ -19,18 +19,18 @@ from strainwave.rig.vision.image import by_number
 from strainwave.rig.vision.marker import Marker
 
 Array = NDArray[np.float64]
-_OTHER = 0.05  # relative difference of radii or distances that is no error of measurement, nor a tilted view
-_NEAR = 15.0  # degrees from where the direction of a turn cannot be told
-_LEAST_TURN = np.radians(2.0)  # between images, to tell about what they turned
-_WIDE_TURN = 0.5  # rad between images, to tell what turns with the target from what does not
-_BLURRED = 1.5  # times the usual blur
-_ROUGH = 3.0  # times the usual residual
-_LARGE = 10.0  # error of an angle, of its sigma
+_MAX_RELATIVE_DIFFERENCE = 0.05  # of radii or distances by errors of measurement or a tilted view [1]
+_HALF_TURN_MARGIN = 15.0  # degrees before the turn at which its direction is ambiguous
+_LEAST_TURN = np.radians(2.0)  # between images, to determine the centre of the turn
+_WIDE_TURN = 0.5  # rad between images, to separate what turns with the target from what does not
+_MAX_BLUR_RATIO = 1.5  # over the usual blur [1]
+_MAX_RESIDUAL_RATIO = 3.0  # over the usual residual [1]
+_MAX_TILT_ERROR_SIGMA = 10.0  # error of an angle by the tilt of the camera, in standard deviations of the angle
 
 
 @dataclass(frozen=True, eq=False)
 class Angles(ComparedByFields):
-    """Angles of the images that told one, in their order.
+    """Angles of the images that give one, in their order.
 
     Attributes:
         frames: every image, useful or not
@@ -41,7 +41,7 @@ class Angles(ComparedByFields):
         scale: standard deviation of what all angles share, relative to the angle [1]: by how much the markers show, or may
             hide, that the picture is squeezed, by a tilt or by pixels that are not square
         centre: about which the shaft turned [px], x and y, and the rms distance of the markers from their circles;
-            None where the turn is too small to tell it
+            None if the turn is too small to determine it
         remarks: what holds for all images and makes the angles doubtful
     """
 
@@ -72,13 +72,13 @@ def follow(
         camera, reference: as `measure_angles` takes them
 
     Raises:
-        ValueError: no image tells an angle; the reference is none of them, or tells none
+        ValueError: no image gives an angle; the reference is none of them, or gives none
     """
     frames = _out_of_order(_of_one_target(list(frames), camera))
     useful = [i for i, frame in enumerate(frames) if frame.markers is not None]
     if not useful:
         raise ValueError(_no_angle(frames))
-    told = _chosen(frames, useful, reference)
+    zero = _chosen(frames, useful, reference)
     sights = [_Sight.of(frames[i], camera) for i in useful]
     apart = _by_radius(sights)
     angle = np.zeros(len(useful))
@@ -91,13 +91,13 @@ def follow(
         frames[i] = replace(
             frames[i], markers=ordered, warnings=frames[i].warnings + _uncertain(step, apart, frames[useful[k - 1]].name)
         )
-    for i, doubts in zip(useful, _unlike(sights), strict=True):
-        frames[i] = replace(frames[i], warnings=frames[i].warnings + doubts)
-    angle -= angle[told]
+    for i, unlike in zip(useful, _unlike(sights), strict=True):
+        frames[i] = replace(frames[i], warnings=frames[i].warnings + unlike)
+    angle -= angle[zero]
     sigma = np.array([sight.sigma for sight in sights])
     shape, shape_sigma = _squeezed(sights)
     return Angles(
-        tuple(frames), angle, sigma, frames[useful[told]].name, float(np.hypot(abs(shape) / 2.0**0.5, shape_sigma)),
+        tuple(frames), angle, sigma, frames[useful[zero]].name, float(np.hypot(abs(shape) / 2.0**0.5, shape_sigma)),
         _centre(sights, angle), _askew(sights),
     )  # fmt: skip
 
@@ -136,20 +136,20 @@ class _Sight:
 
     @property
     def sigma(self) -> float:
-        """Of the direction [rad]."""
+        """Return the standard deviation of the direction [rad]."""
         along = (self.centres[1] - self.centres[0]) / self.distance
         across = np.array([-along[1], along[0]])
         return float(np.sqrt(across @ self.covariances.sum(axis=0) @ across)) / self.distance
 
     @property
     def difference(self) -> float:
-        """Of the radii, relative to their mean."""
+        """Return the difference of the radii, relative to their mean."""
         one, other = (marker.radius for marker in self.markers)
         return 2.0 * (one - other) / (one + other)
 
 
 def _step(before: _Sight | None, now: _Sight, apart: bool) -> tuple[bool, float]:
-    """Whether the markers change places, and the turn since the image before."""
+    """Return True if the markers change places, and the turn since the image before."""
     swapped = apart and now.difference < 0.0
     if before is None:
         return swapped, 0.0
@@ -160,16 +160,18 @@ def _step(before: _Sight | None, now: _Sight, apart: bool) -> tuple[bool, float]
 
 
 def _by_radius(sights: Sequence[_Sight]) -> bool:
-    """Whether the radii tell the markers apart in every image."""
-    return min(abs(sight.difference) for sight in sights) > _OTHER
+    """True if the radii distinguish the markers in every image."""
+    return min(abs(sight.difference) for sight in sights) > _MAX_RELATIVE_DIFFERENCE
 
 
 def _uncertain(step: float, apart: bool, before: str) -> tuple[str, ...]:
     limit, why = (180.0, "the direction") if apart else (90.0, "which of two like markers is which")
     degrees = abs(np.degrees(step))
-    if degrees < limit - _NEAR:
+    if degrees < limit - _HALF_TURN_MARGIN:
         return ()
-    return (f"turned by {degrees:.1f} degrees since {quoted(before)}, or more: beyond {limit:g} degrees {why} cannot be told",)
+    return (
+        f"turned by {degrees:.1f} degrees since {quoted(before)}, or more: beyond {limit:g} degrees {why} cannot be determined",
+    )
 
 
 def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
@@ -178,11 +180,11 @@ def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
     sights = {i: _Sight.of(frame, camera) for i, frame in enumerate(frames) if frame.markers is not None}
     if len(sights) < 3:
         return frames
-    for what, told in (("apart", lambda sight: sight.distance), ("in radius", lambda sight: _mean_radius(sight))):
-        sizes = {i: told(sight) for i, sight in sights.items()}
+    for what, size_of in (("apart", lambda sight: sight.distance), ("in radius", lambda sight: _mean_radius(sight))):
+        sizes = {i: size_of(sight) for i, sight in sights.items()}
         usual = float(np.median(list(sizes.values())))
         for i, size in sizes.items():
-            if abs(size / usual - 1.0) > _OTHER and not frames[i].fault:
+            if abs(size / usual - 1.0) > _MAX_RELATIVE_DIFFERENCE and not frames[i].fault:
                 text = f"not the markers of the other images: {size:.1f} px {what}, {usual:.1f} px in most of them"
                 frames[i] = replace(frames[i], markers=None, fault=text)
     return frames
@@ -208,42 +210,42 @@ def _mean_radius(sight: _Sight) -> float:
 
 
 def _out_of_order(frames: list[Frame]) -> list[Frame]:
-    """Warns of images whose name or time tells another order than the one given, and of those that are there twice."""
+    """Add a warning to images whose name or time contradicts the given order, and to those that are there twice."""
     known: dict[str, str] = {}
     for i, frame in enumerate(frames):
-        doubts = []
+        warnings = []
         if i and _numbered_alike(frame.name, frames[i - 1].name) and by_number(frame.name) < by_number(frames[i - 1].name):
-            doubts.append(f"stands after {quoted(frames[i - 1].name)}, before it by its name")
+            warnings.append(f"stands after {quoted(frames[i - 1].name)}, before it by its name")
         earlier = next((each for each in reversed(frames[:i]) if each.taken is not None), None)
         if earlier is not None and frame.taken is not None and earlier.taken is not None and frame.taken < earlier.taken:
-            doubts.append(f"stands after {quoted(earlier.name)}, but was taken before it, at {frame.taken}")
+            warnings.append(f"stands after {quoted(earlier.name)}, but was taken before it, at {frame.taken}")
         if frame.sha256 and frame.sha256 in known:
-            doubts.append(f"is the same picture as {quoted(known[frame.sha256])}")
+            warnings.append(f"is the same picture as {quoted(known[frame.sha256])}")
         known.setdefault(frame.sha256, frame.name)
-        if doubts:
-            frames[i] = replace(frame, warnings=(*frame.warnings, *doubts))
+        if warnings:
+            frames[i] = replace(frame, warnings=(*frame.warnings, *warnings))
     return frames
 
 
 def _numbered_alike(one: str, other: str) -> bool:
-    """Whether names differ in their numbers alone, so that these tell an order."""
+    """True if names differ in their numbers alone, so that these determine an order."""
     return re.sub(r"\d+", "0", one.casefold()) == re.sub(r"\d+", "0", other.casefold())
 
 
 def _unlike(sights: Sequence[_Sight]) -> list[tuple[str, ...]]:
-    """What each image has worse than the others."""
-    doubts: list[list[str]] = [[] for _ in sights]
+    """Return for each image the properties in which it is worse than the others."""
+    warnings: list[list[str]] = [[] for _ in sights]
     if len(sights) >= 3:
         for place in range(2):
             for what, factor, values in (
-                ("blur", _BLURRED, [sight.markers[place].blur for sight in sights]),
-                ("residual", _ROUGH, [sight.markers[place].residual for sight in sights]),
+                ("blur", _MAX_BLUR_RATIO, [sight.markers[place].blur for sight in sights]),
+                ("residual", _MAX_RESIDUAL_RATIO, [sight.markers[place].residual for sight in sights]),
             ):
                 usual = float(np.median(values))
-                for texts, value in zip(doubts, values, strict=True):
+                for texts, value in zip(warnings, values, strict=True):
                     if value > factor * usual:
                         texts.append(f"marker {place + 1}: {what} {value:.2g} px, {usual:.2g} px in most images")
-    return [tuple(each) for each in doubts]
+    return [tuple(each) for each in warnings]
 
 
 def _centre(sights: Sequence[_Sight], angle: Array) -> tuple[float, float, float] | None:
@@ -269,11 +271,11 @@ def _centre(sights: Sequence[_Sight], angle: Array) -> tuple[float, float, float
 
 
 def camera_seen(frames: Iterable[Frame]) -> Camera:
-    """The tilt that the shape of the markers tells, where nothing else is known of the camera.
+    """Return the tilt of the camera by the shape of the markers, if nothing else is known of the camera.
 
     A circle that is seen askew is an ellipse: its shorter axis lies in the direction of the tilt, whose cosine is its ratio.
-    What turns with the target, as an oval marker or the distortion of a lens, is told apart where the images turn by
-    more than half a radian. Which of both ends recedes is not told, nor whether it is the shape of the pixels.
+    An oval marker or the distortion of a lens turns with the target; it is separated if the images turn by more than
+    half a radian. The markers determine neither which of both ends recedes, nor whether the pixels cause the shape.
 
     Args:
         frames: of images in which both markers are found
@@ -283,7 +285,7 @@ def camera_seen(frames: Iterable[Frame]) -> Camera:
     """
     sights = [_Sight.of(frame, PERFECT) for frame in frames if frame.markers is not None]
     if not sights:
-        raise ValueError("no image shows both markers, which would tell the tilt of the camera")
+        raise ValueError("no image shows both markers, which would determine the tilt of the camera")
     return _tilted(sights)
 
 
@@ -295,13 +297,13 @@ def _tilted(sights: Sequence[_Sight]) -> Camera:
 
 
 def _squeezed(sights: Sequence[_Sight]) -> tuple[complex, float]:
-    r"""How far the picture is squeezed, as `oblong` has it, and the standard deviation of either part.
+    r"""Return the flattening of the picture, as `oblong` defines it, and the standard deviation of either part.
 
     A picture squeezed by e turns the directions of its vectors by e/2 sin(2 (direction - shorter axis)): angles are in error by
     e cos(2 ...) of themselves, in the mean of all directions by e/sqrt(2).
     """
     seen = [(marker, sight.vector) for sight in sights for marker in sight.markers if np.isfinite(marker.ratio_sigma)]
-    if not seen:  # of no marker enough to tell
+    if not seen:  # of no marker enough to determine it
         return 0j, 0.0
     shape = np.array([(1.0 - marker.ratio) * np.exp(2j * marker.short_direction) for marker, _ in seen])
     turned = np.array([np.exp(2j * np.arctan2(up, right)) for _, (right, up) in seen])
@@ -313,15 +315,15 @@ def _squeezed(sights: Sequence[_Sight]) -> tuple[complex, float]:
 
 
 def _askew(sights: Sequence[_Sight]) -> tuple[str, ...]:
-    """Whether the camera looks at the target at an angle that it does not know of."""
+    """Return a remark if the camera looks at the target at an angle that its description omits."""
     seen = _tilted(sights)
     error = 0.5 * (1.0 - np.cos(seen.tilt))
-    if error < _LARGE * float(np.median([sight.sigma for sight in sights])):
+    if error < _MAX_TILT_ERROR_SIGMA * float(np.median([sight.sigma for sight in sights])):
         return ()
-    told = f"tilt={seen.tilt:.4f}, tilt_direction={seen.tilt_direction:.3f}"
+    arguments = f"tilt={seen.tilt:.4f}, tilt_direction={seen.tilt_direction:.3f}"
     return (
         f"the markers are ellipses, as if seen {np.degrees(seen.tilt):.1f} degrees askew: angles are in error by up to "
-        f"{error:.2g} rad unless the camera is known, as Camera({told})",
+        f"{error:.2g} rad unless the camera is known, as Camera({arguments})",
     )
 
 
@@ -332,7 +334,7 @@ def _chosen(frames: Sequence[Frame], useful: Sequence[int], reference: str | Non
     if not places:
         raise ValueError(f"reference = {quoted(reference)} is none of the {len(frames)} images")
     if places[0] not in useful:
-        raise ValueError(f"reference = {quoted(reference)} tells no angle: {frames[places[0]].fault}")
+        raise ValueError(f"reference = {quoted(reference)} gives no angle: {frames[places[0]].fault}")
     return useful.index(places[0])
 
 
@@ -340,4 +342,4 @@ def _no_angle(frames: Sequence[Frame]) -> str:
     if not frames:
         return "there is no image"
     first = frames[0]
-    return f"none of {len(frames)} images tells an angle; {quoted(first.name)}: {first.fault}"
+    return f"none of {len(frames)} images gives an angle; {quoted(first.name)}: {first.fault}"

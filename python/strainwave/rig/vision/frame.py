@@ -1,4 +1,4 @@
-"""What one photograph of the target tells."""
+"""Evaluation of one photograph of the target."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey
 from strainwave.rig.vision.image import Image, read_image
 from strainwave.rig.vision.marker import Marker, found_and_partial
 
-_WHOLE = 0.9  # share of an edge below which it is said how much was seen
-_CLIPPED = 0.02  # share of pixels about an edge at an end of the scale, above which it is said
-_BLUR = 0.2  # of the radius: more, and there is no inside and outside
-_ALIKE = 0.3  # relative difference of radii of two markers
+_MIN_ARC_SHARE = 0.9  # share of an edge that must be seen [1]; a warning gives a smaller one
+_MAX_CLIPPED_SHARE = 0.02  # share of pixels at an end of the scale around an edge [1]; a warning gives a larger one
+_MAX_BLUR_SHARE = 0.2  # blur over radius [1]; beyond it, inside and outside cannot be distinguished
+_MAX_RADIUS_DIFFERENCE = 0.3  # relative difference of the radii of two markers [1]
 _MOST_SHOWN = 4
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What one image told.
+    """Markers and properties of one image.
 
     Attributes:
         name: of the file
@@ -38,7 +38,7 @@ class Frame:
         fault: why it was of no use, empty otherwise
         warnings: what makes it doubtful
         size: width and height [px]; 0, 0 if it could not be read
-        taken: when, as the file tells it, or None
+        taken: time by the file, or None
     """
 
     name: str
@@ -57,7 +57,7 @@ def look(
     radius: tuple[float, float] | None = None,
     dark: bool | None = None,
 ) -> Frame:
-    """Finds both markers in an image. What cannot be read, or shows any other number of markers, has a fault that says so.
+    """Find both markers in an image. `fault` gives the reason if it cannot be read or shows another number of markers.
 
     Args:
         source: a file, or a picture as `read_image` and `as_image` give it
@@ -86,13 +86,13 @@ def look(
     pair, fault = _pair(found, partial)
     if not found:
         fault = _nothing(image.grey, partial)
-    blurred = [each for each in pair or () if each.blur > _BLUR * each.radius]
+    blurred = [each for each in pair or () if each.blur > _MAX_BLUR_SHARE * each.radius]
     if blurred:
         pair, fault = (
             None,
             f"too blurred: an edge is spread by {blurred[0].blur:.1f} px, at a radius of {blurred[0].radius:.1f} px",
         )
-    warnings = tuple(text for i, each in enumerate(pair or (), 1) for text in _doubts(i, each))
+    warnings = tuple(text for i, each in enumerate(pair or (), 1) for text in _warnings(i, each))
     return Frame(image.name, image.sha256, pair, fault, warnings, size, image.taken)
 
 
@@ -111,16 +111,20 @@ def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Mar
     if len(most) == 2 and all(_holds(each, most) for each in fewer):
         return (most[0], most[1]), ""
     if len(found) == 1:
-        alike = [each for each in partial if abs(each.radius / found[0].radius - 1.0) < _ALIKE and each.dark == found[0].dark]
+        alike = [
+            each
+            for each in partial
+            if abs(each.radius / found[0].radius - 1.0) < _MAX_RADIUS_DIFFERENCE and each.dark == found[0].dark
+        ]
         rest = f"; of another, {_place(alike[0])}, only {alike[0].arc:.0%} of the edge is seen" if alike else ""
         return None, f"one marker instead of two: {_place(found[0])}{rest}"
-    told = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MOST_SHOWN])
+    shown = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MOST_SHOWN])
     more = f", and {len(found) - _MOST_SHOWN} more" if len(found) > _MOST_SHOWN else ""
-    return None, f"{len(found)} markers instead of two: {told}{more}; say which by radius=(least, most) in px, or by dark"
+    return None, f"{len(found)} markers instead of two: {shown}{more}; select them by radius=(least, most) in px, or by dark"
 
 
 def _holds(disc: Marker, markers: Sequence[Marker]) -> bool:
-    """Whether a disc is what the markers are on."""
+    """True if a disc contains all markers."""
     return all(math.hypot(disc.x - each.x, disc.y - each.y) + each.radius < disc.radius for each in markers)
 
 
@@ -137,14 +141,14 @@ def _nothing(grey: Grey, partial: Sequence[Marker]) -> str:
     return f"no marker: nothing round with a clear edge{more}"
 
 
-def _doubts(number: int, marker: Marker) -> list[str]:
-    doubts = []
-    if marker.arc < _WHOLE:
-        doubts.append(f"marker {number}: {marker.arc:.0%} of the edge is seen")
-    if marker.clipped > _CLIPPED:
+def _warnings(number: int, marker: Marker) -> list[str]:
+    warnings = []
+    if marker.arc < _MIN_ARC_SHARE:
+        warnings.append(f"marker {number}: {marker.arc:.0%} of the edge is seen")
+    if marker.clipped > _MAX_CLIPPED_SHARE:
         share = f"{marker.clipped:.0%} of the pixels on one side of its edge are black or at full scale"
-        doubts.append(f"marker {number}: {share}; its centre may be in error by more than its sigma")
-    return doubts
+        warnings.append(f"marker {number}: {share}; its centre may be in error by more than its sigma")
+    return warnings
 
 
 def _place(marker: Marker) -> str:

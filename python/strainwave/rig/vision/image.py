@@ -36,7 +36,7 @@ class Image(ComparedByFields):
         name: of the file, and of the frame in it
         grey: brightness, of the full scale, shape (height, width); the first row is the upper one
         sha256: of the bytes of the file, or of the frame
-        taken: when, as the file tells it, or None
+        taken: time by the file, or None
     """
 
     name: str

@@ -19,8 +19,8 @@ from strainwave.rig.vision.outline import Grey, outline
 
 Array = NDArray[np.float64]
 SMALLEST_RADIUS = 6.0  # px, unless another is given
-_LEAST_ARC, _SHORTEST_ARC = 0.5, 0.25  # of a marker, and of what is worth to be told
-_FAINTEST = 0.3  # contrast of an edge, of that around it
+_LEAST_ARC, _SHORTEST_ARC = 0.5, 0.25  # share of the edge [1]: of a marker, and of what a message mentions
+_MIN_CONTRAST_RATIO = 0.3  # contrast of an edge over the contrast around it [1]
 _ROUNDEST, _SMALL, _ROUGHEST = 0.02, 0.05, 0.5  # residual of a circle: of its radius, of a small one's, and px
 
 
@@ -74,7 +74,7 @@ def find_markers(
     """All round markers of a picture, the larger before the smaller.
 
     Spots are searched for by local brightness. The edge of each is found by radial profiles, outliers left out, and a circle
-    fitted by distance: an ellipse where its points clearly say so. With a camera that is known, the points are first brought
+    fitted by distance: an ellipse if its points clearly require it. With a camera that is known, the points are first brought
     into the plane of the target, where the edge is a circle again, whose centre an ellipse does not show.
 
     Args:
@@ -105,7 +105,7 @@ def found_and_partial(
         if dark is not None and blob.dark != dark:
             continue
         rough = outline(grey, blob.x, blob.y, blob.radius, blob.dark)
-        if rough is None or rough.arc < _SHORTEST_ARC or rough.contrast < _FAINTEST * blob.contrast:
+        if rough is None or rough.arc < _SHORTEST_ARC or rough.contrast < _MIN_CONTRAST_RATIO * blob.contrast:
             continue
         if not 0.8 * low <= rough.curve.radius <= 1.2 * high:
             continue
@@ -157,7 +157,7 @@ def _marker(fine: Edge, camera: Camera, shape: tuple[int, ...], dark: bool) -> M
 
 
 def _without_rings(markers: list[Marker]) -> list[Marker]:
-    """Of what has the same centre, the outermost: a marker may have a ring or a hole."""
+    """Return the outermost of markers with the same centre: a marker may have a ring or a hole."""
     kept: list[Marker] = []
     for marker in markers:
         if all(math.hypot(marker.x - each.x, marker.y - each.y) > 0.5 * each.radius for each in kept):

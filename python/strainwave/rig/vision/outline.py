@@ -1,4 +1,4 @@
-"""Where the edge of a round spot lies, to some tenths of a pixel: where brightness changes most along rays from within."""
+"""Edge of a round spot, to some tenths of a pixel: the largest change of brightness along rays from within."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from strainwave.rig.vision.ellipse import Ellipse, circle, fit_ellipse
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Grey = NDArray[np.float32]
-RAYS = 64
-_OUTLIER = 4.5  # times the scatter
+RAY_COUNT = 64  # from the middle of a spot
+_OUTLIER_SCATTER = 4.5  # distance over the scatter from which a point is an outlier [1]
 _WIDE_ARC = 0.6  # share of the edge that an ellipse needs
-_WIDEST = 0.4  # blur, of the radius
-_FLANK = 12  # samples from the middle of an edge to either end
-_NEAR = 0.08  # of the radius: how far points of an ellipse may lie from a circle
+_MAX_BLUR_SHARE = 0.4  # blur over radius [1]
+_FLANK_SAMPLES = 12  # from the middle of an edge to either end
+_ELLIPSE_TOLERANCE = 0.08  # distance of points of an ellipse from a circle, over its radius [1]
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,8 @@ class Outline:
 
 
 def outline(grey: Grey, x: float, y: float, radius: float, dark: bool) -> Outline | None:
-    """Where brightness first changes much along rays from a point inside; None if that is not round."""
-    turn = turns(RAYS)
+    """Return the places where brightness first changes much along rays from a point inside; None if that is not round."""
+    turn = turns(RAY_COUNT)
     step = max(0.5, 1.3 * radius / 60.0)
     along = np.arange(0.3 * radius, 1.6 * radius, step)
     profile = _sampled(grey, x + np.cos(turn)[:, None] * along, y + np.sin(turn)[:, None] * along)
@@ -48,11 +48,13 @@ def outline(grey: Grey, x: float, y: float, radius: float, dark: bool) -> Outlin
     curve, used = _robust(x + reach * np.cos(turn), y + reach * np.sin(turn), clear, radius)
     if curve is None:
         return None
-    row, middle, last = np.arange(RAYS), at + 2, profile.shape[1] - 1
-    rise = np.abs(profile[row, np.minimum(middle + _FLANK, last)] - profile[row, np.maximum(middle - _FLANK, 0)])
+    row, middle, last = np.arange(RAY_COUNT), at + 2, profile.shape[1] - 1
+    rise = np.abs(
+        profile[row, np.minimum(middle + _FLANK_SAMPLES, last)] - profile[row, np.maximum(middle - _FLANK_SAMPLES, 0)]
+    )
     contrast, slope = median(np.nan_to_num(rise[used])), median(peak[used]) / (2.0 * step)
     blur = float(np.sqrt(max((contrast / slope) ** 2 / (2.0 * np.pi) - step**2, 0.25)))  # the wider, the less steep
-    return Outline(curve, float(np.mean(used)), blur, contrast) if blur < _WIDEST * curve.radius else None
+    return Outline(curve, float(np.mean(used)), blur, contrast) if blur < _MAX_BLUR_SHARE * curve.radius else None
 
 
 @cache
@@ -82,7 +84,7 @@ def _robust(x: Array, y: Array, clear: Mask, radius: float) -> tuple[Ellipse | N
     nothing = None, np.zeros(len(x), bool)
     if np.count_nonzero(clear) < 8:
         return nothing
-    used, start = _most(x, y, clear, _NEAR * radius + 0.5)
+    used, start = _most(x, y, clear, _ELLIPSE_TOLERANCE * radius + 0.5)
     for _ in range(3):
         if np.count_nonzero(used) < 8:
             return nothing
@@ -91,14 +93,14 @@ def _robust(x: Array, y: Array, clear: Mask, radius: float) -> tuple[Ellipse | N
         except (np.linalg.LinAlgError, ValueError):
             return nothing
         distance, before = np.abs(start.distance(x, y)), used
-        used = clear & (distance <= max(_OUTLIER * scatter(distance[used]), 0.3))
+        used = clear & (distance <= max(_OUTLIER_SCATTER * scatter(distance[used]), 0.3))
         if np.array_equal(used, before):
             break
     return start, used
 
 
 def _most(x: Array, y: Array, clear: Mask, near: float) -> tuple[Mask, Ellipse]:
-    """Of circles through three points each, the one that most points are near."""
+    """Return the circle through three points that most points are near."""
     n = len(x)
     first = np.arange(n)
     triples = np.stack([np.concatenate((first, first)), np.concatenate((first + n // 3, first + n // 6)) % n,

@@ -10,7 +10,7 @@ import pytest
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identification.candidates.presliding import breakaway_torque, fit_presliding
-from strainwave.identification.experiments.presliding import Breakaway, PreslidingLoop, breakaways
+from strainwave.identification.experiments.presliding import BreakawayPoint, PreslidingLoop, breakaways
 
 Array = NDArray[np.float64]
 
@@ -176,7 +176,9 @@ def test_breakaway_has_an_interval_for_each_direction_that_holds_the_truth() -> 
     off = []
     for seed in range(50):
         random = np.random.default_rng(seed)
-        made = [Breakaway(0.0, way * (level + 0.002 * random.normal()), 0.1, 0.0) for way, level in 8 * [(1, 0.06), (-1, 0.05)]]
+        made = [
+            BreakawayPoint(0.0, way * (level + 0.002 * random.normal()), 0.1, 0.0) for way, level in 8 * [(1, 0.06), (-1, 0.05)]
+        ]
         found = breakaway_torque(made)
         assert found.slope is None
         off.append([(e.value - t) / e.sigma for e, t in ((found.forward, 0.06), (found.reverse, 0.05)) if e is not None])
@@ -186,7 +188,7 @@ def test_breakaway_has_an_interval_for_each_direction_that_holds_the_truth() -> 
 def test_breakaway_that_falls_with_the_rate_has_a_slope() -> None:
     random = np.random.default_rng(1)
     rates = np.geomspace(0.01, 1.0, 12)
-    made = [Breakaway(0.0, 0.06 - 0.005 * np.log10(r / 0.1) + 2e-4 * random.normal(), r, 0.0) for r in rates]
+    made = [BreakawayPoint(0.0, 0.06 - 0.005 * np.log10(r / 0.1) + 2e-4 * random.normal(), r, 0.0) for r in rates]
     slope = breakaway_torque(made).slope
     assert slope is not None
     low, high = slope.interval(0.99)

@@ -8,7 +8,7 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import fit
-from strainwave.identification.fitting.influence import Influence, influence, uncertainty
+from strainwave.identification.fitting.influence import InfluenceOfKept, influence, uncertainty
 from strainwave.parameters import Parameter
 
 ELEMENTS = sw.hysteresis.MaxwellSlip(stiffness=[8e3, 4e3], breakaway=[0.8, 1.2])
@@ -49,7 +49,9 @@ def test_only_a_value_that_a_parameter_may_have_is_suspected_least_certain_first
     kept = tuple(
         Parameter(n, name, "kg.m2", 1.0, 0.0, np.inf) for n, name in enumerate(("impossible", "sure", "unsure", "idle"))
     )
-    found = Influence(kept, np.ones((1, 4)), np.ones(4), np.array([-1.5, -0.5, -0.6, -0.5]), np.array([0.9, 0.7, 0.6, 0.4]))
+    found = InfluenceOfKept(
+        kept, np.ones((1, 4)), np.ones(4), np.array([-1.5, -0.5, -0.6, -0.5]), np.array([0.9, 0.7, 0.6, 0.4])
+    )
     known = {
         name: Entry("measured", uncertainty=sigma) for name, sigma in {"impossible": 0.1, "sure": 0.01, "unsure": 0.3}.items()
     }
@@ -59,8 +61,8 @@ def test_only_a_value_that_a_parameter_may_have_is_suspected_least_certain_first
 def test_right_kept_values_are_suspected_of_nothing() -> None:
     found = influence(fit(kept(1.2), loop(), FREE))
     assert found.suspects({}) == []
-    assert Influence.none(2).suspects({}) == []
-    assert Influence.none(2).shifts(0, {}) == {}
+    assert InfluenceOfKept.none(2).suspects({}) == []
+    assert InfluenceOfKept.none(2).shifts(0, {}) == {}
 
 
 def test_the_measurement_bounds_the_shift_by_a_kept_parameter() -> None:

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.fitting.influence import Influence
+from strainwave.identification.fitting.influence import InfluenceOfKept
 from strainwave.identification.identify import Identified
 from strainwave.identification.results.file_result import FileEstimate
-from strainwave.identification.results.identifiability import Fitted
+from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.report.identify_files import identify_summary
 
 from tests.python.identification.candidates.test_torsion import SPRINGS, at_the_input
@@ -94,7 +94,7 @@ def collinear(noise: float) -> list[FileEstimate]:
     free = ["friction_input.coulomb", "friction_input.viscous"]
     recording = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     found = sw.fit(gear, {"friction": recording}, free=free)
-    return list(Fitted(found, "table.csv", Influence.none(len(found.estimates))).estimates({}, ()))
+    return list(JudgedFit(found, "table.csv", InfluenceOfKept.none(len(found.estimates))).estimates({}, ()))
 
 
 def test_uncertain_estimates_of_a_correlated_pair_are_identified_in_combination() -> None:

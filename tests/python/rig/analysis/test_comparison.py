@@ -69,7 +69,7 @@ def test_single_loops_are_compared_by_their_stated_errors() -> None:
     assert found.quantities[0].significant
     assert np.isnan(found.quantities[0].by_repeats)
     assert found.remarks == (
-        "one specimen: how far units of this design differ, it cannot tell",
+        "one specimen: the comparison does not show how far units of this design differ",
         "no position was tested twice: what differs may be what mounting and testing it again would change",
     )
 

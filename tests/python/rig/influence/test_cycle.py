@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.rig.influence.cycle import Factors, cycle, cycle_to, scaled
-from strainwave.rig.virtual.printed import PEAK, printed_gear
+from strainwave.rig.virtual.printed import PEAK_TORQUE, printed_gear
 
 K, ELEMENT, SLIP = 800.0, 400.0, 2.0  # N.m/rad, N.m/rad, N.m
 
@@ -43,7 +43,7 @@ def test_below_its_slip_a_gear_loses_nothing() -> None:
 
 def test_document_t_loop_has_the_width_and_loss_of_its_closed_row() -> None:
     """50.5 degrees and 0.3063483432 J, by a polygon of its vertices; slopes of unloading as printed."""
-    loop = cycle_to(printed_gear(0), PEAK, side="input")
+    loop = cycle_to(printed_gear(0), PEAK_TORQUE, side="input")
     assert np.degrees(loop.width) == pytest.approx(50.5, abs=1e-6)
     assert loop.area == pytest.approx(0.3063483432, rel=1e-5)
     assert loop.high_stiffness == pytest.approx(2.0 / (1.0 / 4.51 + 1.0 / 4.85), rel=1e-9)

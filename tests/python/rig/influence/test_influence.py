@@ -11,7 +11,7 @@ from markupsafe import escape
 from strainwave.files.gear_set import GearSet
 from strainwave.report import influence_claims as claims
 from strainwave.report.influence import influence_report, summary, tables
-from strainwave.report.influence_trends import CONFIRMED, CONTRADICTED, IN_PART, SPEAKS, UNDECIDABLE, told_of
+from strainwave.report.influence_trends import CONFIRMED, CONTRADICTED, IN_PART, SPEAKS, UNDECIDABLE, trend_words
 from strainwave.rig.influence.cycle import cycle_to
 from strainwave.rig.influence.influence import (
     OWN,
@@ -151,7 +151,7 @@ def test_levels_at_which_friction_holds_the_shaft_are_left_out() -> None:
 @pytest.mark.parametrize(
     ("coulomb", "torque", "message"),
     [
-        (0.0, None, "linear has no rated torque; say up to which torque"),
+        (0.0, None, "linear has no rated torque; give the torque"),
         (0.2, 10.0, "torque = 10 N.m at the output is 0.1 N.m at the input, where friction holds 0.2 N.m"),
         (0.0, -1.0, "torque = -1.0 N.m must lie in"),
     ],
@@ -238,7 +238,7 @@ def test_what_was_varied_together_decides_nothing(found: Influence) -> None:
     with_series = influence(found.gear_set, series=series)
     (area,) = [each for each in claims.entries(with_series) if each.measured]
     assert area.measured_verdict == UNDECIDABLE
-    assert "cannot be told apart" in area.measured[0]
+    assert "cannot be separated" in area.measured[0]
 
 
 def test_the_life_of_a_unit_has_a_line_of_its_own(found: Influence) -> None:
@@ -274,4 +274,4 @@ def test_a_law_of_the_wrong_shape_is_told() -> None:
     area = np.minimum(torque, 0.2) * (1.0 + 0.01 * np.tile([-1.0, 0.0, 1.0], 5))
     series = Series({"torque_max": torque}, {"area": area}, name="saturates")
     (trend,) = analyse_series(series)
-    assert "the law is not that of the measurements" in told_of(trend)
+    assert "the law is not that of the measurements" in trend_words(trend)

@@ -35,7 +35,9 @@ def test_holm_is_that_of_its_paper() -> None:
 
 
 def test_too_few_measurements_are_refused() -> None:
-    with pytest.raises(ValueError, match="2 measurements do not tell 2 coefficients with an interval; 3 or more are needed"):
+    with pytest.raises(
+        ValueError, match="2 measurements do not determine 2 coefficients with an interval; 3 or more are needed"
+    ):
         trends(design(torque_max=np.array([1.0, 2.0])), {"area": np.array([1.0, 2.0])})
 
 

@@ -103,7 +103,7 @@ def test_steps_without_an_angle_are_told_and_left_out() -> None:
     assert len(loop) == 27
     assert loop.remarks == (
         "step 5 is left out: no angle and no photograph",
-        "step 6 is left out: 006.png: the photograph told no angle",
+        "step 6 is left out: 006.png: the photograph gives no angle",
     )
 
 
@@ -114,7 +114,7 @@ def test_steps_without_an_angle_are_told_and_left_out() -> None:
         ({3: {"mass_negative": 0.1}}, "step 4 has masses on both pairs of pans; their difference counts"),
         (
             {3: {"torque": 0.2}},
-            "the torque was measured, and steps.csv tells no error of it: intervals leave out those of the sensor",
+            "the torque was measured, and steps.csv contains no error of it: intervals leave out those of the sensor",
         ),
         ({3: {"time": 5.0}}, "28 of 29 steps have no time; that of the others is left out"),
     ],
@@ -146,7 +146,8 @@ def test_a_measured_torque_has_no_pulleys_before_it_on_either_rig() -> None:
 def test_a_step_that_the_pulleys_hold_is_told() -> None:
     rig = dataclasses.replace(RIG, pulley_torque=Value(0.03))
     remarks = loops(of_spring(MASSES), rig)[0].remarks
-    assert remarks[0] == "the pulleys hold more than the change of torque at step 2, 16: the shaft got less than the masses say"
+    first = "the pulleys hold more than the change of torque at step 2, 16"
+    assert remarks[0] == f"{first}: the torque on the shaft is less than that of the masses"
 
 
 def test_one_step_of_a_position_is_no_loop() -> None:
@@ -323,7 +324,7 @@ def test_a_shaft_that_shifts_under_load_was_not_turned_by_a_pure_couple() -> Non
 def test_a_centre_that_cannot_be_told_is_not() -> None:
     with pytest.raises(ValueError, match="the centre of rotation needs 6 photographs or more, not 2"):
         couple(np.zeros((2, 2)), np.zeros(2), np.zeros(2))
-    with pytest.raises(ValueError, match="torque and angle go together"):
+    with pytest.raises(ValueError, match="torque and angle change together"):
         couple(np.zeros((6, 2)), np.zeros(6), np.arange(6.0))
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave.rig import Loop, Masses, Rig, Scene, Step, Value, analyse, printed_gear, simulate_test
 from strainwave.rig.reading.measurement import read_test
 from strainwave.rig.virtual.loading import load_by_steps
-from strainwave.rig.virtual.printed import PEAK, TABLE_2
+from strainwave.rig.virtual.printed import PEAK_TORQUE, TABLE_2
 
 Array = NDArray[np.float64]
 GRAVITY = 9.80665
@@ -36,7 +36,7 @@ REGIMES = {
 
 def steps(levels: int) -> list[Step]:
     """From +0.36 N.m to -0.36 N.m and back, in so many equal steps each way."""
-    down = np.linspace(PEAK, -PEAK, levels + 1) / (GRAVITY * 0.1)
+    down = np.linspace(PEAK_TORQUE, -PEAK_TORQUE, levels + 1) / (GRAVITY * 0.1)
     return [Step(n, max(mass, 0.0), max(-mass, 0.0)) for n, mass in enumerate((*down, *down[-2::-1]), 1)]
 
 
@@ -95,8 +95,8 @@ def random_gear(random: np.random.Generator) -> sw.Gear:
     """A spring with two elements that slip on the way; their torques are some tenths of the peak together."""
     ratio = 100.0
     stiffness = 10.0 ** random.uniform(4.0, 4.5)
-    slips = PEAK * ratio / stiffness / 1.3 * np.array([random.uniform(0.1, 0.25), random.uniform(0.4, 0.6)])
-    breakaway = PEAK * ratio * random.uniform(0.06, 0.15, 2)
+    slips = PEAK_TORQUE * ratio / stiffness / 1.3 * np.array([random.uniform(0.1, 0.25), random.uniform(0.4, 0.6)])
+    breakaway = PEAK_TORQUE * ratio * random.uniform(0.06, 0.15, 2)
     return sw.Gear(
         kinematics=sw.kinematics.PlainRatio(reduction=ratio),
         stiffness=sw.stiffness.Linear(k=stiffness),

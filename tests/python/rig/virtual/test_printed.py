@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from strainwave.rig import Rig, Step, Value
 from strainwave.rig.virtual.loading import Loading, load_by_steps
-from strainwave.rig.virtual.printed import PEAK, TABLE_2, gear_of_regimes, peak_needed, printed_gear
+from strainwave.rig.virtual.printed import PEAK_TORQUE, TABLE_2, gear_of_regimes, peak_needed, printed_gear
 
 BENCH = Rig("bench", "input", disk_radius=Value(0.1), gravity=Value(10.0))  # 1 kg is 1 N.m
 
@@ -24,7 +24,7 @@ def loop(position: int, levels: np.ndarray) -> Loading:
 def test_a_row_closes_with_its_slopes_and_its_width(position: int) -> None:
     """Slopes where the regimes have them: unloading to zero, loading between 0.1 and 0.2 N.m. Width at zero torque."""
     *slopes, width = TABLE_2[position]
-    found = loop(position, np.array([PEAK, 0.2, 0.1, 0.0, -0.1, -0.2, -PEAK]))
+    found = loop(position, np.array([PEAK_TORQUE, 0.2, 0.1, 0.0, -0.1, -0.2, -PEAK_TORQUE]))
     assert found.angle[-1] == pytest.approx(0.0, abs=1e-9)
     slope = np.diff(found.applied) / np.diff(found.angle)
     assert slope[[1, 4, 7, 10]] == pytest.approx(slopes, rel=1e-6)

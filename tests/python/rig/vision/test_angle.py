@@ -107,7 +107,9 @@ def test_different_radii_tell_a_turn_of_up_to_half_a_revolution() -> None:
 def test_a_step_that_like_markers_cannot_tell_is_warned_of() -> None:
     angles = follow([sight(np.radians(each), str(each)) for each in (0, 74, 158, 170)])
     assert [bool(frame.warnings) for frame in angles.frames] == [False, False, True, False]
-    wanted = 'turned by 84.0 degrees since "74", or more: beyond 90 degrees which of two like markers is which cannot be told'
+    wanted = (
+        'turned by 84.0 degrees since "74", or more: beyond 90 degrees which of two like markers is which cannot be determined'
+    )
     assert angles.frames[2].warnings == (wanted,)
     np.testing.assert_allclose(np.degrees(angles.angle), [0.0, 74.0, 158.0, 170.0])
     apart = follow([sight(np.radians(each), str(each), (20.0, 16.0)) for each in (0, 84, 254)])
@@ -195,7 +197,7 @@ def test_an_image_of_no_use_has_a_fault_and_the_others_their_angles() -> None:
     told = [frame.fault for frame in angles.frames]
     assert told[1].startswith("one marker instead of two: at x = 63, y = 120 px with radius 20.0 px")
     assert told[2].startswith("3 markers instead of two: dark at x = 74, y = 138 px with radius 20.0 px, ")
-    assert told[2].endswith("say which by radius=(least, most) in px, or by dark")
+    assert told[2].endswith("select them by radius=(least, most) in px, or by dark")
     assert told[3] == "no marker: the picture is even, 0.0% to 0.0% of full scale"
     assert angles.frames[1].markers is None
     np.testing.assert_allclose(np.degrees(angles.angle), [0.0, 80.0], atol=0.1)
@@ -294,7 +296,7 @@ def test_files_that_cannot_be_read_are_faults_of_their_images(tmp_path: Path) ->
 
 def test_without_any_angle_the_first_fault_is_told(tmp_path: Path) -> None:
     (tmp_path / "b.png").write_bytes(b"")
-    with pytest.raises(ValueError, match=r'none of 1 images tells an angle; "b\.png": cannot be read: "b\.png" is empty'):
+    with pytest.raises(ValueError, match=r'none of 1 images gives an angle; "b\.png": cannot be read: "b\.png" is empty'):
         measure_angles(tmp_path)
     with pytest.raises(ValueError, match="there is no image"):
         measure_angles([])
@@ -308,7 +310,7 @@ def test_a_reference_that_tells_no_angle_is_refused() -> None:
     images = [*sequence([0.0, 10.0]), as_image("black.png", np.zeros((200, 240), np.uint8))]
     with pytest.raises(ValueError, match=r'reference = "x\.png" is none of the 3 images'):
         measure_angles(images, reference="x.png")
-    with pytest.raises(ValueError, match=r'reference = "black\.png" tells no angle: no marker: the picture is even'):
+    with pytest.raises(ValueError, match=r'reference = "black\.png" gives no angle: no marker: the picture is even'):
         measure_angles(images, reference="black.png")
 
 

@@ -157,4 +157,4 @@ def test_a_picture_of_a_thousand_discs_is_refused_before_their_edges_are_sought(
     rows, columns = np.mgrid[:20, :20]
     disc = np.where(np.hypot(rows - 10, columns - 10) < 7.0, 30, 220).astype(np.uint8)
     frame = look(as_image("many", np.tile(disc, (35, 35))))
-    assert "spots may be markers, and 1000 can be looked at; say which by radius=(least, most) in px" in frame.fault
+    assert "spots may be markers, and 1000 can be looked at; limit them by radius=(least, most) in px" in frame.fault

@@ -1,4 +1,4 @@
-"""One kind of spring and the part beside it, fitted to a loop: the answer of a convex problem, refined.
+"""One kind of spring and its dissipation, fitted to a loop: the answer of a convex problem, refined.
 
 For given knees and slip twists a loop is linear in stiffnesses, all of which are positive: a convex problem with one answer
 (non-negative least squares), which needs no initial values. It gives the count of Maxwell elements that the loop separates;
@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
-from strainwave.analysis.branches import PRESLIDING
+from strainwave.analysis.branches import PRESLIDING_SHARE
 from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.torsion.beside import SLIPS, Beside, half_span, maxwell, pairs
+from strainwave.identification.candidates.torsion.dissipation import SLIPS, Dissipation, half_span, maxwell, pairs
 from strainwave.identification.candidates.torsion.library import Answer, solve
-from strainwave.identification.candidates.torsion.springs import Kind
+from strainwave.identification.candidates.torsion.springs import SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 
@@ -41,14 +41,14 @@ class TorsionCandidate(ComparedByFields):
 
     Attributes:
         spring: its kind of spring
-        beside: the part fitted beside the spring
+        dissipation: the part fitted together with the spring
         name: both, in words
         fit: the fit, of a gear with that spring and hysteresis
         error: rms of the residuals on the samples held out [N.m]; on all if none were
     """
 
-    spring: Kind
-    beside: Beside
+    spring: SpringKind
+    dissipation: Dissipation
     name: str
     fit: Fit
     error: float
@@ -77,16 +77,16 @@ class Start(ComparedByFields):
 
 
 def starts(
-    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = 1
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation, most: int = 1
 ) -> list[Start]:
-    """Return the best springs of a kind with the part beside them, without initial values.
+    """Return the best springs of a kind with their dissipation, without initial values.
 
     Args:
         loop: measured torque over twist
         gear: the other parts are taken from it
         training: samples that take part, shape (n,)
         spring: kind of spring
-        beside: the part beside it
+        dissipation: the part fitted together with it
         most: largest count; they differ in knees and other numbers that the torque is not linear in
 
     Returns:
@@ -96,13 +96,13 @@ def starts(
         ValueError: nothing of these kinds fits the loop
     """
     steady = loop.without_drift()
-    if beside.is_slow:
+    if dissipation.is_slow:
         steady, training = _sparse(steady, training)
     middle = 0.0 if loop.single_branch else loop.centre
     half = float(np.abs(steady.twist - middle).max())
-    torque = steady.torque - beside.known(steady, gear)
+    torque = steady.torque - dissipation.known(steady, gear)
     zeros = _zero_columns(steady)
-    libraries = [spring.library(steady.twist - middle, half, gear), beside.library(steady, gear)]
+    libraries = [spring.library(steady.twist - middle, half, gear), dissipation.library(steady, gear)]
     rows = [replace(library, torques=library.torques[training]) for library in libraries]
     answers = solve(torque[training], rows, zeros[training], most)
     level = float(np.abs(steady.torque).max())
@@ -115,19 +115,26 @@ def starts(
 
 
 def candidate(
-    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = MAX_MINIMA
+    loop: TorsionLoop,
+    gear: Gear,
+    training: NDArray[np.bool_],
+    spring: SpringKind,
+    dissipation: Dissipation,
+    most: int = MAX_MINIMA,
 ) -> TorsionCandidate:
-    """Fit a kind of spring and the part beside it, from `most` answers of the convex problem at most."""
+    """Fit a kind of spring and its dissipation, from `most` answers of the convex problem at most."""
     readings = _readings(loop, spring)
-    most = min(most, max(spring.minima, beside.minima))
-    begun = min((starts(each, gear, training, spring, beside, most) for each in readings), key=lambda found: found[0].error)
-    if not (spring.knows_zero or beside.whole_spring):
+    most = min(most, max(spring.minima, dissipation.minima))
+    begun = min(
+        (starts(each, gear, training, spring, dissipation, most) for each in readings), key=lambda found: found[0].error
+    )
+    if not (spring.knows_zero or dissipation.whole_spring):
         begun = [replace(each, loop=replace(each.loop, twist_zero=loop.centre)) for each in begun]
-    found = [finished(each.gear, each.loop, training, spring, beside, gear) for each in begun]
+    found = [finished(each.gear, each.loop, training, spring, dissipation, gear) for each in begun]
     return min(found, key=lambda each: float(each.fit.rms()[0]))
 
 
-def _readings(loop: TorsionLoop, spring: Kind) -> list[TorsionLoop]:
+def _readings(loop: TorsionLoop, spring: SpringKind) -> list[TorsionLoop]:
     """Return choices that a loop does not determine: if its path had been run before, and which guess is nearer to the zero."""
     if loop.single_branch:
         return [loop]
@@ -146,7 +153,7 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
         return found
     begun = resumed(found)
     loops = [replace(begun, torque_drift=0.0), replace(begun, twist_drift=0.0)]
-    tried = [finished(found.fit.gear, loop, found.fit.training, found.spring, found.beside, known) for loop in loops]
+    tried = [finished(found.fit.gear, loop, found.fit.training, found.spring, found.dissipation, known) for loop in loops]
     shown = [each for each in tried if each.error < found.error and _drift_shown(each)]
     return min([found, *shown], key=lambda each: each.error)
 
@@ -169,34 +176,34 @@ def resumed(found: TorsionCandidate) -> TorsionLoop:
 
 
 def finished(
-    begin: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: Kind, beside: Beside, known: Gear
+    begin: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation, known: Gear
 ) -> TorsionCandidate:
     """Return the candidate whose refinement begins with a gear."""
-    found = beside.finished(_refined(begin, loop, training, spring, beside), known)
+    found = dissipation.finished(_refined(begin, loop, training, spring, dissipation), known)
     held_out = found.rms(held_out=True)[0]
-    words = beside.words(found.gear)
-    name = words if beside.whole_spring else f"{spring.words}{words}"
-    return TorsionCandidate(spring, beside, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+    words = dissipation.words(found.gear)
+    name = words if dissipation.whole_spring else f"{spring.words}{words}"
+    return TorsionCandidate(spring, dissipation, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
 
 
 def with_fewer(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
     """Return the candidate with the two Maxwell elements as one that slip at the most similar twists."""
-    return finished(merged(found.fit.gear), found.loop, found.fit.training, found.spring, found.beside, known)
+    return finished(merged(found.fit.gear), found.loop, found.fit.training, found.spring, found.dissipation, known)
 
 
-def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> Fit:
+def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation) -> Fit:
     """Return the fit, without elements that the loop does not separate from the spring or from nothing.
 
     An element that never slips within the loop is a linear spring, one without torque is none, and two that slip at the same
     twist are one. One that slips earlier than the loop determines slips at the smallest twist that it determines.
     """
     half, span = half_span(loop), float(np.ptp(loop.torque))
-    least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING)
+    least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING_SHARE)
     stiff: set[int] = set()
     for last in [*(MAX_ROUNDS - 1) * [False], True]:
-        free = spring.free(gear) + beside.free(gear, stiff)
+        free = spring.free(gear) + dissipation.free(gear, stiff)
         found = _in_order(fit(gear, loop, free, training=training), spring)
-        fitted = beside.elements(found.gear)
+        fitted = dissipation.elements(found.gear)
         if last:
             break
         slipping = [(k, f) for k, f in fitted if MIN_ERROR_SHARE * span < f < MAX_SLIP * half * k]
@@ -231,7 +238,7 @@ def _alike(elements: Sequence[tuple[float, float]]) -> bool:
     return bool(np.any(slips[1:] < MIN_SLIP_RATIO * slips[:-1]))
 
 
-def _in_order(found: Fit, spring: Kind) -> Fit:
+def _in_order(found: Fit, spring: SpringKind) -> Fit:
     """Return the same fit, the knees of its spring in order."""
     ordered = spring.in_order(found.gear.stiffness)
     return found if ordered is found.gear.stiffness else replace(found, model=found.gear.replace(stiffness=ordered))

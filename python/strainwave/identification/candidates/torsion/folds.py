@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 LOOP_BLOCKS = 20  # of the samples of a loop
-FOLDS = 4  # each of every fourth block
+FOLD_COUNT = 4  # each of every fourth block
 
 
-def held_out_blocks(n: int, fold: int = FOLDS - 1) -> NDArray[np.bool_]:
+def held_out_blocks(n: int, fold: int = FOLD_COUNT - 1) -> NDArray[np.bool_]:
     """Return True for samples that train: all but every fourth of twenty blocks, which are held out to validate.
 
     Whole blocks, because neighbours on a loop resemble each other too much to test one by the other. The four folds hold out
@@ -18,7 +18,7 @@ def held_out_blocks(n: int, fold: int = FOLDS - 1) -> NDArray[np.bool_]:
     >>> [int((~held_out_blocks(40, fold)).sum()) for fold in range(4)]
     [10, 10, 10, 10]
     """
-    training: NDArray[np.bool_] = block_of(n) % FOLDS != fold
+    training: NDArray[np.bool_] = block_of(n) % FOLD_COUNT != fold
     return training
 
 

@@ -1,4 +1,4 @@
-"""Laws of hysteresis of a loop beside Maxwell-slip, each with its initial values.
+"""Laws of hysteresis of a loop other than Maxwell-slip, each with its initial values.
 
 Each of them is linear in a factor of its torques at constant twists: convex problems find the best initial values of a table of
 twists and exponents, as those of the spring.
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from strainwave import hysteresis, stiffness
 from strainwave._core import Gear
-from strainwave.identification.candidates.torsion.beside import Beside, half_span
+from strainwave.identification.candidates.torsion.dissipation import Dissipation, half_span
 from strainwave.identification.candidates.torsion.library import Choice, Library
 from strainwave.identification.candidates.torsion.springs import MIN_STIFFNESS_SHARE, scaled, unit_compliance
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
@@ -33,7 +33,7 @@ Law = (
 MIN_TORQUE = 1e-9  # N.m: a law without torque has no shape
 
 
-class Without(Beside):
+class Without(Dissipation):
     """No hysteresis at all: an elastic gear."""
 
     def words(self, gear: Gear) -> str:
@@ -48,7 +48,7 @@ class Without(Beside):
 
 
 @dataclass(frozen=True)
-class FadingMemory(Beside):
+class FadingMemory(Dissipation):
     """A count of branches that forget. The torque of each is linear in its stiffness."""
 
     branches: int
@@ -77,7 +77,7 @@ class FadingMemory(Beside):
         return ["hysteresis.stiffness", "hysteresis.forgetting"]
 
 
-class Scaled(Beside):
+class Scaled(Dissipation):
     """A law whose torque has a factor; its other numbers are tried."""
 
     is_slow = True
@@ -192,12 +192,12 @@ class FrictionalWindup(Scaled):
         return [*(f"hysteresis.springs.{part}" for part in parts), "hysteresis.friction"]
 
 
-WHOLE: tuple[Beside, ...] = (Regimes(), FrictionalWindup())
-BESIDE_A_SPRING: tuple[Beside, ...] = (Without(), FadingMemory(1), FadingMemory(2), BoucWen(), Preisach())
+WHOLE: tuple[Dissipation, ...] = (Regimes(), FrictionalWindup())
+WITH_A_SPRING: tuple[Dissipation, ...] = (Without(), FadingMemory(1), FadingMemory(2), BoucWen(), Preisach())
 
 
 def _alone(gear: Gear, law: Law, factor: float) -> Gear:
-    """Return the gear with a law that is its whole spring, beside a linear one of negligible stiffness."""
+    """Return the gear with a law that is its whole spring, and a linear spring of negligible stiffness."""
     return gear.replace(stiffness=stiffness.Linear(k=MIN_STIFFNESS_SHARE * factor), hysteresis=law)
 
 

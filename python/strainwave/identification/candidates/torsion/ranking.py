@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.torsion.beside import Beside
 from strainwave.identification.candidates.torsion.candidate import (
     TorsionCandidate,
     candidate,
@@ -21,10 +20,11 @@ from strainwave.identification.candidates.torsion.candidate import (
     resumed,
     with_drift,
 )
-from strainwave.identification.candidates.torsion.folds import FOLDS, LOOP_BLOCKS, block_of, held_out_blocks
-from strainwave.identification.candidates.torsion.memories import BESIDE_A_SPRING, WHOLE
+from strainwave.identification.candidates.torsion.dissipation import Dissipation
+from strainwave.identification.candidates.torsion.folds import FOLD_COUNT, LOOP_BLOCKS, block_of, held_out_blocks
+from strainwave.identification.candidates.torsion.memories import WHOLE, WITH_A_SPRING
 from strainwave.identification.candidates.torsion.selection import asked, simpler
-from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Kind, Negligible
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.identification.fitting.noise import correlation_length
@@ -37,7 +37,7 @@ TIMED_RUNS = 5  # of a law, of which the shortest counts
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate(ComparedByFields):
+class RankedCandidate(ComparedByFields):
     """One model of a loop, and the error of its predictions.
 
     Attributes:
@@ -68,11 +68,11 @@ class Candidate(ComparedByFields):
         return self.predicted == LOOP_BLOCKS and self.worse[0] <= max(self.worse[1], MIN_EXCESS * (self.error - self.worse[0]))
 
 
-def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False) -> tuple[Candidate, ...]:
+def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False) -> tuple[RankedCandidate, ...]:
     """Fit all kinds of spring and hysteresis to a loop, and return them ranked by their predictions.
 
-    They are fitted in stages: springs with Maxwell elements, then the other laws of hysteresis beside the best of these springs
-    and the simplest ones, then the springs beside the best law. Each fit starts from a convex problem, without a guess.
+    They are fitted in stages: springs with Maxwell elements, then the other laws of hysteresis with the best of these springs
+    and the simplest ones, then the springs with the best law. Each fit starts from a convex problem, without a guess.
 
     Blocks of neighbours are held out, each predicted by a fit to three quarters of the blocks. Models are compared with the
     best on the same blocks, so that samples that are hard to predict for both do not count. The simplest that is worse by no
@@ -94,43 +94,43 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
             f"a ranking holds out {LOOP_BLOCKS} blocks of a loop, so it needs {2 * LOOP_BLOCKS} samples; there are "
             f"{len(loop.twist)}: record more"
         )
-    tried = _Tried(loop, gear)
-    beside = asked(loop, gear, friction_measured)
-    for each in beside:
+    tried = _TriedCandidates(loop, gear)
+    dissipation = asked(loop, gear, friction_measured)
+    for each in dissipation:
         tried.add(PLAIN, [each])
     tried.drift()
-    tried.add([Backlash(LINEAR), behind_play(tried.best.spring)], [tried.best.beside])
+    tried.add([Backlash(LINEAR), behind_play(tried.best.spring)], [tried.best.dissipation])
     if not loop.single_branch:
-        tried.add([tried.best.spring], BESIDE_A_SPRING)
+        tried.add([tried.best.spring], WITH_A_SPRING)
         tried.add([Negligible()], WHOLE)
-        if not tried.best.beside.whole_spring:
-            tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.beside])
-        tried.add([LINEAR, CUBIC], BESIDE_A_SPRING)
+        if not tried.best.dissipation.whole_spring:
+            tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.dissipation])
+        tried.add([LINEAR, CUBIC], WITH_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
-    found = [_judged(each, FOLDS if _left(each) < near else 1) for each in candidates]
+    found = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
     return _ordered([each for each in found if each is not None])
 
 
-class _Tried:
+class _TriedCandidates:
     """Candidates fitted to all samples."""
 
     def __init__(self, loop: TorsionLoop, gear: Gear) -> None:
         self.loop, self.gear, self.training = loop, gear, np.ones(len(loop.twist), bool)
-        self._found: dict[tuple[Kind, Beside], TorsionCandidate] = {}
+        self._found: dict[tuple[SpringKind, Dissipation], TorsionCandidate] = {}
 
-    def add(self, springs: Sequence[Kind], besides: Sequence[Beside]) -> None:
-        """Fit each of the springs with each of the parts beside it, if not yet done."""
+    def add(self, springs: Sequence[SpringKind], dissipations: Sequence[Dissipation]) -> None:
+        """Fit each of the springs with each dissipation, if not yet done."""
         for spring in springs:
-            for beside in besides:
-                if (spring, beside) in self._found:
+            for dissipation in dissipations:
+                if (spring, dissipation) in self._found:
                     continue
                 try:
                     with _trying():
-                        found = candidate(self.loop, self.gear, self.training, spring, beside, MAX_MINIMA)
+                        found = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
-                self._found[spring, beside] = found
+                self._found[spring, dissipation] = found
 
     def drift(self) -> None:
         """Fit all again with a drift, if the best shows one."""
@@ -138,8 +138,8 @@ class _Tried:
         if drifting is not self.best:
             self.loop, before = replace(self.loop, **drifts(drifting)), [*self._found]
             self._found.clear()
-            for spring, beside in before:
-                self.add([spring], [beside])
+            for spring, dissipation in before:
+                self.add([spring], [dissipation])
 
     @property
     def candidates(self) -> list[TorsionCandidate]:
@@ -153,13 +153,13 @@ class _Tried:
 
     def simpler(self) -> Iterator[TorsionCandidate]:
         """Yield the best candidate with Maxwell elements, with fewer and fewer of them."""
-        elastic = [each for each in self.candidates if each.beside.elements(each.fit.gear)]
+        elastic = [each for each in self.candidates if each.dissipation.elements(each.fit.gear)]
         with _trying():
             for best in sorted(elastic, key=lambda each: each.error)[:1]:
                 yield from simpler(best, np.inf, self.gear)
 
 
-def behind_play(spring: Kind) -> Kind:
+def behind_play(spring: SpringKind) -> SpringKind:
     """Return the kind of spring with play before it."""
     return spring if isinstance(spring, Backlash) else Backlash(spring)
 
@@ -202,19 +202,19 @@ def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
     return _Judged(found, np.array([squares[block == each].mean() for each in range(LOOP_BLOCKS)]))
 
 
-def _ordered(judged: Sequence[_Judged]) -> tuple[Candidate, ...]:
+def _ordered(judged: Sequence[_Judged]) -> tuple[RankedCandidate, ...]:
     best = min((each for each in judged if np.isfinite(each.blocks).all()), key=lambda each: each.blocks.mean())
     found = [_measured(each, best) for each in judged]
     return tuple(sorted(found, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else c.worse)))
 
 
-def _measured(judged: _Judged, best: _Judged) -> Candidate:
+def _measured(judged: _Judged, best: _Judged) -> RankedCandidate:
     """Return the candidate with its errors: roots of mean squares, with the standard errors of these."""
     made, tried = judged.candidate.fit, np.isfinite(judged.blocks)
     blocks, of_best = judged.blocks[tried], best.blocks[tried]
     error = float(np.sqrt(blocks.mean()))
     twice = 2.0 * max(error, np.finfo(float).tiny) * np.sqrt(len(blocks))
-    return Candidate(
+    return RankedCandidate(
         judged.candidate.name,
         made,
         sum("." in estimate.path for estimate in made.estimates),

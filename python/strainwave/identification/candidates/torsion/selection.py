@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
-from strainwave.identification.candidates.torsion.beside import Beside, Dry, Elements, Friction, Nothing
 from strainwave.identification.candidates.torsion.candidate import (
     MIN_ERROR_SHARE,
     TorsionCandidate,
@@ -18,6 +17,7 @@ from strainwave.identification.candidates.torsion.candidate import (
     with_drift,
     with_fewer,
 )
+from strainwave.identification.candidates.torsion.dissipation import Dissipation, Dry, Elements, InputFriction, Nothing
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
@@ -27,7 +27,7 @@ SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 def fit_loop(
     loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None, *, friction_measured: bool = False
 ) -> list[TorsionCandidate]:
-    """Fit each kind of spring to a loop, with the part beside it that the loop determines.
+    """Fit each kind of spring to a loop, with the dissipation that the loop determines.
 
     That is Maxwell-slip hysteresis, in parallel with the spring. A single branch determines none: the hysteresis of the gear is
     kept. A loop from the input contains the friction of the wave generator, too. If this was measured, it is taken out. If not,
@@ -48,7 +48,7 @@ def fit_loop(
         ValueError: too few samples for any candidate
     """
     chosen = np.ones(len(loop.twist), bool) if training is None else training
-    kinds = [(spring, beside) for beside in asked(loop, gear, friction_measured) for spring in SPRINGS]
+    kinds = [(spring, dissipation) for dissipation in asked(loop, gear, friction_measured) for spring in SPRINGS]
     candidates = [candidate(loop, gear, chosen, *each) for each in kinds]
     best = min(candidates, key=lambda c: c.error)
     if drift := drifts(with_drift(best, gear)):
@@ -63,14 +63,14 @@ def fit_loop(
 def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:
     """Yield the best candidate with fewer and fewer Maxwell elements, as long as its error is at most `good`."""
     found = best
-    while len(found.beside.elements(found.fit.gear)) > 1 and found.error <= good:
+    while len(found.dissipation.elements(found.fit.gear)) > 1 and found.error <= good:
         found = with_fewer(found, known)
         yield found
 
 
-def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Beside]:
-    """Return the parts that are fitted to the loop beside the spring: Maxwell elements, or those in their place."""
+def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Dissipation]:
+    """Return the dissipations that are fitted to the loop: Maxwell elements, or those in their place."""
     if loop.single_branch:
         return [Nothing()]
     friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)
-    return [Elements()] if friction_measured or not friction_inside else [Friction(), Elements()]
+    return [Elements()] if friction_measured or not friction_inside else [InputFriction(), Elements()]

@@ -25,7 +25,7 @@ MIN_STIFFNESS_SHARE = 1e-6  # of the secant stiffness, in place of no spring
 MIN_STIFFNESS = 1e-9  # N.m/rad
 
 
-class Kind(ABC):
+class SpringKind(ABC):
     """A kind of spring."""
 
     words: str
@@ -53,7 +53,7 @@ class Kind(ABC):
         return True
 
 
-class Linear(Kind):
+class Linear(SpringKind):
     words = "linear spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
@@ -68,7 +68,7 @@ class Linear(Kind):
         return False
 
 
-class Cubic(Kind):
+class Cubic(SpringKind):
     words = "cubic spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
@@ -82,7 +82,7 @@ class Cubic(Kind):
         return spring.replace(a1=spring.a1 + k)
 
 
-class Piecewise(Kind):
+class Piecewise(SpringKind):
     words = "piecewise spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
@@ -100,7 +100,7 @@ class Piecewise(Kind):
         return spring.replace(k1=spring.k1 + k)
 
 
-class ThreeSegment(Kind):
+class ThreeSegment(SpringKind):
     """Three segments, whose initial slopes grow from one to the next; a fit may end elsewhere."""
 
     words = "three-segment spring"
@@ -135,7 +135,7 @@ class ThreeSegment(Kind):
         return stiffness.ThreeSegment(k1=spring.k1, k2=spring.k2, k3=spring.k3, t1=spring.t1, t2=spring.t1)
 
 
-class MultiCompliance(Kind):
+class MultiCompliance(SpringKind):
     """Flexspline and wave generator in series: linear in a factor of both stiffnesses that divides both hardenings."""
 
     words = "multi-compliance spring"
@@ -158,10 +158,10 @@ class MultiCompliance(Kind):
 
 
 @dataclass(frozen=True)
-class Backlash(Kind):
+class Backlash(SpringKind):
     """Play before a spring of another kind."""
 
-    law: Kind
+    law: SpringKind
     minima = 6
 
     @property
@@ -202,7 +202,7 @@ def _behind_play(choice: Choice, clearance: float, first: int) -> Choice:
     return Choice(tuple(first + column for column in choice.columns), put, clearance)
 
 
-class Negligible(Kind):
+class Negligible(SpringKind):
     """No spring, as the hysteresis is a whole spring by itself."""
 
     words = "no spring"

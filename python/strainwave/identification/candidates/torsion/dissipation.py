@@ -1,4 +1,4 @@
-"""Parts that are fitted to a loop beside the spring: Maxwell elements, friction at the input, or nothing."""
+"""Dissipation that is fitted to a loop together with the spring: Maxwell elements, friction at the input, or nothing."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ MAX_ELEMENTS = 6  # kept after the convex step
 Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can determine
 
 
-class Beside(ABC):
-    """A part of the gear that is fitted beside the spring, or none."""
+class Dissipation(ABC):
+    """The dissipative part of the gear that is fitted together with the spring, or none."""
 
     whole_spring = False  # True for a part that is a spring, too, and takes its place
     is_slow = False  # True if its library takes long to build
@@ -55,7 +55,7 @@ class Beside(ABC):
         return found
 
 
-class Elements(Beside):
+class Elements(Dissipation):
     """Maxwell elements in place of the gear's hysteresis."""
 
     def words(self, gear: Gear) -> str:
@@ -79,7 +79,7 @@ class Elements(Beside):
         return pairs(gear)
 
 
-class Nothing(Beside):
+class Nothing(Dissipation):
     """The spring alone; hysteresis and friction are as in the gear."""
 
     def words(self, gear: Gear) -> str:
@@ -95,7 +95,7 @@ class Nothing(Beside):
         return []
 
 
-class Friction(Beside):
+class InputFriction(Dissipation):
     """Breakaway of the friction at the input, with the hysteresis of the gear; Coulomb's torque keeps its ratio to it."""
 
     def words(self, gear: Gear) -> str:
