@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import re
 import resource
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -28,6 +28,57 @@ def tutorials() -> Iterator[ModuleType]:
         yield importlib.import_module("tutorials")
 
 
+def robot_log(page: str) -> None:
+    """Viscous friction is too low by more than two standard deviations, and all other numbers are not."""
+    distances = dict(re.findall(r"^((?:gear|load)\.\S+) +\S+ +\S+ +(-?\d+\.\d)$", page, re.MULTILINE))
+    assert len(distances) == 5
+    assert [path for path, distance in distances.items() if abs(float(distance)) > 2.0] == ["gear.friction_input.viscous"]
+    assert -3.0 < float(distances["gear.friction_input.viscous"]) < -2.0
+
+
+def wrong_assumptions(page: str) -> None:
+    """Each wrong assumption but the last fails the checks that the text names."""
+    sections = page.split("\n## ")[1:]
+    assert re.findall(r"^exit code (\d)$", sections[0], re.MULTILINE) == ["2", "3"]
+    assert "FAILED: friction_colleague.csv: its input would turn at 3000 rad/s" in sections[0]
+    for section, names in ((1, ["input speed", "friction of the start set"]), (3, ["agreement of files"])):
+        assert re.findall(r"^([a-z][a-z ]+): ", sections[section], re.MULTILINE) == names
+    assert {"unexplained on data held out", "input speed"} <= set(re.findall(r"^([a-z ]+): ", sections[2], re.MULTILINE))
+    assert re.findall(r"(\d+) failed checks", sections[4]) == ["0", "0"]
+    single, double = (float(text) for text in re.findall(r"load\.gravity_torque +(\S+)", sections[4]))
+    assert double == pytest.approx(2.0 * single, rel=1e-3)
+
+
+def second_log(page: str) -> None:
+    """The changes are those of the truth, within three standard deviations, and no others."""
+    found = re.findall(r"^(\S+\.csv): (\w+): error .*\n((?:  .*\n)*)", page, re.MULTILINE)
+    assert [(name, verdict) for name, verdict, _ in found] == [
+        ("robot_log_later.csv", "agrees"), ("robot_log_worn.csv", "agrees"), ("robot_log_tool.csv", "contradicts"),
+    ]  # fmt: skip
+    truth = {"dry friction": 1.3, "inertia of the load": 1.188, "gravity of the load": 16.0 / 11.0}
+    changes = re.findall(r"  (.+) is (\S+) ± (\S+) times that saved\n", "".join(text for _, _, text in found))
+    assert [name for name, _, _ in changes] == list(truth)
+    assert [name for name, value, sigma in changes if abs(float(value) - truth[name]) > 3.0 * float(sigma)] == []
+
+
+def which_friction(page: str) -> None:
+    """The law with a fall at low speed is the first; without slow speeds it is not; the numbers are those of the truth."""
+    assert re.search(r"cost \[µs\]\n  with a fall at low speed +4 ", page)
+    assert "law taken: Coulomb and viscous\n" in page
+    assert "friction_input.stribeck_speed is not determined" in page
+    known = re.findall(r" (\S+) ± (\S+) +truth (\S+) ", page)
+    assert len(known) == 4
+    assert [row for row in known if abs(float(row[0]) - float(row[2])) > 2.0 * float(row[1])] == []
+
+
+CLAIMS: dict[str, Callable[[str], None]] = {
+    "01_robot_log": robot_log,
+    "02_wrong_assumptions": wrong_assumptions,
+    "03_second_log": second_log,
+    "05_which_friction": which_friction,
+}  # of the text of a tutorial, about what its cells print
+
+
 def processor_seconds() -> float:
     """Return the processor time [s] of the processes that this one has started and that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -47,6 +98,8 @@ def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tutorials: Module
     downloads = re.findall(r"\{download\}`([^`]+)`", page)
     assert downloads[0] == script.name
     assert [name for name in downloads if not (tmp_path / name).is_file()] == []
+    if script.stem in CLAIMS:
+        CLAIMS[script.stem](page)
     assert seconds < MAX_SECONDS
 
 
