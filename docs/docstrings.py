@@ -43,10 +43,14 @@ def source(lines: str) -> str:
 
 
 def block(text: str, symbols: str = "") -> str:
-    """Return a paragraph, an example or a formula in reStructuredText."""
+    """Return a paragraph, a table, an example or a formula in reStructuredText."""
     if text.startswith(".. math::"):
         formulas = theory.lines(" ".join(text.removeprefix(".. math::").split()))
         return "\n\n".join(f".. math:: {formula}" for formula in formulas)
+    if text.startswith("| "):
+        rows = [row.strip("| ").split(" | ") for row in text.splitlines() if not row.startswith("|--")]
+        lines = [f"   {'  ' if column else '* '}- {block(cell)}" for row in rows for column, cell in enumerate(row)]
+        return "\n".join([".. list-table::", "   :header-rows: 1", "", *lines])
     return text if text.startswith(">>>") else re.sub(symbols + MARKED, markup, text)
 
 
@@ -118,6 +122,8 @@ def model_text(model: type[Any]) -> str:
         head, lines = found.groups()
         if head == "Source":
             return source(lines)
+        if not lines.strip():
+            return ""
         if head == "Parameters":
             return "\n".join(["Attributes:", *(f"    {attribute(model, line)}" for line in lines.splitlines())]) + "\n"
         return "\n".join([f"{head}:", *(f"    {line}" for line in lines.splitlines())]) + "\n"

@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.nodes import make_refnode
 
+ESCAPE = "\\"
 TYPED_ATTRIBUTE = r"^(\.\. attribute:: \S+)\n((?:\n|   .*\n)*?)   :type: (.*)\n"  # as Napoleon writes it
 
 
@@ -32,15 +33,23 @@ def process_docstring(app: Sphinx, what: str, name: str, documented: Any, option
 
 def process_sections(app: Sphinx, what: str, name: str, documented: Any, options: Any, lines: list[str]) -> None:
     """Put the type of an attribute into its line, after Napoleon has read the sections."""
-    text = re.sub(TYPED_ATTRIBUTE, r"\1\n   :type: \3\n\2", "\n".join(lines) + "\n", flags=re.MULTILINE)
+    text = re.sub(TYPED_ATTRIBUTE, with_type, "\n".join(lines) + "\n", flags=re.MULTILINE)
+    text = re.sub(r"^\.\. attribute:: \w+, .*$", lambda names: names[0].replace(", ", "\n   "), text, flags=re.MULTILINE)
+    if what == "property" and not docstrings.overload(documented):  # Napoleon takes words before a colon for a type
+        text = re.sub(r"\A((?:.*\n)*?):type: (.*)\n", r"\2: \1", text)
     lines[:] = text.splitlines()
+
+
+def with_type(found: re.Match[str]) -> str:
+    head, meaning, kind = found.groups()
+    return f"{head}\n   :type: {docstrings.shorter(kind.replace(ESCAPE, ''))}\n{meaning}"  # an annotation needs no escapes
 
 
 def process_signature(
     app: Sphinx, what: str, name: str, documented: Any, options: Any, arguments: str | None, result: str | None
 ) -> tuple[str, str | None] | None:
     """Return arguments and result as a reader needs them."""
-    return (docstrings.shorter(arguments), result and docstrings.shorter(result)) if arguments else None
+    return (docstrings.shorter(arguments), result and docstrings.shorter(result)) if arguments is not None else None
 
 
 class LinkNames(SphinxPostTransform):

@@ -27,6 +27,13 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def docstrings() -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(DOCS)
+        yield importlib.import_module("docstrings")
+
+
+@pytest.fixture(scope="module")
 def entries(written: Path) -> Counter[str]:
     """The names of all entries, and how often each comes."""
     pages = "\n".join(page.read_text(encoding="utf-8") for page in (written / "api").glob("*.rst"))
@@ -50,7 +57,7 @@ def test_every_public_name_has_one_entry(entries: Counter[str]) -> None:
 def test_the_methods_of_a_compiled_model_have_entries(model: type[Any], entries: Counter[str]) -> None:
     methods = [name for name in dir(model) if not name.startswith("_") and isroutine(getattr(model, name))]
     assert methods
-    place = f"strainwave.{model.__module__.removeprefix('strainwave.').removeprefix('_core').lstrip('.')}".rstrip(".")
+    place = model.__module__.removesuffix("._core")
     assert [name for name in methods if entries[f"{place}.{model.__name__}.{name}"] != 1] == []
 
 
@@ -72,3 +79,15 @@ def test_every_verb_has_a_section_with_its_options(written: Path) -> None:
     assert ".. option:: drive <str>" in simulate
     assert ".. option:: -o, --out <path>" in simulate
     assert "[default: 0.001]" in simulate
+
+
+def test_a_docstring_keeps_its_table_its_code_and_the_limits_of_its_parameters(docstrings: Any) -> None:
+    table = docstrings.restructured(sw.check_ratings.__doc__)
+    assert "   * - average_torque\n     - " in table
+    assert "``input_speed``" in table
+    model = docstrings.restructured(docstrings.model_text(sw.friction.LuGre), docstrings.SYMBOL)
+    field = next(field for field in sw.friction.LuGre.fields if field["name"] == "stribeck_speed")
+    assert rf"    stribeck_speed (float): {field['doc'].partition(' F_s')[0]}" in model
+    assert "[rad/s], in (0, inf); required" in model
+    assert "\\sigma_0 |v| z" in model  # a formula is not escaped
+    assert "Attributes:" not in docstrings.model_text(sw.structure.Lumped)  # it has no parameters
