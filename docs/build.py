@@ -8,6 +8,7 @@ from __future__ import annotations
 import shutil
 import sys
 from pathlib import Path
+from urllib.parse import urljoin
 
 import api
 import cli_reference
@@ -49,7 +50,8 @@ def main(out: str) -> int:
 
 def unlisted(inventory: Path) -> int:
     """Print the public names that the inventory lacks, for want of a docstring; return 1 if there are some, else 0."""
-    listed = {name for names in InventoryFile.loads(inventory.read_bytes(), uri="").data.values() for name in names}
+    with inventory.open("rb") as file:
+        listed = {name for names in InventoryFile.load(file, "", urljoin).values() for name in names}
     lacking = sorted(api.public() - listed)
     print(*(f"the reference has no entry for {name}: give it a docstring" for name in lacking), sep="\n", file=sys.stderr)
     return int(bool(lacking))
