@@ -1,4 +1,4 @@
-"""Builds the documentation: the pages of this folder, tutorials, pictures of examples, and pages of models, names and verbs.
+"""Builds the documentation: the pages of this folder, and those computed from the package, its examples and its catalogue.
 
 python docs/build.py FOLDER
 """
@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 import api
+import catalogue_check
 import cli_reference
 import drawn
 import gallery
@@ -38,6 +39,7 @@ def gather() -> None:
     api.write(SOURCE / "reference" / "api")
     cli_reference.write(SOURCE / "reference")
     gallery.write(SOURCE)
+    catalogue_check.write(SOURCE / "reference" / "catalogue-check.md")
     drawn.draw(SOURCE)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from strainwave.identification.results.picture_plot import NINETY_FIVE
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+UNCOMPARED = re.compile(r"\[|phase")  # elements of a sequence fitted anew, and phases, whose size means nothing
 ROW_HEIGHT, MARGIN_HEIGHT = 0.26, 1.35  # inches
 MAX_LINEAR_RATIO = 5.0  # of the largest over the smallest ratio; beyond it the axis is logarithmic
 MIN_SHARE_OF_AXIS = 0.1  # of an interval that reaches zero or less, where a logarithmic axis ends
@@ -31,7 +33,7 @@ def over_start_figure(states: Sequence[ParameterState], start: GearSet, name: st
     """
     rows = [
         each for each in states
-        if each.state == "identified" and np.isfinite(each.start) and each.start != 0.0 and ".phase" not in each.path
+        if each.state == "identified" and np.isfinite(each.start) and each.start != 0.0 and not UNCOMPARED.search(each.path)
     ]  # fmt: skip
     if not rows:
         raise ValueError(f"no identified number has a value in {start.name}: there is nothing to compare")
