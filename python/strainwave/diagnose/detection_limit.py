@@ -15,13 +15,13 @@ from math import hypot, inf
 
 from strainwave import Drive, arguments
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
-from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
+from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE, RAD_PER_ARCMIN, RecordedOrder, SteadyRun
 
-PROBE = ARCMINUTE  # rad: error of the first run; later ones have the limit itself
+PROBE = RAD_PER_ARCMIN  # rad: error of the first run; later ones have the limit itself
 PROBE_RUNS = 3  # runs with an error at most
 MIN_PROBE_CHANGE = 1e-3  # relative change of the error [1], below which a further run would show the same gain
-MAX_PROBE = 60.0 * ARCMINUTE  # rad: error of any run
-MIN_PROBE = 1e-3 * ARCMINUTE  # rad
+MAX_PROBE = 60.0 * RAD_PER_ARCMIN  # rad: error of any run
+MIN_PROBE = 1e-3 * RAD_PER_ARCMIN  # rad
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class DetectionLimit:
     @property
     def arcminutes(self) -> float:
         """Amplitude of the error at the output [arcmin]."""
-        return self.amplitude / ARCMINUTE
+        return self.amplitude / RAD_PER_ARCMIN
 
     @property
     def insensitive(self) -> bool:
@@ -165,7 +165,7 @@ def _remarks(found: DetectionLimit, noise: float, own: float) -> tuple[str, ...]
     remarks = []
     if found.insensitive:
         remarks.append(
-            f"insensitive: an error of {found.accuracy / ARCMINUTE:.3g} arcmin, which this gear may have, makes "
+            f"insensitive: an error of {found.accuracy / RAD_PER_ARCMIN:.3g} arcmin, which this gear may have, makes "
             f"{1e3 * abs(found.gain) * found.accuracy:.3g} mA, and {1e3 * found.current:.3g} mA are needed. No alarm means "
             "nothing: take more load, a longer record, or a sensor with less noise"
         )

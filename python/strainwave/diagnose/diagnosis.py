@@ -18,7 +18,7 @@ from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_
 from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.diagnose.response import error_response
-from strainwave.diagnose.steady_run import ARCMINUTE, MAX_CATALOGUE_AMPLITUDE
+from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE, RAD_PER_ARCMIN
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import without_name
 from strainwave.orders.lines import SpectrumLine
@@ -419,8 +419,8 @@ def _verdict(
     if wave is not None and wave.error > MAX_CATALOGUE_AMPLITUDE and not wave.detected:
         current = wave.needed * MAX_CATALOGUE_AMPLITUDE / wave.error
         return "insensitive", (
-            f"only a kinematic error above {wave.error / ARCMINUTE:.3g} arc minutes would be seen at this load and speed, and "
-            f"gears may have {MAX_CATALOGUE_AMPLITUDE / ARCMINUTE:g}, which makes {current:.3g} {unit} where "
+            f"only a kinematic error above {wave.error / RAD_PER_ARCMIN:.3g} arc minutes would be seen at this load and speed, "
+            f"and gears may have {MAX_CATALOGUE_AMPLITUDE / RAD_PER_ARCMIN:g}, which makes {current:.3g} {unit} where "
             f"{wave.needed:.3g} {unit} are needed: a fault may be there; record under more load, longer or with less noise"
         )
     if comparison is not None and comparison.changes:

@@ -20,8 +20,8 @@ from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
 
-ARCMINUTE = radians(1.0 / 60.0)  # rad
-MAX_CATALOGUE_AMPLITUDE = ARCMINUTE  # rad: half of 2 arcmin peak to peak, the bound of the least accurate catalogue gears
+RAD_PER_ARCMIN = radians(1.0 / 60.0)  # rad
+MAX_CATALOGUE_AMPLITUDE = RAD_PER_ARCMIN  # rad: half of 2 arcmin peak to peak, the bound of the least accurate catalogue gears
 RUN_IN_TURNS = 2.0  # revolutions of the input before the record
 MIN_RUN_IN = 1.0  # s
 MAX_DURATION = 3600.0  # s, of the record

@@ -200,7 +200,7 @@ class _Sheet:
         accuracy, of_accuracy = self._accuracy()
         dry, viscous, friction_sources, friction_notes = self._friction()
         mesh, of_mesh, more = self._mesh(dry[1], viscous)
-        split = f"k1 x {0.5 * loss / typical.ARCMIN:.3g} arcmin / 6 each: loop half as wide at zero torque as {of_loss}"
+        split = f"k1 x {0.5 * loss / typical.RAD_PER_ARCMIN:.3g} arcmin / 6 each: loop half as wide at zero torque as {of_loss}"
         gear = Gear(
             kinematics=self.kinematics,
             stiffness=stiffness.ThreeSegment(k1=whole.k1, k2=k2, k3=k3, t1=whole.t1, t2=whole.t2),
@@ -244,7 +244,7 @@ class _Sheet:
                 figure = self.given[name]
                 return value, f"the {words} of {figure.value:g} {figure.unit} ({figure.source})"
         bound = typical.hysteresis_loss(self.nominal)
-        return bound, f"the usual bound on hysteresis loss, {bound / typical.ARCMIN:g} arcmin"
+        return bound, f"the usual bound on hysteresis loss, {bound / typical.RAD_PER_ARCMIN:g} arcmin"
 
     def _accuracy(self) -> tuple[float, str]:
         value = self.value("transmission_accuracy")
@@ -252,7 +252,7 @@ class _Sheet:
             figure = self.given["transmission_accuracy"]
             return value, f"{figure.value:g} {figure.unit} ({figure.source})"
         bound = typical.transmission_accuracy(self.size, self.nominal)
-        return bound, f"of the catalogue's gears {bound / typical.ARCMIN:g} arcmin, {self.sized}"
+        return bound, f"of the catalogue's gears {bound / typical.RAD_PER_ARCMIN:g} arcmin, {self.sized}"
 
     def _friction(self) -> tuple[tuple[float, float], float, dict[str, Entry], list[str]]:
         """Coulomb and breakaway torque, the viscous one, where they come from, and what contradicts itself."""
@@ -341,7 +341,7 @@ class _Sheet:
 
 def _wide(width: float, twist: float) -> list[str]:
     """Return remarks on a loop of this width at the first loading up to T1, at this twist [rad]."""
-    wide, turned = width / typical.ARCMIN, twist / typical.ARCMIN
+    wide, turned = width / typical.RAD_PER_ARCMIN, twist / typical.RAD_PER_ARCMIN
     if 0.5 * width >= twist:
         raise ValueError(
             f"hysteresis_loss: half of it, {wide:.3g} arcmin, is wider than what the gear twists between -T1 and "

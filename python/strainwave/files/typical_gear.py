@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import exp, log, radians, sqrt
 from typing import NamedTuple
 
-ARCMIN = radians(1.0 / 60.0)
+RAD_PER_ARCMIN = radians(1.0 / 60.0)
 UNITS_SPREAD = 0.3  # of individual gears about the catalogue's stiffness (Harmonic Drive AG)
 ELEMENTS = (2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)  # stiffness of the Maxwell elements over k1: they slip at w/4, w/2 and w
 DAMPING_RATIO = 0.02
@@ -52,7 +52,7 @@ LAWS: dict[str, tuple[Law, Law, Law]] = {
 }
 SIZED_BY = (("k1", "k2", "k3", "t1", "t2"), ("rated_torque",), ("wave_generator_inertia",))  # the best first
 
-HYSTERESIS_LOSS = (3.0 * ARCMIN, 1.0 * ARCMIN, 1.0 * ARCMIN)  # bounds of the maker, by group of ratios
+HYSTERESIS_LOSS = (3.0 * RAD_PER_ARCMIN, 1.0 * RAD_PER_ARCMIN, 1.0 * RAD_PER_ARCMIN)  # bounds of the maker, by group of ratios
 ACCURACY = ((17.0, (2.0, 1.2, 1.0)), (32.0, (1.5, 1.0, 0.8)), (float("inf"), (1.5, 0.7, 0.5)))  # arcmin, up to a size
 
 
@@ -73,7 +73,7 @@ def hysteresis_loss(ratio: float) -> float:
 
 def transmission_accuracy(size: float, ratio: float) -> float:
     """The maker's bound on the kinematic error, peak to peak [rad]."""
-    return next(bounds for largest, bounds in ACCURACY if size < largest + 1.0)[group(ratio)] * ARCMIN
+    return next(bounds for largest, bounds in ACCURACY if size < largest + 1.0)[group(ratio)] * RAD_PER_ARCMIN
 
 
 def starting_torque(size: float, ratio: float) -> float:
@@ -114,7 +114,7 @@ class Divided:
 
         The gear reaches T1 at the twist T1/K1 when it is loaded for the first time, and its loop is half as wide as the bound.
 
-        >>> whole = Divided.of(31e3, 14.0, 48.0, 1.0 * ARCMIN)  # HFUC-25-100
+        >>> whole = Divided.of(31e3, 14.0, 48.0, 1.0 * RAD_PER_ARCMIN)  # HFUC-25-100
         >>> round(whole.k1, 1), round(whole.t1, 5), round(whole.breakaway[0], 5)
         (26700.5, 12.05829, 0.64724)
         """

@@ -10,7 +10,7 @@ from typing import Any
 
 from strainwave.diagnose.baseline import OrderChange
 from strainwave.diagnose.diagnosis import Diagnosis, OrderAgainstNoise, RunDiagnosis
-from strainwave.diagnose.steady_run import ARCMINUTE
+from strainwave.diagnose.steady_run import RAD_PER_ARCMIN
 from strainwave.report import diagnose_figures as plots
 from strainwave.report.orders import line_numbers
 from strainwave.report.orders_figures import spectrum_figure
@@ -126,7 +126,7 @@ def _order(each: OrderAgainstNoise, unit: str) -> dict[str, str]:
         "backward": cell(each.backward),
         "threshold": quantity(each.threshold, unit),
         "expected": quantity(each.expected, unit) if isfinite(each.expected) else "",
-        "error": f"{number(each.error / ARCMINUTE, 3)}′" if isfinite(each.error) else "",
+        "error": f"{number(each.error / RAD_PER_ARCMIN, 3)}′" if isfinite(each.error) else "",
         "state": "above noise" if each.detected else "within noise",
     }
 

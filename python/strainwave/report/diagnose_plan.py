@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib import metadata
 
 from strainwave.diagnose.detection_limit import DetectionLimit
-from strainwave.diagnose.steady_run import ARCMINUTE
+from strainwave.diagnose.steady_run import RAD_PER_ARCMIN
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
@@ -88,7 +88,7 @@ def plan_report(record: PlannedRecord, limits: Sequence[DetectionLimit], provena
             "order": number(each.order, 5),
             "error": f"{number(each.arcminutes, 3)}′",
             "current": quantity(each.current, "A"),
-            "allowed": f"{number(each.accuracy / ARCMINUTE, 3)}′",
+            "allowed": f"{number(each.accuracy / RAD_PER_ARCMIN, 3)}′",
             "state": "insensitive" if each.insensitive else "sensitive",
         }
         for each in limits

@@ -105,6 +105,7 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
     current = float(levels.column("e1", "current_swing")[row])
     nominal = float(np.abs(found.ramp.settled(found.straight)["current"]).max())
     recovery = next(each for each in found.recoveries if each.column == "current" and each.law.combine == study.USUAL)
+    best = recovery.best
     return [
         {
             "eyebrow": "At the flap",
@@ -121,7 +122,7 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
         },
         {
             "eyebrow": "From one ramp",
-            "headline": f"{uncertain(recovery.best.size / study.MICRON, recovery.best.half_widths[0] / study.MICRON)} µm",
+            "headline": f"{uncertain(best.size / study.M_PER_MICRON, best.half_widths[0] / study.M_PER_MICRON)} µm",
             "text": f"from the current, where {microns(hypot(*recovery.m))} were put in (95 %). Eccentricity and tilt times "
             "offset are one number, and the wave generator's own misalignment on its shaft is none.",
         },
@@ -200,8 +201,8 @@ def _recovered(recovery: Recovery) -> dict[str, Any]:
     return {
         "record": plots.SEEN[recovery.column],
         "combine": plots.WORDS[recovery.law.combine],
-        "size": f"{uncertain(best.size / study.MICRON, best.half_widths[0] / study.MICRON)} µm",
-        "truth": f"{number(truth / study.MICRON, 4)} µm",
+        "size": f"{uncertain(best.size / study.M_PER_MICRON, best.half_widths[0] / study.M_PER_MICRON)} µm",
+        "truth": f"{number(truth / study.M_PER_MICRON, 4)} µm",
         "way": f"{uncertain(way, degrees(best.half_widths[1]))}°",
         "true_way": f"{number(degrees(np.arctan2(y, x)), 3)}°",
         "within": f"{recovery.within} of {len(recovery.trials)}",
@@ -217,7 +218,7 @@ def _injected(found: MisalignmentStudy) -> str:
     return (
         f"e₁ = {microns(law.housing_eccentricity)} at β₁ = {number(degrees(law.housing_direction), 3)}°, β₂ = "
         f"{number(degrees(law.housing_tilt_x), 2)}°, β₃ = {number(degrees(law.housing_tilt_y), 2)}°, h = "
-        f"{quantity(law.offset, 'm', 2)}: m = ({number(x / study.MICRON, 4)}, {number(y / study.MICRON, 4)}) µm"
+        f"{quantity(law.offset, 'm', 2)}: m = ({number(x / study.M_PER_MICRON, 4)}, {number(y / study.M_PER_MICRON, 4)}) µm"
     )
 
 

@@ -50,7 +50,7 @@ def arcmin(angle: float, digits: int = 2) -> str:
 
 def microns(length: float, digits: int = 3) -> str:
     """A length [m] in micrometres."""
-    return f"{number(length / study.MICRON, digits)}\N{NO-BREAK SPACE}µm"
+    return f"{number(length / study.M_PER_MICRON, digits)}\N{NO-BREAK SPACE}µm"
 
 
 def percent(share: float, digits: int = 2) -> str:
@@ -134,9 +134,9 @@ def _detected(found: MisalignmentStudy) -> Claim:
         "“its presence can be detected and quantified in strain wave gears”",
         IN_PART,
         "One vector can: from the motor current of one ramp |m| = "
-        f"{uncertain(best.size / study.MICRON, best.half_widths[0] / study.MICRON)} µm (95 %), where "
-        f"{number(hypot(*recovery.m) / study.MICRON, 4)} µm were put in. m is e₁ plus the tilt β times the offset h: the two "
-        "cannot be separated. e₂ and α alone leave no trace.",
+        f"{uncertain(best.size / study.M_PER_MICRON, best.half_widths[0] / study.M_PER_MICRON)} µm (95 %), where "
+        f"{number(hypot(*recovery.m) / study.M_PER_MICRON, 4)} µm were put in. m is e₁ plus the tilt β times the offset h: the "
+        "two cannot be separated. e₂ and α alone leave no trace.",
     )
 
 

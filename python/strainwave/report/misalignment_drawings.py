@@ -18,9 +18,9 @@ Array = NDArray[np.float64]
 
 AXIS: dict[str, Any] = {"color": LIGHT["muted"], "linewidth": 0.8, "linestyle": (0, (9, 2, 1.5, 2))}
 STILL, TURNING = LIGHT["measured"], LIGHT["model"]
-RADIUS, FLATTER = 1.0, 0.82  # half axes of the wave generator as drawn
+MAJOR_RADIUS, MINOR_RADIUS = 1.0, 0.82  # half axes of the wave generator as drawn
 PITCH_RADIUS = 1.0  # of the circular spline as drawn: the lobes of a straight wave generator touch it
-SHIFT, WAY, TURN = 0.17, np.radians(35.0), np.radians(65.0)  # e_1, beta_1 and theta as drawn
+DRAWN_SHIFT, DRAWN_DIRECTION, DRAWN_TURN = 0.17, np.radians(35.0), np.radians(65.0)  # e_1, beta_1 and theta as drawn
 
 
 def wave_generator(major_radius: float, minor_radius: float) -> str:
@@ -29,18 +29,18 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
         _ring(axes)
-        centre = SHIFT * _unit(WAY)
+        centre = DRAWN_SHIFT * _unit(DRAWN_DIRECTION)
         for place, colour, line in ((np.zeros(2), LIGHT["muted"], "--"), (centre, TURNING, "-")):
-            x, y = place[:, None] + _ellipse(TURN)
+            x, y = place[:, None] + _ellipse(DRAWN_TURN)
             axes.plot(x, y, linewidth=1.3, color=colour, linestyle=line)
         _axes_of(axes, np.zeros(2), 1.32, ("x", "y"), STILL)
-        _ray(axes, np.zeros(2), TURN, 1.38, AXIS)
-        _angle(axes, np.zeros(2), 0.0, TURN, 0.62, "θ", LIGHT["ink"])
-        _lobe(axes, TURN, "A")
-        _lobe(axes, TURN + np.pi, "B")
+        _ray(axes, np.zeros(2), DRAWN_TURN, 1.38, AXIS)
+        _angle(axes, np.zeros(2), 0.0, DRAWN_TURN, 0.62, "θ", LIGHT["ink"])
+        _lobe(axes, DRAWN_TURN, "A")
+        _lobe(axes, DRAWN_TURN + np.pi, "B")
         _arrow(axes, np.zeros(2), centre, STILL)
         _note(axes, "e₁", centre / 2.0, xytext=(0.42, -0.16), color=STILL, arrowprops=_leader(STILL), va="center")
-        _angle(axes, np.zeros(2), 0.0, WAY, 0.34, "β₁", STILL)
+        _angle(axes, np.zeros(2), 0.0, DRAWN_DIRECTION, 0.34, "β₁", STILL)
         axes.plot(*centre, "o", color=TURNING, markersize=3.5)
         axes.plot(0.0, 0.0, "o", color=STILL, markersize=3.5)
         for place, name, at, colour in ((np.zeros(2), "CS", (-0.3, -0.22), STILL), (centre, "WG", (-0.28, 0.32), TURNING)):
@@ -59,7 +59,7 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
         _note(
             axes,
             "wave generator,\nmisaligned",
-            centre + _ellipse(TURN)[:, 47],
+            centre + _ellipse(DRAWN_TURN)[:, 47],
             xytext=(-1.34, 0.98),
             color=TURNING,
             arrowprops=_leader(TURNING),
@@ -69,7 +69,7 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
         _note(
             axes,
             "aligned",
-            _ellipse(TURN)[:, 62],
+            _ellipse(DRAWN_TURN)[:, 62],
             xytext=(-1.42, 0.3),
             color=LIGHT["muted"],
             arrowprops=_leader(LIGHT["muted"]),
@@ -85,7 +85,7 @@ def wave_generator(major_radius: float, minor_radius: float) -> str:
 def scales(major_radius: float, minor_radius: float, eccentricity: float) -> tuple[float, float]:
     """Return the magnifications of ellipticity and eccentricity [m] in the drawing, relative to the radius."""
     flatness = (major_radius - minor_radius) / major_radius
-    return (RADIUS - FLATTER) / flatness, SHIFT / (eccentricity / major_radius)
+    return (MAJOR_RADIUS - MINOR_RADIUS) / flatness, DRAWN_SHIFT / (eccentricity / major_radius)
 
 
 def angles() -> str:
@@ -163,16 +163,16 @@ def _ring(axes: Axes) -> None:
 
 def _ellipse(turn: float) -> Array:
     way = np.linspace(0.0, 2.0 * np.pi, 181)
-    x, y = RADIUS * np.cos(way), FLATTER * np.sin(way)
+    x, y = MAJOR_RADIUS * np.cos(way), MINOR_RADIUS * np.sin(way)
     points: Array = np.array([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)])
     return points
 
 
 def _lobe(axes: Axes, turn: float, name: str) -> None:
     """The displacement of a lobe: from where it would be to where it is, on the ray from the circular spline's centre."""
-    reach = RADIUS + SHIFT * np.cos(turn - WAY)  # to first order
+    reach = MAJOR_RADIUS + DRAWN_SHIFT * np.cos(turn - DRAWN_DIRECTION)  # to first order
     side = 0.09 * _unit(turn + np.pi / 2.0)
-    ends = (RADIUS * _unit(turn) + side, reach * _unit(turn) + side)
+    ends = (MAJOR_RADIUS * _unit(turn) + side, reach * _unit(turn) + side)
     _note(axes, "", ends[1], xytext=ends[0], arrowprops={**_leader(LIGHT["ink"]), "arrowstyle": "-|>", "linewidth": 1.4})
     beyond = 1.36 * _unit(turn) - 4.6 * side
     _note(axes, "", 0.5 * (ends[0] + ends[1]), xytext=beyond, arrowprops=_leader(LIGHT["ink"]))

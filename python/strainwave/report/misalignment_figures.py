@@ -135,10 +135,10 @@ def level_figure(found: MisalignmentStudy) -> str:
                 levels = found.levels[combine, OUTPUT]
                 sizes = levels.column("e1", "housing_eccentricity")
                 line = {"linewidth": 1.1, "markersize": 4.0, **style}
-                axes.plot(sizes / study.MICRON, levels.column("e1", column), label=WORDS[combine], **line)
+                axes.plot(sizes / study.M_PER_MICRON, levels.column("e1", column), label=WORDS[combine], **line)
                 tilted = float(found.law.offset) * np.tan(levels.column("beta", "housing_tilt_x"))
                 hollow = {**style, "linestyle": "", "markerfacecolor": "none", "markersize": 6.0}
-                axes.plot(tilted / study.MICRON, levels.column("beta", column), **hollow)
+                axes.plot(tilted / study.M_PER_MICRON, levels.column("beta", column), **hollow)
             axes.set_xscale("log")
             axes.set_yscale("log")
             name = "half swing of torque" if unit == "N.m" else "half swing of current"
@@ -269,11 +269,11 @@ def recovery_figure(recoveries: Mapping[str, Recovery]) -> str:
         for axes, (column, recovery) in zip(panels, recoveries.items(), strict=True):
             sign = 1.0 if np.dot(recovery.best.m, recovery.m) > 0.0 else -1.0
             points = sign * np.array([trial.m for trial in recovery.trials])
-            x, y = points.T / study.MICRON
+            x, y = points.T / study.M_PER_MICRON
             axes.plot(x, y, "o", color=LIGHT["measured"], markersize=3.0, label="found, other noises")
             outline = _ellipse(recovery, sign)
-            axes.plot(*outline / study.MICRON, color=LIGHT["measured"], linewidth=1.0, label="95 % of the first record")
-            true_x, true_y = np.array(recovery.m) / study.MICRON
+            axes.plot(*outline / study.M_PER_MICRON, color=LIGHT["measured"], linewidth=1.0, label="95 % of the first record")
+            true_x, true_y = np.array(recovery.m) / study.M_PER_MICRON
             axes.plot(true_x, true_y, "+", color=LIGHT["model"], markersize=9.0, markeredgewidth=1.5, label="put in")
             axes.set_aspect("equal", adjustable="datalim")
             marks.label_axes(axes, f"{SEEN[column]}: m in y [µm]", "1", "m in x [µm]", "1")

@@ -52,9 +52,9 @@ WHOLE = {
     if field["kind"] == "count"
 }  # names of numbers that are counted
 MOST_THREADS = 2**31 - 1  # that the core can count
-SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
+MIN_POSITIVE = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 # Bytes of output that a part of the files holds at most, where one pack does not need more; of a GPU, which takes many at once.
-PART, DEVICE_PART = 64 << 20, 1 << 30
+PART_BYTES, DEVICE_PART_BYTES = 64 << 20, 1 << 30
 
 Backend = Literal["cpu", "gpu", "gpu-float"]
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
@@ -492,13 +492,13 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
 
 def _limits(low: float, high: float) -> str:
     """Return a range in the notation of the models."""
-    lowest = "(-inf" if low == -np.inf else "(0" if low == SMALLEST else f"[{low:g}"
+    lowest = "(-inf" if low == -np.inf else "(0" if low == MIN_POSITIVE else f"[{low:g}"
     return lowest + (", inf)" if high == np.inf else f", {high:g}]")
 
 
 def _part_size(plan: _Plan) -> int:
     """Members of a part, whose outputs fit into memory: whole packs for every thread."""
-    size = (PART if plan.backend == "cpu" else DEVICE_PART) // (8 * len(plan.recorded) * len(plan.time))
+    size = (PART_BYTES if plan.backend == "cpu" else DEVICE_PART_BYTES) // (8 * len(plan.recorded) * len(plan.time))
     pack = _core.max_lanes * plan.threads
     return max(pack, size - size % pack)
 

@@ -15,7 +15,7 @@ from strainwave.messages import quoted, shortened
 from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import load_input
-from strainwave.simulation.time_grid import INPUTS, LONG_RUN, LONGER_STEPS, NEVER, STEP, TimeGrid, grid
+from strainwave.simulation.time_grid import BYTES_PER_INPUTS, BYTES_PER_STEP, LONG_RUN, LONGER_STEPS, NEVER, TimeGrid, grid
 
 Array = NDArray[np.float64]
 ROOM_TEMPERATURE = 293.15  # K
@@ -78,7 +78,7 @@ class Excitation:
     def check_laid_out(self, dt: float) -> None:
         """Refuses steps of `dt` [s] whose inputs, all laid out by `over`, take too much memory; before a grid is made."""
         check_instants(self.command.duration, dt, LONGER_STEPS)
-        check_room("steps", self.command.duration / dt, STEP + INPUTS, LONG_RUN)
+        check_room("steps", self.command.duration / dt, BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN)
 
     def ends(self, instants: Array, most: int) -> Array:
         """Return the instants at which adaptive steps must end [s].
@@ -131,7 +131,7 @@ class Excitation:
 
     def over(self, time_grid: TimeGrid) -> Array:
         """The same at the start, middle and end of each step, shape (n, 3, 6)."""
-        with room_for("steps", len(time_grid.instants), STEP + INPUTS, LONG_RUN):
+        with room_for("steps", len(time_grid.instants), BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN):
             inputs = _core.inputs(*self.signals, time_grid.instants)
         if isinstance(self.temperature, Scenario):
             check_temperature(float(inputs[:, :, TEMPERATURE_PLACE].min()))

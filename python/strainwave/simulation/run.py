@@ -25,7 +25,7 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import TWIST, Output
 from strainwave.simulation.state import State
 from strainwave.simulation.threads import StepCounter, side_by_side
-from strainwave.simulation.time_grid import LONG_RUN, LONGER_STEPS, STEP, STEPS_PER_CHUNK, TimeGrid, grid
+from strainwave.simulation.time_grid import BYTES_PER_STEP, LONG_RUN, LONGER_STEPS, STEPS_PER_CHUNK, TimeGrid, grid
 
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
@@ -232,7 +232,7 @@ class Course(NamedTuple):
         channels = channels_of(recorded)
         duration = excitation.command.duration
         check_instants(duration, dt, LONGER_STEPS)
-        check_room("steps", duration / dt, STEP, LONG_RUN)
+        check_room("steps", duration / dt, BYTES_PER_STEP, LONG_RUN)
         check_samples(duration, interval, len(channels))
         time_grid = excitation.time_grid(dt, interval, instants)
         return cls(drive, time_grid, time_grid.times, recorded, channels)

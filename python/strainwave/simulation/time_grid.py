@@ -15,7 +15,7 @@ from strainwave.simulation.memory import check_instants, room_for
 Array = NDArray[np.float64]
 NEVER = np.empty(0)
 # What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
-STEP, INPUTS = 33.0, 144.0
+BYTES_PER_STEP, BYTES_PER_INPUTS = 33.0, 144.0
 LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
 LONGER_STEPS = "take longer steps or slower inputs"
 STEPS_PER_CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
@@ -40,7 +40,7 @@ class TimeGrid(ComparedByFields):
         if not isinstance(samples, np.ndarray):
             samples = grid(samples, duration, nearest)
         steps = grid(dt, duration, nearest)
-        with room_for("steps", len(steps) + len(samples), STEP, LONG_RUN):
+        with room_for("steps", len(steps) + len(samples), BYTES_PER_STEP, LONG_RUN):
             instants, sampled, longest = _core.time_grid(steps, samples, np.sort(breaks), nearest)
         return cls(instants, sampled, min(longest, dt))  # longer by rounding
 
@@ -63,5 +63,5 @@ class TimeGrid(ComparedByFields):
 def grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
     check_instants(duration, step, LONGER_STEPS)
-    with room_for("steps", duration / step, STEP, LONG_RUN):
+    with room_for("steps", duration / step, BYTES_PER_STEP, LONG_RUN):
         return _core.grid(step, duration, tolerance)

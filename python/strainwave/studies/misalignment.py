@@ -35,16 +35,16 @@ STROKE_DURATION = 5.0  # s: document A
 DRIVE = "tilt-actuator"
 
 USUAL = "max"  # how the lobes share where one way is shown: the one with which order 2, that is observed, is of first order
-MICRON, DEGREE = 1e-6, np.pi / 180.0
-SHOWN_TILT = 0.2 * DEGREE
+M_PER_MICRON, RAD_PER_DEGREE = 1e-6, np.pi / 180.0
+SHOWN_TILT = 0.2 * RAD_PER_DEGREE
 USUAL_E1 = 20e-6  # m: e_1 of the sweep of the generator's own misalignment
 # The sweeps: the varied parameter, its levels, and the other parameters that differ from zero; SI.
 SWEEPS: dict[str, tuple[str, tuple[float, ...], dict[str, float]]] = {
     "e1": ("housing_eccentricity", (10e-6, 20e-6, 40e-6, 80e-6), {}),
-    "beta": ("housing_tilt_x", tuple(DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
+    "beta": ("housing_tilt_x", tuple(RAD_PER_DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
     "h": ("offset", (0.0, 2e-3, 8e-3), {"housing_tilt_x": SHOWN_TILT}),
     "e2": ("generator_eccentricity", (10e-6, 20e-6, 40e-6, 80e-6), {}),
-    "alpha": ("generator_tilt_x", tuple(DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
+    "alpha": ("generator_tilt_x", tuple(RAD_PER_DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
     "e2 with e1": ("generator_eccentricity", (5e-6, 10e-6, 20e-6, 40e-6), {"housing_eccentricity": USUAL_E1}),
 }
 SHOWN_TILTS = SWEEPS["beta"][1][:3]
@@ -62,8 +62,8 @@ GAINS = (0.5, 1.0, 2.0, 4.0)  # gains of the position loop over that of the driv
 INJECTED = {
     "housing_eccentricity": 15e-6,
     "housing_direction": 0.6,
-    "housing_tilt_x": 0.05 * DEGREE,
-    "housing_tilt_y": 0.03 * DEGREE,
+    "housing_tilt_x": 0.05 * RAD_PER_DEGREE,
+    "housing_tilt_y": 0.03 * RAD_PER_DEGREE,
 }
 FEWEST_ROWS = 2  # of a measured ramp
 RECORDS = {"transmission_error": 2e-5, "current": 0.02}  # root mean square of the noise: two encoders [rad], current sensor [A]

@@ -35,7 +35,7 @@ COMPARED = ("output_angle", "input_angle", "current")
 SETTLING_BAND = 0.02  # share of a change within which a response has settled [1]
 
 REST_ANGLE = 0.05  # rad at the output, 5 rad at the motor: no overshoot leaves the domain of the friction
-STEP, SINE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 allows (E-P13)
+STEP_AMPLITUDE, SINE_AMPLITUDE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 allows (E-P13)
 SAMPLE_TIME = 1e-3  # s
 
 FIT_ERROR = 0.0052  # N.m: document P, Table 1, root mean square error of the average friction
@@ -187,16 +187,16 @@ def commands() -> dict[str, tuple[str, Scenario]]:
     at = f"{1e3 * REST_ANGLE:g} mrad"
     return {
         "step": (
-            f"Step of {1e3 * STEP:g} mrad",
-            constant(REST_ANGLE, 2.0) + step(STEP, 2.0, start=0.1),
+            f"Step of {1e3 * STEP_AMPLITUDE:g} mrad",
+            constant(REST_ANGLE, 2.0) + step(STEP_AMPLITUDE, 2.0, start=0.1),
         ),
         "sine": (
-            f"Sine of 1 Hz, {1e3 * SINE:g} mrad about {at}",
-            sine(SINE, frequency=1.0, duration=3.0, offset=REST_ANGLE),
+            f"Sine of 1 Hz, {1e3 * SINE_AMPLITUDE:g} mrad about {at}",
+            sine(SINE_AMPLITUDE, frequency=1.0, duration=3.0, offset=REST_ANGLE),
         ),
         "pulse-train": (
-            f"Pulses of {1e3 * STEP:g} mrad, 0.5 s each second",
-            constant(REST_ANGLE, 3.0) + pulse_train(STEP, period=1.0, width=0.5, duration=3.0, start=0.1),
+            f"Pulses of {1e3 * STEP_AMPLITUDE:g} mrad, 0.5 s each second",
+            constant(REST_ANGLE, 3.0) + pulse_train(STEP_AMPLITUDE, period=1.0, width=0.5, duration=3.0, start=0.1),
         ),
     }
 

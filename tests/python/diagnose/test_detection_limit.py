@@ -11,7 +11,7 @@ import strainwave as sw
 from strainwave.diagnose.detection import needed_signal_to_noise
 from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
 from strainwave.diagnose.order_lines import order_lines
-from strainwave.diagnose.steady_run import ARCMINUTE, COLUMN
+from strainwave.diagnose.steady_run import COLUMN, RAD_PER_ARCMIN
 
 from tests.detection_limits import (
     Case,
@@ -42,7 +42,7 @@ def test_the_limit_is_that_of_the_closed_form() -> None:
     assert abs(found.gain) == pytest.approx(gain, rel=5e-3)
     assert found.sigma == pytest.approx(sigma, rel=0.01)
     assert found.amplitude == pytest.approx(sigma * needed / gain, rel=0.015)
-    assert found.arcminutes == pytest.approx(found.amplitude / ARCMINUTE)
+    assert found.arcminutes == pytest.approx(found.amplitude / RAD_PER_ARCMIN)
 
 
 def test_the_limit_falls_with_load_time_and_a_quieter_sensor() -> None:

@@ -107,7 +107,7 @@ def test_the_first_loading_reaches_t1_at_its_printed_twist_and_the_loop_is_half_
     gear = sw.Gear.from_datasheet(
         ratio=-100, k1=k1, k2=2 * k1, k3=3 * k1, t1=t1, t2=share * t1, hysteresis_loss=f"{loss} arcmin"
     )
-    width = 0.5 * loss * typical.ARCMIN
+    width = 0.5 * loss * typical.RAD_PER_ARCMIN
     _, at_t1, _, at_zero = gear.twist([0.0, t1, 40.0 * t1, 0.0])
     assert at_t1 == pytest.approx(twist, rel=1e-6)
     assert at_zero == pytest.approx(0.5 * width, rel=1e-4)

@@ -42,7 +42,7 @@ MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
 MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
-INPUTS, LOAD, TEMPERATURE = 6, 2, 4  # of the inverse dynamics: how many, and the places of load torque and temperature
+INPUT_COUNT, LOAD_PLACE, TEMPERATURE_PLACE = 6, 2, 4  # inputs of the inverse dynamics, and places of two of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,8 +289,8 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     """
     rigid = rigid_drive(drive)
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(rigid))}
-    inputs = np.zeros((len(motion.time), INPUTS))
-    inputs[:, LOAD], inputs[:, TEMPERATURE] = others, ROOM_TEMPERATURE
+    inputs = np.zeros((len(motion.time), INPUT_COUNT))
+    inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others, ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
     kernels.prepare(rigid, "inverse_dynamics", kernels.INSTANT_STEPS * len(inputs))
     torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])

@@ -93,7 +93,7 @@ def _begun(loop: PreslidingLoop) -> NDArray[np.bool_]:
 
 
 def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:
-    """Return the torque at which the input slides by other files, if it exceeds the largest of a loop beyond doubt [N.m]."""
+    """Return the torque at which the input slides by other files, if it certainly exceeds the largest of a loop [N.m]."""
     law = known.sliding()
     if "friction_input" not in known.determined or not isinstance(law, WITH_BREAKAWAY):
         return None

@@ -132,7 +132,7 @@ class LoopSummary:
 def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float | None = None) -> LoopAnalysis:
     """Analyse a loop. Of several cycles the last complete one is analysed; `cycles` gives each as a loop of its own.
 
-    Of a loop of more than 100 000 points, the means of as many stretches are analysed, and a remark says so.
+    Of a loop of more than 100 000 points, the means of as many stretches are analysed, with a remark.
 
     Args:
         loop: a loop, or a part of one, in the order measured

@@ -33,7 +33,7 @@ PRELOADS = (0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0)  # of the friction at the 
 MIN_TORQUE_RATIO = 1.5  # peak torque at the input over its friction from which the table's numbers can be computed [1]
 MAX_FRICTION_SHARE = 0.98  # share of the peak torque [1]: with more friction there is no loop
 MODULI = (0.8, 0.9, 1.0, 1.1, 1.2)
-WARMTH = tuple(273.15 + each for each in (-20.0, 0.0, 20.0, 40.0, 60.0))  # K
+TEMPERATURE_LEVELS = tuple(273.15 + each for each in (-20.0, 0.0, 20.0, 40.0, 60.0))  # K
 FAMILY = "hfuc"  # the only one with ratio 30
 FIGURES = ("area", "width", "width_at_zero", "stiffness", "high_stiffness", "low_stiffness")
 
@@ -205,7 +205,7 @@ def influence(
     progress("the catalogue")
     rows = catalogue_rows()
     progress("loops over modulus, preload and temperature")
-    warm = {t: rates.factors(t, _reference(gear)) for t in WARMTH}
+    warm = {t: rates.factors(t, _reference(gear)) for t in TEMPERATURE_LEVELS}
     return Influence(
         gear_set,
         torque,

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 POINTS_PER_STRETCH = 64  # evaluated at once in a search
 STRETCH_GROWTH = 4.0  # ratio of a stretch to the one before [1]: the spacing is 1/16 of the distance or less
 SEARCH_REFINEMENTS = 9  # of the first stretch, each by 1/64: 64^-9 is below rounding
-FIRST, FARTHEST = 1e-7, 1e5  # rad, of the shaft: where a search begins and where it gives up
+FIRST_REACH, MAX_REACH = 1e-7, 1e5  # rad, of the shaft: where a search begins and where it gives up
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,10 +261,10 @@ def _followed(shaft: _Shaft, compliance: float, state: _State, weights: _Weights
 
 def _searched(lacking: Callable[[Array], Array], start: float, sense: float) -> float:
     """Return the first zero of the lacking torque on the way from the start."""
-    near, reach = 0.0, FIRST
+    near, reach = 0.0, FIRST_REACH
     while lacking(start + sense * np.linspace(near, reach, POINTS_PER_STRETCH)[1:]).min() > 0.0:
         near, reach = reach, STRETCH_GROWTH * reach
-        if reach > FARTHEST:
+        if reach > MAX_REACH:
             raise ValueError("nothing holds the disk: the gear, or the arm of the cord, gives way for ever")
     return _crossing(lacking, start + sense * near, start + sense * reach)
 

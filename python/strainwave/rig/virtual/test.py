@@ -29,7 +29,7 @@ from strainwave.simulation.run import progressing
 
 Array = NDArray[np.float64]
 Fault = Literal["blurred", "over-exposed", "marker missing", "swapped", "skipped"]
-BLUR, GLARE = 25.0, 8.0  # px; times the exposure: no edge is left to find
+FAULT_BLUR, FAULT_EXPOSURE = 25.0, 8.0  # px; times the exposure: no edge is left to find
 SOURCE = "assumed: the truth of a virtual test"
 
 
@@ -286,9 +286,9 @@ def _shown(steps: Sequence[Step], faults: Mapping[int, Fault]) -> list[int]:
 
 def _faulty(scene: Scene, fault: Fault | None) -> Scene:
     if fault == "blurred":
-        return replace(scene, blur=BLUR)
+        return replace(scene, blur=FAULT_BLUR)
     if fault == "over-exposed":
-        return replace(scene, exposure=GLARE * scene.exposure)
+        return replace(scene, exposure=FAULT_EXPOSURE * scene.exposure)
     if fault == "marker missing":
         return replace(scene, markers=(scene.markers[0], scene.ground))
     return scene

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Grey = NDArray[np.float32]
 SECTOR_LENGTH = 3.5  # px of the edge
-_FEWEST, _MOST = 24, 180  # sectors
+_MIN_SECTORS, _MAX_SECTORS = 24, 180  # sectors
 _LEAST_USED = 8
 _BAND_BLURS = 3.5  # distance from the edge, in blurs, within which pixels determine it [1]
 _MAX_SHIFT_BLURS = 3.0  # shift of a sector, in blurs [1]; beyond it the first-order fit does not hold
@@ -30,7 +30,8 @@ _OUTLIER_SCATTER = 4.5  # distance over the scatter from which a point is an out
 _MAX_VARIANCE_RATIO = 4.0  # variance of the pixels of a sector over the usual one [1]
 _NEGLIGIBLE_PIXEL_SHARE = 0.003  # share of the pixels of a side that may change between two passes at the end [1]
 _MAX_PASSES = 5  # of the edge fit
-_MOVED, _WIDENED = 0.15, 0.06  # px, and of the blur: what the next pass would still change is the square of it
+_MAX_LAST_SHIFT = 0.15  # px: the next pass would change the square of it
+_MAX_LAST_WIDENING = 0.06  # share of the blur [1]: the next pass would change the square of it
 _ELLIPSE_TRIAL_SHARE = 0.7  # share of the next limit below which no ellipse is fitted [1]
 _ELLIPSE_VARIANCE_RATIO = 12.0  # beyond it the points are an ellipse's [1]: 4e-5 of all circles of 70 points reach it
 WIDE_ARC = 0.6  # share of the edge that an ellipse needs
@@ -114,7 +115,7 @@ class _Fit:
 def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fit | None:
     """The edge among the pixels near it; None where too few sectors show one."""
     curve, blur = found.curve, found.blur
-    sectors = int(np.clip(2.0 * np.pi * curve.radius / SECTOR_LENGTH, _FEWEST, _MOST))
+    sectors = int(np.clip(2.0 * np.pi * curve.radius / SECTOR_LENGTH, _MIN_SECTORS, _MAX_SECTORS))
     low, high = (level.at(band.x, band.y) for level in levels)
     for _ in range(_MAX_PASSES):
         before, blur_before = curve, blur
@@ -130,7 +131,10 @@ def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fi
                 return None
             if np.count_nonzero(good) == count:
                 break
-        if np.hypot(curve.x - before.x, curve.y - before.y) < _MOVED and abs(blur / blur_before - 1.0) < _WIDENED:
+        if (
+            np.hypot(curve.x - before.x, curve.y - before.y) < _MAX_LAST_SHIFT
+            and abs(blur / blur_before - 1.0) < _MAX_LAST_WIDENING
+        ):
             break
     return _Fit(x[good], y[good], blur, float(np.mean(good)))
 

@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 SMALLEST_RADIUS = 6.0  # px, unless another is given
 _LEAST_ARC, _SHORTEST_ARC = 0.5, 0.25  # share of the edge [1]: of a marker, and of what a message mentions
 _MIN_CONTRAST_RATIO = 0.3  # contrast of an edge over the contrast around it [1]
-_ROUNDEST, _SMALL, _ROUGHEST = 0.02, 0.05, 0.5  # residual of a circle: of its radius, of a small one's, and px
+_MAX_RESIDUAL_SHARE = 0.02  # residual of an edge over its radius [1]
+_MAX_SHARE_IF_SMALL, _MAX_RESIDUAL_IF_SMALL = 0.05, 0.5  # of a small marker: residual over its radius [1], and residual in px
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,9 @@ def _limits(shape: tuple[int, ...], radius: tuple[float, float] | None) -> tuple
 
 def _is_round(fine: Edge, dark: bool) -> bool:
     longer, shorter = fine.curve.half_axes
-    smooth = fine.residual <= max(_ROUNDEST * fine.curve.radius, min(_SMALL * fine.curve.radius, _ROUGHEST))
+    smooth = fine.residual <= max(
+        _MAX_RESIDUAL_SHARE * fine.curve.radius, min(_MAX_SHARE_IF_SMALL * fine.curve.radius, _MAX_RESIDUAL_IF_SMALL)
+    )
     return smooth and shorter > 0.4 * longer and (fine.outside > fine.inside) == dark
 
 
