@@ -11,7 +11,7 @@ EXIT_INTERRUPTED = 128 + signal.SIGINT  # exit code, as shells give it, and type
 
 
 def main() -> None:
-    """Runs the command, as the shell knows it."""
+    """Run the command, as the shell knows it."""
     written: list[Path] = []
     try:
         from strainwave.simulation.threads import THREAD_VARIABLES

@@ -125,7 +125,7 @@ def names(name: str, values: object) -> list[str]:
 
 
 def mapping(name: str, value: object, example: str) -> None:
-    """Refuses what does not map names to something, as the example does."""
+    """Refuse what does not map names to something, as the example does."""
     if not isinstance(value, Mapping):
         raise TypeError(f"{name} must be a mapping, as in {example}, not {shortened(value)}")
 

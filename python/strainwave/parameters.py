@@ -39,7 +39,7 @@ def unknown(path: str, known: Iterable[str]) -> ValueError:
 
 
 def parameters(name: str, model: Gear | Drive, paths: Sequence[str]) -> list[Parameter]:
-    """Those that an argument names, in the order of the model; the path of a sequence names all its elements.
+    """Return the parameters that an argument names, in the order of the model; the path of a sequence names all its elements.
 
     >>> gear = Gear()
     >>> [each.path for each in parameters("free", gear, ["damping"])]

@@ -16,7 +16,7 @@ def compare(first: Recording, second: Recording, names: Sequence[str] | None = N
 @overload
 def compare(first: Model, second: Model) -> list[Difference]: ...
 def compare(first: Any, second: Any, names: Sequence[str] | None = None) -> Any:
-    """Compares two recordings, or two models.
+    """Compare two recordings, or two models.
 
     Of recordings each column that both have is compared, over the time that both cover: the second is read off at the samples
     of the first, between its own on a straight line. Columns of other units are converted. Of models all numbers are compared,

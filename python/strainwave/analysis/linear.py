@@ -276,7 +276,7 @@ def modes(drive: Drive) -> dict[str, Array]:
 
 
 def _frequencies(drive: Drive) -> Array:
-    """Those of the pairs of poles that vibrate [rad/s]."""
+    """Return the frequencies of the pairs of poles that vibrate [rad/s]."""
     linear = linearise(drive, drive.rest())
     found: Array = np.sort(linear.poles.imag[linear.poles.imag > 0.0])
     return found

@@ -53,8 +53,8 @@ class FrequencyResponse(ComparedByFields):
         distortions: of each output, the root sum of squares of its higher harmonics over its first, shape (k,)
         drifts: of each output, what a period adds to it [unit of the output], shape (k,); angles of a drive that runs, and
             what friction or hysteresis lets creep under a vibration
-        periods: how many passed until the motion was periodic, shape (k,)
-        input: what the sine was added to
+        periods: count until the motion was periodic, shape (k,)
+        input: name of the input with the sine
         units: unit of the input and of each output
     """
 
@@ -171,7 +171,7 @@ def frequency_response(
 def _response(
     frequencies: Array, amplitude: float, found: list[dict[str, Array]], counts: list[int], input: str, known: dict[str, str]
 ) -> FrequencyResponse:
-    """Return the response, from the outputs over one period of each frequency, and its number."""
+    """Return the response from the outputs over one period of each frequency, and its number."""
     responses, distortions, drifts = {}, {}, {}
     for name in found[0]:
         first, higher = np.array([_harmonics(period[name]) for period in found]).T

@@ -120,7 +120,7 @@ def derivatives(
     inputs: Mapping[str, Scenario | float] | None = None,
     initial: Mapping[str, float] | None = None,
 ) -> Derivatives:
-    """Runs a drive through a command with the derivatives of all outputs by some of its parameters.
+    """Run a drive through a command with the derivatives of all outputs by some of its parameters.
 
     They are those of the run as it is computed, exact to rounding: dual numbers go through steps, events and the memory of
     hysteresis. At a moment where the run itself is not smooth in a parameter they are those of one side. Up to four parameters

@@ -80,7 +80,7 @@ def equilibrium(
 
 
 def _check_uncounted(drive: Drive) -> None:
-    """Refuses sensors that count or read in steps: what lies between they do not show, so torques do not quite balance."""
+    """Refuse sensors that count or read in steps: between steps they show no change, so torques do not quite balance."""
     for field in drive.sensors.fields:
         sensor = getattr(drive.sensors, field["name"])
         steps = hasattr(sensor, "resolution")
@@ -93,7 +93,7 @@ def _check_uncounted(drive: Drive) -> None:
 
 
 def _check_prescribed(drive: Drive, state: Array, inputs: Array) -> None:
-    """Refuses a motor that keeps accelerating the input shaft, whatever torque that takes."""
+    """Refuse a motor that keeps accelerating the input shaft, whatever torque that takes."""
     if isinstance(drive.motor, motor.AccelerationSource):
         place = StateLayout(drive).places["input_speed"].start
         if not Rates.of(drive, state, inputs).vanishes([place], 1e-9):

@@ -397,7 +397,7 @@ def _keep_plan(made: Plan, out: Path) -> None:
 
 
 def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: PictureSource, settling: Settling) -> int:
-    """Guides through the steps that are left; returns how many are done."""
+    """Guide through the remaining steps, and return the count of steps done."""
     from strainwave.report.rig_live import Terminal
     from strainwave.rig.bench.rig_file import write_rig
     from strainwave.rig.bench.steps_file import photograph_of

@@ -61,7 +61,7 @@ def simulate(
 
 
 def _check_target(option: str, path: Path | None, endings: tuple[str, ...], source: Path) -> None:
-    """Refuses what cannot be written, before a long run is made for it."""
+    """Refuse what cannot be written, before a long run is made for it."""
     if path is None:
         return
     if path.suffix not in endings:

@@ -68,7 +68,7 @@ def read(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def write(gear_set: Contents, path: Path) -> None:
-    """Writes a file that `read` reads back equal, bit for bit; `ValueError` where its name does not end in .toml."""
+    """Write a file that `read` reads back equal, bit for bit; `ValueError` where its name does not end in .toml."""
     if path.suffix != ".toml":
         raise ValueError(one_line(f"{path}: a gear file ends in .toml"))
     content = text(gear_set)
@@ -258,7 +258,7 @@ def _read_ratings(content: Mapping[str, Any]) -> dict[str, Quantity]:
 
 @contextmanager
 def at(place: str) -> Iterator[None]:
-    """Puts the place before the message of whatever is refused inside."""
+    """Put the place before the message of whatever is refused inside."""
     try:
         yield
     except (TypeError, ValueError) as error:

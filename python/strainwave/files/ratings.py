@@ -62,7 +62,7 @@ class RatingCheck:
 
 
 def check_ratings(gear_set: GearSet, *recordings: Recording) -> list[RatingCheck]:
-    """Compares recordings with the limits that a gear set states.
+    """Compare recordings with the limits that a gear set states.
 
     | rating | what is compared with it |
     |---|---|

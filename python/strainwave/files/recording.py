@@ -364,7 +364,7 @@ class Recording:
 
 
 def check_recording(name: str, value: object) -> None:
-    """Refuses what is no recording."""
+    """Refuse what is no recording."""
     if not isinstance(value, Recording):
         raise TypeError(f"{name} must be a Recording, as Recording.read(...) gives one, not {shortened(value)}")
 

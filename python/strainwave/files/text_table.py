@@ -249,7 +249,7 @@ class CsvTable:
         return f"its header is line {self.above + 1}"
 
     def _without_torn_end(self) -> tuple[CsvTable, list[str]]:
-        """This table without its last row, if that has fewer cells than the header, and the others have not."""
+        """Return this table without its last row, if only that has fewer cells than the header."""
         text = self.body.tobytes().rstrip(b"\n")
         start = text.rfind(b"\n") + 1
         before = text[text.rfind(b"\n", 0, max(start - 1, 0)) + 1 : max(start - 1, 0)]

@@ -64,7 +64,7 @@ def write_all(contents: Mapping[Path, str | bytes]) -> None:
 
 
 def write_folder(folder: Path, contents: Mapping[str, str | bytes]) -> None:
-    """Writes the results of a command to files in a folder, all or none; an interrupt waits until they are there.
+    """Write the results of a command to files in a folder, all or none; an interrupt waits until they are there.
 
     Args:
         folder: made if it is not there
@@ -87,7 +87,7 @@ def write_folder(folder: Path, contents: Mapping[str, str | bytes]) -> None:
 
 @contextmanager
 def making(folder: Path) -> Iterator[None]:
-    """Makes a folder and those above it; those that it made are taken away again where what follows fails.
+    """Make a folder and those above it; those that it made are taken away again where what follows fails.
 
     Raises:
         OSError: the folder cannot be made; the message gives the reason
@@ -160,7 +160,7 @@ class _Through:
         self.file.close()
 
     def put(self) -> None:
-        """It has been put there already."""
+        """Do nothing: the bytes are already in place."""
 
 
 @contextmanager
@@ -218,7 +218,7 @@ def _open_beside(target: Path) -> BinaryIO:
 
 
 def _adopt(file: BinaryIO, old: os.stat_result) -> None:
-    """Gives a file the owner, as far as this process may, and the mode of the one whose place it takes."""
+    """Give a file the owner, as far as this process may, and the mode of the one whose place it takes."""
     with suppress(PermissionError):
         os.fchown(file.fileno(), old.st_uid, old.st_gid)
     os.fchmod(file.fileno(), stat.S_IMODE(old.st_mode))

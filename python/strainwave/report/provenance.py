@@ -32,7 +32,7 @@ class Provenance:
 
     @classmethod
     def of(cls, files: Iterable[str | Path], *, command: str, date: str) -> Provenance:
-        """With the digests of files as they are now.
+        """Return the origin with the digests of files as they are now.
 
         Raises:
             OSError: a file cannot be read

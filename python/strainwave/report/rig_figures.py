@@ -200,7 +200,7 @@ def _stiffness(axes: Axes, curve: StiffnessCurve) -> None:
 
 
 def _stiffness_axis(axes: Axes, panel: Sequence[StiffnessCurve]) -> None:
-    """From zero, or logarithmic where stiff and soft stretches would not both be seen."""
+    """Set the axis of the stiffness: from zero, or logarithmic if stiff and soft stretches would not both be visible."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     values = np.concatenate([curve.stiffness for curve in panel])

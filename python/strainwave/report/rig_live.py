@@ -145,7 +145,7 @@ def live(
     now: Callable[[], float] = time.monotonic,
     pause: Callable[[float], None] = time.sleep,
 ) -> list[Point]:
-    """Shows photographs as they come, until none came for a while or whoever looks presses Ctrl-C.
+    """Show photographs as they come, until none came for a while or whoever looks presses Ctrl-C.
 
     A terminal shows the loop, drawn anew with each photograph; a pipe gets a line for each.
 

@@ -69,7 +69,7 @@ def simulate_controlled(
     record: Sequence[str] | None = None,
     progress: bool = False,
 ) -> Run:
-    """Runs a drive under a controller that is a function of Python.
+    """Run a drive under a controller that is a function of Python.
 
     The controller is called at t = 0, period, 2 period … as a computer in a joint is. What it returns reaches the motor after
     `delay` and stays until the next result does; before the first it is 0. So this is what `sw.control.Sampled` does around a

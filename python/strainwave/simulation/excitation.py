@@ -42,7 +42,7 @@ class Excitation:
         temperature: Scenario | float = ROOM_TEMPERATURE,
         inputs: Mapping[str, Scenario | float] | None = None,
     ) -> Excitation:
-        """From arguments as users give them; `inputs` has those that the parts of the drive take, by name."""
+        """Return the excitation for the arguments of a user; `inputs` has those that the parts of the drive take, by name."""
         if not isinstance(command, Scenario):
             raise TypeError(f"command = {shortened(command)} must be a Scenario, as sw.scenario.constant(...) makes one")
         if inputs is not None:
@@ -76,7 +76,7 @@ class Excitation:
         return TimeGrid.through(self.command.duration, dt, dt if samples is None else samples, breaks)
 
     def check_laid_out(self, dt: float) -> None:
-        """Refuses steps of `dt` [s] whose inputs, all laid out by `over`, take too much memory; before a grid is made."""
+        """Refuse steps of `dt` [s] whose inputs, all laid out by `over`, take too much memory; before a grid is made."""
         check_instants(self.command.duration, dt, LONGER_STEPS)
         check_room("steps", self.command.duration / dt, BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN)
 
@@ -110,7 +110,7 @@ class Excitation:
         )
 
     def check_temperature(self, ends: Array) -> None:
-        """Refuses a temperature that is not positive, at eight places between all `ends`."""
+        """Refuse a temperature that is not positive, at eight places between all `ends`."""
         if isinstance(self.temperature, Scenario):
             between = ends[:-1] + np.diff(ends) * np.arange(8)[:, None] / 8
             check_temperature(float(min(self.temperature.value(between).min(), self.temperature.value_before(ends).min())))

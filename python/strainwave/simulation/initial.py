@@ -50,7 +50,7 @@ def _value(name: str, value: ArrayLike, members: int) -> Array:
 
 
 def _check_together(drive: Drive, names: set[str], prescribed: bool) -> None:
-    """Refuses quantities that contradict each other, or that this drive does not have."""
+    """Refuse quantities that contradict each other, or that this drive does not have."""
     given = names | ({"output_angle"} if prescribed else set())
     if prescribed and (inputs := names & {"output_angle", "output_speed"}):
         raise ValueError(f"initial {min(inputs)}: the load prescribes it; it is an input of the run")

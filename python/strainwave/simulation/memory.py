@@ -15,7 +15,7 @@ BYTES_PER_ACTION = 120.0  # memory for a sample of a controller with the instant
 
 @contextmanager
 def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None]:
-    """Refuses what takes more than `MAX_BYTES`; a MemoryError within names it, its size, and the remedy.
+    """Refuse what takes more than `MAX_BYTES`; a MemoryError within names it, its size, and the remedy.
 
     Args:
         what: takes it, in the plural
@@ -40,7 +40,7 @@ def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None
 
 
 def check_room(what: str, count: float, each: float, remedy: str) -> None:
-    """Refuses what is too large for the memory, as `room_for` does, before time is spent on a part of it.
+    """Refuse what is too large for the memory, as `room_for` does, before time is spent on a part of it.
 
     >>> check_room("samples", 1e15, 8.0, "take fewer")
     Traceback (most recent call last):
@@ -51,7 +51,7 @@ def check_room(what: str, count: float, each: float, remedy: str) -> None:
 
 
 def check_instants(duration: float, step: float, remedy: str, most: float = MAX_INSTANTS) -> None:
-    """Refuses to cut a duration [s] into more than `most` steps [s].
+    """Refuse to cut a duration [s] into more than `most` steps [s].
 
     >>> check_instants(1.0, 1e-12, "take longer ones")
     Traceback (most recent call last):
@@ -62,7 +62,7 @@ def check_instants(duration: float, step: float, remedy: str, most: float = MAX_
 
 
 def check_acting(duration: float, period: float) -> None:
-    """Refuses more than `MAX_ACTIONS` of a controller, one a period [s] over a duration [s].
+    """Refuse more than `MAX_ACTIONS` of a controller, one a period [s] over a duration [s].
 
     >>> check_acting(0.1, 1e-9)
     Traceback (most recent call last):

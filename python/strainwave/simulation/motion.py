@@ -37,7 +37,7 @@ class InputMotion(ComparedByFields):
 
     @classmethod
     def through(cls, time: ArrayLike, angle: ArrayLike, *, from_rest: bool = False) -> InputMotion:
-        """Through angles, by the cubic spline: its acceleration runs straight from one instant to the next.
+        """Return the motion through angles by the cubic spline, whose acceleration is linear from one instant to the next.
 
         The angle passes through all of them, so that their noise should be gone before: it is differentiated twice.
 

@@ -36,7 +36,7 @@ def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str)
 
 
 def check_resolution(drive: Drive, dt: float, twist: float, temperature: float) -> None:
-    """Refuses steps too coarse for a drive at the temperature [K] where a run begins.
+    """Refuse steps too coarse for a drive at the temperature [K] where a run begins.
 
     Before a run at rest, else many a step may be spent on events that mean nothing.
     """

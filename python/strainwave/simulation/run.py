@@ -224,7 +224,7 @@ class Course(NamedTuple):
     def of(
         cls, drive: Drive, excitation: Excitation, recorded: Mapping[str, Output], dt: float, interval: float, instants: Array
     ) -> Course:
-        """With steps of at most `dt`, samples at `interval` [s], and steps that end at `instants` [s] too.
+        """Return the course with steps of at most `dt`, samples at `interval` [s], and steps that also end at `instants` [s].
 
         Raises:
             ValueError, MemoryError: the steps or the samples are too many
@@ -242,7 +242,7 @@ class Course(NamedTuple):
         return beginning(self.drive, state, first, self.channels, len(self.time))
 
     def check_steps(self, twist: float, temperature: float) -> None:
-        """Refuses steps that cannot follow the drive at a twist [rad], as warm as it begins at a temperature [K]."""
+        """Refuse steps that cannot follow the drive at a twist [rad], as warm as it begins at a temperature [K]."""
         check_resolution(self.drive, self.time_grid.longest, twist, temperature)
 
     def largest_twist(self, outputs: Array) -> float:
@@ -260,7 +260,7 @@ def recorded_of(drive: Drive, record: Sequence[str] | None) -> Mapping[str, Outp
 
 
 def check_samples(duration: float, interval: float, columns: float) -> None:
-    """Refuses samples that no memory holds, before a grid is laid out for them."""
+    """Refuse samples that no memory holds, before a grid is laid out for them."""
     check_instants(duration, interval, SAMPLE_LESS)
     check_room("samples", duration / interval, 8.0 * columns, SAMPLE_LESS)
 

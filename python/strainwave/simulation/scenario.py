@@ -399,7 +399,7 @@ def _duration(name: str, value: object) -> float:
 
 
 def _from(start: float, duration: float, level: float, slope: float) -> Scenario:
-    """Nothing until `start`, then one piece of a line."""
+    """Return a scenario that is zero until `start`, then one piece of a line."""
     before = [0.0] if start > 0.0 else []
     starts, levels, slopes = (np.array([*before, last]) for last in (start, level, slope))
     return Scenario(duration, starts, levels, slopes)

@@ -138,7 +138,7 @@ class ScenarioFile:
         return ScenarioFile, (self.command, dict(self.inputs), dict(self.initial), self.name, self.note)
 
     def simulate(self, drive: Drive | GearSet, dt: float = 2e-4, **options: Any) -> Run:
-        """Runs a drive through it, as `simulate` does.
+        """Run a drive through it, as `simulate` does.
 
         Args:
             drive, dt: as `simulate`
@@ -153,7 +153,7 @@ class ScenarioFile:
         return simulate(drive, self.command, dt, inputs=self.inputs, initial=self.initial or None, **options)
 
     def simulate_adaptively(self, drive: Drive | GearSet, rtol: float = 1e-6, **options: Any) -> Run:
-        """Runs a drive through it, as `simulate_adaptively` does.
+        """Run a drive through it, as `simulate_adaptively` does.
 
         Args:
             drive, rtol: as `simulate_adaptively`

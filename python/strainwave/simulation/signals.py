@@ -137,7 +137,7 @@ def instants(drive: Drive, state: Array, duration: float) -> Array:
 
 
 def check_continuous(drive: Drive, what: str) -> None:
-    """Refuses a drive that is not one system of differential equations, of which `what` is asked.
+    """Refuse a drive that is not one system of differential equations, of which `what` is asked.
 
     Raises:
         ValueError: its controller acts at instants only, its load prescribes the motion of the output shaft or brakes it,

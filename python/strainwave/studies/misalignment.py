@@ -140,7 +140,7 @@ class Recovery:
 
     @property
     def within(self) -> int:
-        """In how many trials the truth lies within the ellipse of 95 %."""
+        """Return the count of trials whose ellipse of 95 % contains the true value."""
         return sum(trial.contains(self.m) for trial in self.trials)
 
 
@@ -421,7 +421,7 @@ def share_by_ideal_loop(frequency: Any, gain: float) -> Any:
 
 
 def recovered(ramp: ActuatorRamp, law: Any) -> Iterator[Recovery]:
-    """Puts a misalignment in, and looks for it in what can be measured."""
+    """Put a misalignment in, and look for it in what can be measured."""
     model = RecoveryModel.of(ramp)
     for combine in ("max", "single"):
         straight = law.replace(combine=combine)
@@ -437,7 +437,7 @@ def recovered(ramp: ActuatorRamp, law: Any) -> Iterator[Recovery]:
 
 
 def _records(ramp: ActuatorRamp) -> list[Recording]:
-    """Runs of the drive, each with other noises of the sensors in its loops."""
+    """Return runs of the drive, each with other noises of the sensors in its loops."""
     seeds = noises(ramp.drive, "seed")
     if not seeds:
         run = ramp.settled(ramp.run())

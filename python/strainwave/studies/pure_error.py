@@ -75,7 +75,7 @@ class PureError:
 
 
 def pure_error(measured: str | Path | None, law: Any) -> PureError:
-    """Fits a law of misalignment to a curve over a turn.
+    """Fit a law of misalignment to a curve over a turn.
 
     Args:
         measured: a file with the columns input_angle and kinematic_error, over a turn at least; None for the assumed curve

@@ -93,7 +93,7 @@ class Compensated:
 
     @property
     def gain(self) -> float:
-        """By how much the median of the goal's figure is smaller than that of the baseline, relative."""
+        """Return the relative reduction of the goal's median figure against the baseline [1]."""
         before, after = (each.median(self.goal.judged_by) for each in (self.baseline, self.chosen))
         return 1.0 - after / before
 

@@ -53,7 +53,7 @@ def without(free: Sequence[str], name: str) -> tuple[str, ...]:
 
 
 def with_delay(model: MotionModel, start: float = 0.0) -> MotionModel | None:
-    """With a delay of the effort behind the motion, from where a fit starts [s]."""
+    """Return the model with a delay of the effort behind the motion, from the initial value of a fit [s]."""
     if model.log.delayed:
         return None
     log = model.log.with_delay()
@@ -64,7 +64,7 @@ def with_delay(model: MotionModel, start: float = 0.0) -> MotionModel | None:
 
 
 def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
-    """With a viscous torque that bends over the speed."""
+    """Return the model with a viscous torque that is not linear in the speed."""
     law = model.law
     if not isinstance(law, friction.Coulomb):
         return None
@@ -78,7 +78,7 @@ def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
 
 
 def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
-    """With friction that is higher, or lower, at low speed."""
+    """Return the model with friction that is higher, or lower, at low speed."""
     law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
     if not isinstance(law, friction.Coulomb):
         return None
@@ -88,7 +88,7 @@ def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None
 
 
 def with_loss_under_load(model: MotionModel) -> MotionModel | None:
-    """With a loss under load, the same in all quadrants: one for each cannot be separated from inertia and gravity."""
+    """Return the model with a loss under load, equal in all quadrants: four losses are not separable from the inertia."""
     if LOSSES[0] in model.free:
         return None
     lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))

@@ -48,7 +48,7 @@ class ComparedQuantity:
 
     @property
     def probability(self) -> float:
-        """By repeats where there are some, for these hold what stated errors forget; else by the stated errors."""
+        """Return the probability by repeats if there are some, since these contain all errors; else by the stated errors."""
         return self.by_stated if isnan(self.by_repeats) else self.by_repeats
 
     @property
@@ -84,7 +84,7 @@ class Comparison:
 
 
 def compare(analyses: Sequence[LoopAnalysis], by: By = "position", definition: Definition = "softest") -> Comparison:
-    """Compares positions of one specimen, or units of one design.
+    """Compare positions of one specimen, or units of one design.
 
     Errors that all loops share, such as that of the disk's radius, shift all alike and are left out. With repeated loops in
     every group, Welch's analysis of variance compares the means; without, the stated errors do, by chi-square.

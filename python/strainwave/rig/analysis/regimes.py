@@ -322,7 +322,7 @@ def _in_order(one: Branch | None, other: Branch | None) -> tuple[Branch | None, 
 
 
 def _branch(loop: Loop, runs: Sequence[_Run]) -> Branch:
-    """From one run, or from the end of a loop and its beginning; where these overlap, the end counts."""
+    """Return the branch of one run, or of the end of a loop and its beginning; where these overlap, the end counts."""
     from scipy.optimize import isotonic_regression
 
     late, *early = runs

@@ -156,7 +156,7 @@ def _told(stiffness: float, random: float, loop: Loop, freedom: float, *, by_ang
 
 
 def _secant(regime: Regime, loop: Loop, freedom: float) -> Result:
-    """Between the point of zero torque and the peak.
+    """Return the secant between the point of zero torque and the peak.
 
     An error of the pulleys' friction shifts the torque of all points that were reached the same way by d. While loading, that
     is all of them, and the compliance errs by (C - c) d / T, with C of the secant, c at zero torque, T of the peak. A peak

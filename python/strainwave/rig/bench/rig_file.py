@@ -56,7 +56,7 @@ def rigs() -> list[str]:
 
 
 def load(name_or_path: str | Path) -> Rig:
-    """Reads a rig that comes with the package by its name, or a file by its path.
+    """Read a rig that comes with the package by its name, or a file by its path.
 
     Args:
         name_or_path: a name in `rigs()`, or a path: what ends in .toml or has a folder
@@ -76,7 +76,7 @@ def load(name_or_path: str | Path) -> Rig:
 
 
 def write_rig(rig: Rig, path: str | Path) -> None:
-    """Writes a file that `load` reads back equal, bit for bit.
+    """Write a file that `load` reads back equal, bit for bit.
 
     Args:
         rig: the rig

@@ -43,7 +43,7 @@ HEADER = {name: f"{name} [{UNITS[name][1]}]" if name in UNITS else name for name
 
 
 def read_steps(path: str | Path) -> list[Step]:
-    """Reads the steps of a test.
+    """Read the steps of a test.
 
     A cell may be empty where a step has no such thing; a mass only where the torque was measured otherwise.
 
@@ -75,7 +75,7 @@ def read_steps(path: str | Path) -> list[Step]:
 
 
 def write_steps(steps: Sequence[Step], path: str | Path) -> None:
-    """Writes the steps of a test, with the columns that are used; `read_steps` reads them back.
+    """Write the steps of a test, with the columns that are used; `read_steps` reads them back.
 
     Args:
         steps: the steps
@@ -97,7 +97,7 @@ def write_steps(steps: Sequence[Step], path: str | Path) -> None:
 
 
 def append_step(step: Step, path: str | Path) -> None:
-    """Adds a step to the record of a test, which it begins where there is none yet.
+    """Add a step to the record of a test, which it begins where there is none yet.
 
     The file is complete at any moment: a new file with all steps is written next to it and then replaces it.
 

@@ -96,7 +96,7 @@ class Cycle(ComparedByFields):
 
 
 def _mean_stiffness(regimes: list[tuple[Array, Array, float]]) -> float:
-    """From the compliances of regimes: torque and angle of a branch, and the sign of the torque at which it is the regime."""
+    """Return the mean stiffness of regimes, each given by torque and angle of a branch and the sign of its torque."""
     compliances = []
     for torque, angle, sign in regimes:
         order = np.argsort(torque)

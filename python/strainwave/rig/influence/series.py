@@ -139,7 +139,7 @@ def _column(name: str, values: Sequence[float] | Array, n: int) -> Array:
 
 
 def analyse_series(series: Series) -> list[Trend]:
-    """Tests each measured quantity for a dependence on each factor that was varied.
+    """Test each measured quantity for a dependence on each factor that was varied.
 
     Raises:
         ValueError: nothing was varied, or there are too few measurements for a test
@@ -154,7 +154,7 @@ def analyse_series(series: Series) -> list[Trend]:
 
 
 def read_series(path: str | Path) -> Series:
-    """Reads a table of a series: a row for each loop.
+    """Read a table of a series: a row for each loop.
 
     Columns are those of `FACTORS`, which were varied, and of `QUANTITIES`, which were measured, each with its unit in brackets
     as `torque_max [N.m]`; `unit` names the specimen. With a column `file`, which names a file with the points of the loop in

@@ -265,7 +265,7 @@ def _explained(design: Design, factor: str, by: Sequence[str]) -> float:
 
 
 def trends(design: Design, quantities: Mapping[str, Array]) -> list[Trend]:
-    """Fits each quantity to all factors at once, and tests each dependence.
+    """Fit each quantity to all factors at once, and test each dependence.
 
     A quantity that is positive throughout is fitted by its logarithm: the law of a factor then is a power or an exponential,
     and scatter counts relative to the size.

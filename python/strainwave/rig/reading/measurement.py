@@ -78,7 +78,7 @@ def read_test(
     camera: Camera | None = None,
     progress: Callable[[str], None] = lambda name: None,
 ) -> TorsionTest:
-    """Reads the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
+    """Read the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
     E-T11). The remarks list each photograph without an angle; the other steps remain. If the folder contains the
@@ -126,7 +126,7 @@ def read_test(
 
 
 def _check_masses(folder: Path, steps: Sequence[Step], rig: Rig) -> None:
-    """Refuses more mass than the rig has, as a number of grams in a column of kilograms is."""
+    """Refuse more mass than the rig has, as a number of grams in a column of kilograms is."""
     most = sum(masses.mass * masses.count for masses in rig.masses)
     for step in steps if rig.masses else ():
         if (total := step.mass_positive + step.mass_negative) > most * (1.0 + 1e-6):

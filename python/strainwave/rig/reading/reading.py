@@ -46,7 +46,7 @@ class EvaluationOptions:
 def evaluate_paths(
     paths: Sequence[Path], given: EvaluationOptions, progress: Callable[[str], None] = lambda stage: None
 ) -> tuple[Evaluation, list[Path]]:
-    """Reads folders of tests and files of loops, and evaluates them together.
+    """Read folders of tests and files of loops, and evaluate them together.
 
     Args:
         paths: folders and files
@@ -108,7 +108,7 @@ def _read(
 
 
 def _check_test(folder: Path, rig: Rig | None) -> None:
-    """Refuses a folder that holds no test, with what it lacks."""
+    """Refuse a folder that holds no test, with what it lacks."""
     if not (folder / "steps.csv").exists():
         raise FileNotFoundError(f"{folder} holds no steps.csv, in which each step of a test has its masses and photograph")
     if rig is None and not (folder / "rig.toml").exists():

@@ -30,7 +30,7 @@ def read_loop(
     position: float = 0.0,
     unit: str = "",
 ) -> Loop:
-    """Reads a loop from columns of angle and torque in a CSV or Parquet file.
+    """Read a loop from columns of angle and torque in a CSV or Parquet file.
 
     Args:
         path: the file; the columns are found by their names and sizes, or called input_angle and input_torque, or twist and

@@ -127,7 +127,7 @@ def settle(
     now: Callable[[], float] = time.monotonic,
     pause: Callable[[float], None] = time.sleep,
 ) -> Rest:
-    """Takes pictures until the angle no longer changes beyond its own uncertainty, or patience ends.
+    """Take pictures until the angle no longer changes beyond its own uncertainty, or patience ends.
 
     Args:
         source: of the pictures
@@ -188,7 +188,7 @@ def conduct(
     settling: Settling = Settling(),
     load: Callable[[int], None] = lambda number: None,
 ) -> list[Step]:
-    """Guides through the steps of a plan that are still to be made, and writes each down as soon as it is done.
+    """Guide through the steps of a plan that are still to be made, and write each down as soon as it is done.
 
     The photograph is put in place first and the row of `steps.csv` after it, each whole or not at all: a test that is
     broken off at any moment goes on with the step that has no row.

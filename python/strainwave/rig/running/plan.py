@@ -186,7 +186,7 @@ def _quantum(rig: Rig, pans: Pans) -> float:
 
 
 def _check_reach(rig: Rig, pans: Pans, wanted: float, total: float) -> None:
-    """Refuses a peak for which all masses of the rig do not suffice."""
+    """Refuse a peak for which all masses of the rig do not suffice."""
     pieces = 2 if pans == "equal" else 1  # both pans of a pair need a mass of each kind, or either may have it
     most = sum(masses.mass * (masses.count // pieces) * pieces for masses in rig.masses)
     if total > most + _MASS_TOLERANCE * min(masses.mass for masses in rig.masses):
@@ -214,7 +214,7 @@ def _stacks(rig: Rig, pans: Pans, quantum: float, top: int, stride: int) -> dict
 
 
 def _taken(left: Counter[float], pans: Pans, total: float, count: int, before: int) -> Laid | None:
-    """Takes a total out of what is left, for both pans; None if that is impossible."""
+    """Take a total out of what is left, for both pans; None if that is impossible."""
     smallest = min(left)
     if pans == "equal":
         one = _picked(left, 0.5 * total, pieces=2)
@@ -225,7 +225,7 @@ def _taken(left: Counter[float], pans: Pans, total: float, count: int, before: i
 
 
 def _picked(left: Counter[float], total: float, pieces: int) -> Counter[float] | None:
-    """Takes the largest masses that make a total out of what is left, so many times; None if nothing makes it."""
+    """Take the largest masses that make a total out of what is left, so many times; None if nothing makes it."""
     picked: Counter[float] = Counter()
     rest = total
     for mass in sorted(left, reverse=True):

@@ -22,7 +22,7 @@ class PictureSource(Protocol):
     """Gives pictures of the target, one after the other."""
 
     def take(self, folder: Path) -> Path | None:
-        """Puts a new picture into a folder and returns its path, None if there is none yet."""
+        """Put a new picture into a folder and return its path; None if there is none yet."""
 
 
 class Device:

@@ -67,7 +67,7 @@ class Couple:
 
 
 def couple(middle: Array, angle: Array, torque: Array, scale: float | None = None) -> Couple:
-    """Fits the centre, the arm and the shift to the points midway between the markers.
+    """Fit the centre, the arm and the shift to the points midway between the markers.
 
     Args:
         middle: of each photograph, right and up [px], shape (n, 2), n >= 6

@@ -47,7 +47,7 @@ class Loading(ComparedByFields):
 def load_by_steps(
     gear: Gear, rig: Rig, steps: Sequence[Step], *, wait: float = 60.0, settling: float = 0.0, virgin: bool = False
 ) -> Loading:
-    r"""Loads a gear slowly by the masses of a test, step after step.
+    r"""Load a gear slowly by the masses of a test, step after step.
 
     Springs and hysteresis of the gear are followed with all their memory. Dry friction holds in series with them: that of the
     pulleys, T_0 + share \|T\|, then that of the gear itself at rest, at its breakaway. Each is a play: the torque behind it

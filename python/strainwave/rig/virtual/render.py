@@ -209,7 +209,7 @@ def _edge(scene: Scene, centre: Array) -> _Edge:
 
 
 def _add(light: NDArray[np.float32], step: float, scene: Scene, edge: _Edge) -> None:
-    """Adds a blurred marker that differs by a step of brightness from what is there."""
+    """Add a blurred marker that differs by a step of brightness from what is there."""
     taps = _spread(scene.blur)
     beyond = len(taps) // CELLS_PER_PIXEL // 2  # pixels that a point spreads over, each way
     low, high = (edge.centre + sign * (edge.reach.max() + beyond) for sign in (-1.0, 1.0))

@@ -86,7 +86,7 @@ def simulate_test(
     faults: Mapping[int, Fault] | None = None,
     progress: bool = False,
 ) -> VirtualTest:
-    """Runs a torsion test on a virtual rig and writes its folder as a real one leaves it.
+    """Run a torsion test on a virtual rig and write its folder as a real one leaves it.
 
     The folder holds `rig.toml`, a photograph `step-001.png` of each step, and `steps.csv`, to which each step is added once its
     photograph is there: who follows the folder sees a test being run. In addition, `truth.json` has the true angles, torques
@@ -148,7 +148,7 @@ def simulate_test(
 
 @contextmanager
 def _whole(folder: Path, names: Sequence[str]) -> Iterator[None]:
-    """Takes away again what was written under these names where the rest fails or is interrupted."""
+    """Take away again what was written under these names where the rest fails or is interrupted."""
     new = [folder / name for name in names if not (folder / name).exists()]
     try:
         yield

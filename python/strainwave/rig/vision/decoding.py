@@ -97,7 +97,7 @@ def grey_of(pixels: NDArray[Any], full_scale: int) -> Grey:
 
 
 def _check_png(data: bytes) -> Tags:
-    """Refuses a PNG of more chunks than a picture needs."""
+    """Refuse a PNG of more chunks than a picture needs."""
     place = 8
     for _ in range(MAX_PARTS):
         if place >= len(data) or data[place + 4 : place + 8] == b"IEND":
@@ -107,7 +107,7 @@ def _check_png(data: bytes) -> Tags:
 
 
 def _check_jpeg(data: bytes) -> Tags:
-    """Refuses a JPEG with more segments, EXIF entries or scans than a camera writes."""
+    """Refuse a JPEG with more segments, EXIF entries or scans than a camera writes."""
     exif = scans = 0
     for count, (marker, content) in enumerate(_segments(data)):
         scans += marker == SCAN
@@ -137,7 +137,7 @@ CHECKS: dict[str, Callable[[bytes], Tags]] = {"PNG": _check_png, "JPEG": _check_
 
 
 def _check_tiles(picture: ImageFile) -> None:
-    """Refuses what pillow would decode in Python, by a rare library, or more than once."""
+    """Refuse what pillow would decode in Python, by a rare library, or more than once."""
     pixels = 0
     for decoder, extents, *_ in picture.tile:
         left, top, right, bottom = extents or (0, 0, *picture.size)

@@ -126,7 +126,7 @@ class _Sight:
 
     @property
     def vector(self) -> Array:
-        """From the first to the second, right and up."""
+        """Return the vector from the first marker to the second, right and up."""
         right, down = self.centres[1] - self.centres[0]
         return np.array([right, -down])
 

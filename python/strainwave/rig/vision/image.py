@@ -46,7 +46,7 @@ class Image(ComparedByFields):
 
 
 def read_image(path: str | Path) -> Image:
-    """Reads a photograph: PNG, JPEG, TIFF, BMP or PGM; 8 or 16 bit; grey or colour; turned upright as its EXIF entry asks.
+    """Read a photograph: PNG, JPEG, TIFF, BMP or PGM; 8 or 16 bit; grey or colour; turned upright as its EXIF entry asks.
 
     Colours become grey as ITU-R BT.601 weighs them; what is transparent is taken as if it were not.
 
