@@ -38,7 +38,7 @@ PARTS = ["part-000000.parquet", "part-000001.parquet", "part-000002.parquet"]  #
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ensemble, "PART", 1)
+    monkeypatch.setattr(ensemble, "PART_BYTES", 1)
 
 
 def simulate(folder: Path) -> None:
@@ -53,7 +53,7 @@ def whole() -> sw.Ensemble:
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("written")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensemble, "PART", 1)
+        patch.setattr(ensemble, "PART_BYTES", 1)
         simulate(folder)
     return folder
 

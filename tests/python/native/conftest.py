@@ -18,7 +18,7 @@ def kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of the cache, which is not there yet; nothing is shipped, and nothing was warned of."""
     monkeypatch.setenv("STRAINWAVE_KERNELS", str(tmp_path / "kernels"))
     monkeypatch.delenv("CXX", raising=False)
-    monkeypatch.setattr(folder, "SHIPPED", tmp_path / "shipped")
+    monkeypatch.setattr(folder, "SHIPPED_KERNELS", tmp_path / "shipped")
     monkeypatch.setattr(cache, "_failed", set())
     monkeypatch.setattr(cache, "_warned", set())
     return tmp_path / "kernels"

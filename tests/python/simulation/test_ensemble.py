@@ -371,7 +371,7 @@ def test_progress_counts_the_steps_of_all_members(monkeypatch: pytest.MonkeyPatc
     assert done == sorted(done)
     assert 0 <= done[0] < done[-1] <= totals[0]
     done.clear()
-    monkeypatch.setattr(ensemble, "PART", 600 * 3 * 8)
+    monkeypatch.setattr(ensemble, "PART_BYTES", 600 * 3 * 8)
     sw.simulate_to(tmp_path / "runs", DRIVE, command(2.0), parameters, **others)
     assert totals[1] == totals[0]
     assert done == sorted(done)
@@ -434,14 +434,14 @@ def test_what_is_read_from_files_is_what_would_have_been_in_memory(
 ) -> None:
     arguments: dict[str, Any] = {"record": ["output_speed", "command"], "sample": 1e-3, "threads": 2}
     whole = sw.simulate_many(drive, SWING, varied(37), 5e-4, **arguments)
-    monkeypatch.setattr(ensemble, "PART", 1)
+    monkeypatch.setattr(ensemble, "PART_BYTES", 1)
     assert sw.simulate_to(str(tmp_path), drive, SWING, varied(37), 5e-4, **arguments) == tmp_path
     assert [part.name for part in sorted((tmp_path / "samples").iterdir())] == [f"part-{i:06d}.parquet" for i in range(3)]
     assert same_bits(sw.Ensemble.read(tmp_path), whole)
 
 
 def test_files_are_read_by_what_reads_folders_of_parquet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ensemble, "PART", 1)
+    monkeypatch.setattr(ensemble, "PART_BYTES", 1)
     sw.simulate_to(tmp_path, DRIVE, RISE, varied(20), record=["torque", "twist"], sample=1e-2, threads=1)
     whole = sw.simulate_many(DRIVE, RISE, varied(20), record=["torque", "twist"], sample=1e-2)
     samples = dataset.dataset(tmp_path / "samples").to_table()
@@ -505,7 +505,7 @@ def test_memory_does_not_grow_with_the_members() -> None:
 
 
 def test_parts_hold_whole_packs_for_every_thread(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(ensemble, "PART", 8 * 3 * 501 * 50)  # 50 members fit
+    monkeypatch.setattr(ensemble, "PART_BYTES", 8 * 3 * 501 * 50)  # 50 members fit
     sw.simulate_to(tmp_path, DRIVE, RISE, varied(100), threads=3)
     counts = [len(dataset.dataset(part).to_table()) for part in sorted((tmp_path / "members").iterdir())]
     assert counts == [48, 48, 4]

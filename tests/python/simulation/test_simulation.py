@@ -115,7 +115,7 @@ def test_a_jump_is_seen_wherever_inputs_are_laid_out_in_pieces(steps: int, monke
     jump = steps * 2.0**-10
     sticking = sw.scenario.step(0.05, duration=1.0, start=jump)
     whole = sw.simulate(STICKING, sticking, 2.0**-10)
-    monkeypatch.setattr(simulation, "CHUNK", steps)
+    monkeypatch.setattr(simulation, "STEPS_PER_CHUNK", steps)
     assert same(sw.simulate(STICKING, sticking, 2.0**-10), whole)
     before = sw.simulate(STICKING, sw.scenario.constant(0.0, jump), 2.0**-10)
     after = sw.simulate(STICKING, sw.scenario.constant(0.05, 1.0 - jump), 2.0**-10, start=before.end)
@@ -233,7 +233,7 @@ def test_the_load_torque_holds_the_output_back() -> None:
 @drives
 def test_a_run_laid_out_in_pieces_is_one_run(drive: sw.Drive, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = sw.simulate(drive, command(0.2), dt=1e-3, sample=2e-3)
-    monkeypatch.setattr(simulation, "CHUNK", 7)
+    monkeypatch.setattr(simulation, "STEPS_PER_CHUNK", 7)
     assert same(sw.simulate(drive, command(0.2), dt=1e-3, sample=2e-3), whole)
 
 

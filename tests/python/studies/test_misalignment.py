@@ -156,7 +156,7 @@ def test_what_was_put_in_comes_back_within_its_interval(ramp: ActuatorRamp, monk
 
     The square of the distance of the truth over the covariance has the median 2 ln 2 in two dimensions.
     """
-    monkeypatch.setattr(study, "TRIALS", 24)
+    monkeypatch.setattr(study, "NOISE_TRIALS", 24)
     expected = 15e-6 * np.exp(0.6j) + 4e-3 * (tan(radians(0.05)) + 1j * tan(radians(0.03)))  # e_1 at beta_1, and h beta
     distances = []
     for each in recovered(ramp, geometry(ramp.drive)[0]):

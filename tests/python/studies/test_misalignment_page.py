@@ -52,7 +52,7 @@ def command(files: Path) -> tuple[MisalignmentStudy, Result]:
 
     kernels.load(sw.load(LUMPED), "simulate_many", compile_it=True)  # the study takes some million steps of it
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "TRIALS", 2)
+        patch.setattr(study, "NOISE_TRIALS", 2)
         patch.setattr(study, "TIMES", (1.0,))
         patch.setattr(study, "misalignment", kept)
         measured = ("--measured", files / "own <b>&.csv", "--measured-error", files / "curve.csv")

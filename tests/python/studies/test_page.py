@@ -29,7 +29,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Iterator[PositionControl]
     path.write_text("time [s],command [rad],output_angle [rad]\n0,0.05,0.05\n0.1,0.05,0.05\n0.2,0.06,0.058\n0.5,0.06,0.0605\n")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "VOLTAGES", (12.0,))
-        patch.setattr(study, "PULSES", 4)
+        patch.setattr(study, "PULSES_PER_VOLTAGE", 4)
         patch.setattr(study, "STROKES", (0.5, 20.0, 230.0))
         yield position_control(path)
 
@@ -163,7 +163,7 @@ def test_the_lines_for_a_terminal_say_the_same(found: PositionControl) -> None:
 
 def test_the_command_writes_recordings_and_a_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "VOLTAGES", (12.0,))
-    monkeypatch.setattr(study, "PULSES", 2)
+    monkeypatch.setattr(study, "PULSES_PER_VOLTAGE", 2)
     monkeypatch.setattr(study, "STROKES", (0.5, 230.0))
     monkeypatch.setattr(sys, "argv", ["strainwave", "study", "position-control", "--out", str(tmp_path / "new" / "study")])
     monkeypatch.setattr(writing, "written", [])

@@ -202,7 +202,7 @@ def test_where_pulses_leave_the_band_the_full_model_goes_as_far_as_a_constant_th
 def test_sweeps_are_as_good_with_shorter_steps(found: PositionControl, monkeypatch: pytest.MonkeyPatch) -> None:
     drive, width = found.sets[FULL].drive, found.by_pulse[12.0]["width"][6]
     coarse = study.travel(drive, 12.0, width)
-    monkeypatch.setattr(study, "COARSE", 1e-4)
+    monkeypatch.setattr(study, "SWEEP_STEP", 1e-4)
     assert study.travel(drive, 12.0, width) == pytest.approx(coarse, rel=1e-4)
 
 
