@@ -44,14 +44,14 @@ class _Reading:
         options: to read it so, on the command line
         squares: sum of squares of what plain least squares leaves, over the variance of the effort, of each block of the motion
         samples: of sliding, of each block
-        doubt: why no gear moves so; empty if one may
+        contradiction: why no gear moves so; empty if one may
     """
 
     file: Recognised
     options: str
     squares: Array
     samples: Array
-    doubt: str
+    contradiction: str
 
     @property
     def error(self) -> float:
@@ -83,7 +83,7 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
         return file
     tried = [_tried(file, _options_of(file), known), *(_tried_again(source, each, known) for each in file.alternatives)]
     readings = [each for each in tried if each is not None]
-    sensible = [each for each in readings if not each.doubt] or readings
+    sensible = [each for each in readings if not each.contradiction] or readings
     if not sensible:
         return file
     best = min(sensible, key=lambda each: each.error)
@@ -98,7 +98,7 @@ def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Reco
         return file
     if is_open:
         return replace(file, question=_asked(UNITS_EQUAL, remaining))
-    rivals = [usual] if usual is not None and usual is not best and not usual.doubt else []
+    rivals = [usual] if usual is not None and usual is not best and not usual.contradiction else []
     if len(remaining) == 1 and all(best.is_better_than(each, MAX_OF_USUAL) for each in rivals):
         return _taken(best, others, file)
     return replace(file, question=_asked(UNITS_OPEN, [*rivals, *remaining]))
@@ -172,7 +172,7 @@ def _described(reading: _Reading) -> str:
 
 
 def _left(reading: _Reading) -> str:
-    return f"{_percent(reading)}{f', and {reading.doubt}' if reading.doubt else ''}"
+    return f"{_percent(reading)}{f', and {reading.contradiction}' if reading.contradiction else ''}"
 
 
 def _percent(reading: _Reading) -> str:

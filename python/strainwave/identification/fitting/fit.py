@@ -280,7 +280,7 @@ def fit(
         channels: columns of drive logs to compare; all that a simulation has too if not given
         dt: largest step of the simulation [s], shorter where the drive needs it; 0.2 ms if not given
         initial: of a drive log that does not begin at rest, what is known of its beginning, as for `simulate`; encoders then
-            count from where they say
+            count from these angles
         training: which samples take part, shape (n,); all if not given. Of several records, one of these or None for each
         loss: "linear", or "soft_l1" where outliers are to be feared
         bounds: lowest and highest value of free parameters, by path, within what their laws allow

@@ -54,12 +54,12 @@ class InfluenceOfKept(ComparedByFields):
         A change of such a parameter explains much of the residuals, is larger than its uncertainty allows, and leads to a
         possible value. Several that explain about as much are all returned: the data do not determine which is wrong.
         """
-        doubts = np.array([uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept])
+        uncertainties = np.array([uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept])
         better = self.shift_if_free + [each.value for each in self.kept]
         possible = (better >= [each.low for each in self.kept]) & (better <= [each.high for each in self.kept])
-        wrong = possible & (np.abs(self.shift_if_free) > doubts) & (self.explained_share > MAX_EXPLAINED_SHARE)
+        wrong = possible & (np.abs(self.shift_if_free) > uncertainties) & (self.explained_share > MAX_EXPLAINED_SHARE)
         least = MIN_SHARE_OF_LARGEST * float(np.max(self.explained_share, initial=0.0, where=wrong))
-        strain = np.abs(self.shift_if_free) / np.maximum(doubts, 1e-300)
+        strain = np.abs(self.shift_if_free) / np.maximum(uncertainties, 1e-300)
         return sorted(np.flatnonzero(wrong & (self.explained_share >= least)).tolist(), key=lambda place: strain[place])
 
     def shifts(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
