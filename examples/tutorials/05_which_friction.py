@@ -120,7 +120,7 @@ print(f"largest difference in a table: {np.abs(lugre.steady(grid) - stribeck.ste
 # $ strainwave rank hfuc-20-80 robot_log.csv --constant torque_constant=0.0755
 
 # %% [markdown]
-# Each line is a set of effects. Three things can be read from it:
+# Each line is a set of effects; its error is further right. Three things can be read from the table:
 #
 # * **Bristles that bend at reversals** are in all of the best lines: the joint turns round often, and friction does not jump
 #   there.
