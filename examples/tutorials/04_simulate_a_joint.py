@@ -85,8 +85,8 @@ axes.legend()
 
 # %% [markdown]
 # *Order 2* means: twice in each turn of the motor, because the wave generator has two lobes. The amplitude in the
-# transmission error is larger than that of the gear file, because the ripple shakes the arm a little and so twists the gear.
-# Near a resonance it does this much more, as you will see.
+# transmission error is larger than that of the gear file. The ripple shakes the arm a little, and this twists the gear. Near
+# a resonance it does this much more, as you will see.
 #
 # ## Wind-up and hysteresis: the twist under load
 #
@@ -114,12 +114,12 @@ axes.legend()
 # ## Friction: the reversal
 #
 # Where the arm turns round, the friction of the input changes its sign. Until the controller has built up the torque, the
-# motor stands, and so does the arm.
+# motor rests, and so does the arm.
 
 # %%
 around = run.between(9.6, 10.4)
 stands = around["input_speed"] == 0.0
-print(f"the motor stands for {1e3 * np.count_nonzero(stands) * 1e-3:.0f} ms")
+print(f"the motor rests for {1e3 * np.count_nonzero(stands) * 1e-3:.0f} ms")
 print(f"friction torque from {around['friction_input'].min():.3f} to {around['friction_input'].max():.3f} N.m at the input")
 
 figure, panels = plt.subplots(3, 1, sharex=True, figsize=(8.0, 6.0), layout="constrained")

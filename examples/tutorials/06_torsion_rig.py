@@ -1,11 +1,11 @@
 # %% [markdown]
 # # Torsion rig: from photographs to a report
 #
-# At the end you have the stiffness, the hysteresis and the lost motion of a gear with their uncertainties, a report, and a
-# gear file for simulations. The test needs masses, cords and a camera.
+# At the end you have stiffness, hysteresis and lost motion of a gear with their uncertainties, in a report, and a gear file.
+# The test needs masses, cords and a camera.
 #
 # **Time:** 20 minutes. **You need:** strainwave with matplotlib. A rig is not needed: a virtual one makes the photographs
-# here. The two sections that begin with *With your own rig* say what changes for real ones.
+# here. The two sections that begin with *With your own rig* list what changes for real ones.
 
 # %% [markdown]
 # ## The rig file

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Misalignment and the motor current
 #
-# At the end you know which orders a misaligned wave generator makes in the motor current, under which load they are visible,
-# and how to find them in your own recordings: with the detection limit before you record, and with a baseline afterwards.
+# At the end you can find a misaligned wave generator in the motor current. You compute the detection limit before you record,
+# and compare with a baseline afterwards.
 #
 # **Time:** 20 minutes. **You need:** strainwave with matplotlib. All recordings are simulated here.
 
@@ -90,8 +90,7 @@ axes.legend()
 # ## Before you record: the detection limit
 #
 # `sw.detection_limit` computes the smallest kinematic error that a planned recording shows. It needs the speed of the motor,
-# the load, the length of the recording, the sample rate, and the noise of a sample of the current. Measure the noise at
-# standstill.
+# the load, the duration, the sample rate, and the noise of a sample of the current. Measure the noise at standstill.
 
 # %%
 plan = {"speed": SPEED * abs(ratio), "duration": 10.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # Fault data and a detector
 #
-# At the end you have a labelled data set of healthy and faulty joints, a detector trained on it, and a fair number for how
-# well it works: on units that it never saw, beside a comparison with the own past of each unit. You also see how a wrong
-# split makes a detector look good that knows nothing.
+# At the end you have labelled data of healthy and faulty joints and a detector trained on them. Its error is that on units
+# that it never saw, and is compared with the own past of each unit. You also see how a wrong split makes a detector look good
+# that knows nothing.
 #
 # **Time:** 20 minutes. **You need:** strainwave with matplotlib, pandas and scikit-learn (`pip install pandas scikit-learn`).
 
