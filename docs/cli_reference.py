@@ -35,7 +35,10 @@ def write(folder: Path) -> None:
     """Write the page `command-line`."""
     app: Any = typer.main.get_command(cli.app)
     verbs = list(leaves(app, "strainwave"))
-    rows = (f"   * - :ref:`{name} <{label(name)}>`\n     - {plain(sentence(verb.help))}" for name, verb in verbs)
+    rows = (
+        f"   * - :ref:`{name.removeprefix('strainwave ')} <{label(name)}>`\n     - {plain(sentence(verb.help))}"
+        for name, verb in verbs
+    )
     table = "\n".join([".. list-table:: Verbs", "   :widths: 30 70", "   :class: names", "", *rows])
     text = [ABOUT, table, *(section(name, verb) for name, verb in verbs)]
     (folder / "command-line.rst").write_text("\n\n".join(text) + "\n", encoding="utf-8")
