@@ -14,7 +14,7 @@ LABEL_WIDTH = 16  # characters
 # What each extra of the package adds; the extras and their packages are read from the metadata of the installation.
 PURPOSES = {
     "bench": "benchmarks against other solvers",
-    "compiler": "a C++ compiler as a Python package",
+    "compiler": "C++ compiler from the package index (zig)",
     "cuda": "ensembles on a GPU",
     "dask": "data sets on a Dask cluster",
     "fmu": "export of FMUs",
@@ -56,13 +56,13 @@ def doctor() -> None:
     print("\nextras")
     base = _problems("")
     for extra in metadata("strainwave").get_all("Provides-Extra") or []:
-        problems = _problems(extra)
+        problems, purpose = _problems(extra), PURPOSES.get(extra, extra)
         has_all = not problems and (extra != "cuda" or device)
-        (works if has_all else fails).append(PURPOSES[extra])
-        state = f"missing ({'; '.join(problems)}): pip install 'strainwave[{extra}]'" if problems else "installed"
-        print(f"  {extra:{LABEL_WIDTH - 2}}{PURPOSES[extra]}: {state}")
+        (works if has_all else fails).append(purpose)
+        state = f"missing {', '.join(problems)}: pip install 'strainwave[{extra}]'" if problems else "installed"
+        print(f"  {extra:{LABEL_WIDTH - 2}}{purpose}: {state}")
     if base:
-        print(f"\nrequired packages: {'; '.join(base)}; install strainwave again")
+        print(f"\nmissing {', '.join(base)}, without which nothing works: install strainwave again")
         works, fails = [], [*works, *fails]
     print(f"\nworks: {', '.join(works) or 'nothing'}")
     print(f"does not work: {', '.join(fails) or 'nothing'}")
@@ -126,7 +126,7 @@ def _gpu() -> str:
 
 
 def _problems(extra: str) -> list[str]:
-    """Return what is wrong with the packages of an extra, or with those that are always needed: missing, or too old."""
+    """Return the packages of an extra, or of those that are always needed, that are missing or too old."""
     return [problem for requirement in _requirements(extra) if (problem := _problem(requirement))]
 
 
@@ -142,13 +142,13 @@ def _requirements(extra: str) -> list[Requirement]:
 
 
 def _problem(requirement: Requirement) -> str:
-    """Return what is wrong with an installed package; empty if it meets the requirement."""
+    """Return the name of a package that is missing, with both versions if it is too old; empty if it meets the requirement."""
     from importlib.metadata import PackageNotFoundError, version
 
     try:
         installed = version(requirement.name)
     except PackageNotFoundError:
-        return f"{requirement.name} is not installed"
+        return requirement.name
     if requirement.specifier.contains(installed, prereleases=True):
         return ""
-    return f"{requirement.name} {installed} is installed, {requirement.specifier} is needed"
+    return f"{requirement.name} {requirement.specifier} ({installed} is installed)"

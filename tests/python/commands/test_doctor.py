@@ -89,13 +89,13 @@ def test_a_package_that_is_missing_is_named_with_the_command_that_installs_it(
     assert "export of FMUs" in found["works"]
     with_version(monkeypatch, "fmpy", None)
     found = answer(tmp_path)
-    assert found["fmu"] == "export of FMUs: missing (fmpy is not installed): pip install 'strainwave[fmu]'"
+    assert found["fmu"] == "export of FMUs: missing fmpy: pip install 'strainwave[fmu]'"
     assert "export of FMUs" in found["does not work"]
 
 
 def test_a_package_that_is_too_old_is_named_with_both_versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with_version(monkeypatch, "h5py", "2.9")
-    assert "h5py 2.9 is installed, >=3.10 is needed" in answer(tmp_path)["formats"]
+    assert "missing h5py >=3.10 (2.9 is installed): pip install" in answer(tmp_path)["formats"]
 
 
 def test_without_a_package_that_is_always_needed_nothing_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
