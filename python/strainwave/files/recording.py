@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+GENERATED_TITLE = "simulation"  # first word of the titles that simulations give their recordings
+
+
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Recording:
     """Named series of equal length, each with its unit.
@@ -359,8 +362,8 @@ class Recording:
 
     @property
     def _heading(self) -> str:
-        """Title of a figure; empty if the names of its columns are the title."""
-        return self.title
+        """Title of a figure; empty if the names of its columns say more than the recording's own title."""
+        return "" if self.title.startswith(GENERATED_TITLE) else self.title
 
 
 def check_recording(name: str, value: object) -> None:

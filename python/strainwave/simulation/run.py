@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
-from strainwave.files.recording import Recording
+from strainwave.files.recording import GENERATED_TITLE, Recording
 from strainwave.messages import listed
 from strainwave.native import kernels
 from strainwave.simulation import signals
@@ -72,17 +72,13 @@ class Run(Recording):
     def __reduce__(self) -> tuple[Any, ...]:
         return Run, (dict(self.columns), dict(self.units), self.end, self.method)
 
-    @property
-    def _heading(self) -> str:
-        return ""  # the names of the columns say more than the method of steps
-
     def _came_about(self, end: State, method: str) -> None:
         object.__setattr__(self, "end", end)
         object.__setattr__(self, "method", method)
 
 
 def _title(method: str) -> str:
-    return f"simulation: {method}"
+    return f"{GENERATED_TITLE}: {method}"
 
 
 def simulate(
@@ -424,7 +420,7 @@ def recording(
     check_meaning(time, recorded, outputs, remedy(time_grid.longest))
     check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]), temperature)
     units = signals.units(drive, recorded.values())
-    return Recording(columns_of(time, recorded, outputs), units, title="simulation")
+    return Recording(columns_of(time, recorded, outputs), units, title=GENERATED_TITLE)
 
 
 def columns_of(time: Array, recorded: Mapping[str, Output], outputs: Array) -> dict[str, Array]:

@@ -416,7 +416,8 @@ def test_the_title_of_a_plot_is_that_of_the_recording_or_names_its_columns() -> 
     columns = {"time": [0.0, 1.0], "output_angle": [0.0, 1.0], "torque": [0.0, 1.0]}
     units = {"time": "s", "output_angle": "rad", "torque": "N.m"}
     assert Recording(columns, units, title="joint 3").plot().get_suptitle() == "joint 3"
-    assert Recording(columns, units).plot().get_suptitle() == "Output angle and torque over time"
+    for title in ("", "simulation: explicit steps of 0.1 s"):
+        assert Recording(columns, units, title=title).plot().get_suptitle() == "Output angle and torque over time"
     many = {"time": [0.0, 1.0], **{f"column_{k}": [0.0, 1.0] for k in range(6)}}
     title = Recording(many, dict.fromkeys(many, "s")).plot().get_suptitle()
     assert " ".join(title.split()) == "Column 0, column 1, column 2 and 3 more columns over time"
