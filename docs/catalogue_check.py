@@ -173,7 +173,7 @@ def torque_without_load(gear: Any, figure: str, printed: float) -> float:
 def torque_rows() -> list[str]:
     """Return the rows of torques without load, the worst first."""
     found = [
-        Figure(f"{name.upper()} | {similar} | {figure}", printed, torque_without_load(sw.load(name), figure, printed), True)
+        Figure(f"`{name.upper()}` | {similar} | {figure}", printed, torque_without_load(sw.load(name), figure, printed), True)
         for name, similar, figure, printed in TORQUES
     ]
     return [
@@ -203,7 +203,7 @@ def row(figures: dict[str, Figure]) -> str:
     stiffness = [f"{1e-3 * figures[key].printed:g}" for key in STIFFNESSES]
     deviation = signed(1e6 * worst_stiffness(figures).deviation, 1)
     bounded = [f"{figures[key].simulated:.2f} of {figures[key].printed:g}" if key in figures else "" for key in BOUNDED]
-    return f"| {' | '.join([first.name + ('*' if first.assumed else ''), *stiffness, deviation, *bounded])} |"
+    return f"| {' | '.join([f'`{first.name}`' + ('*' if first.assumed else ''), *stiffness, deviation, *bounded])} |"
 
 
 def signed(value: float, places: int) -> str:

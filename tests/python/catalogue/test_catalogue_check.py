@@ -63,12 +63,12 @@ def test_the_page_has_all_sets_and_names_the_worst(tmp_path: Path, check: Module
     check.write(page)
     text = page.read_text(encoding="utf-8")
     assert "<!--" not in text
-    rows = [line.split("|")[1].strip(" *") for line in text.splitlines() if line.startswith(("| CSG", "| SHG", "| HFUC"))]
+    rows = [line.split("|")[1].strip(" *`") for line in text.splitlines() if line.startswith(("| `CSG", "| `SHG", "| `HFUC"))]
     sets = [name for name in rows if name.lower() in SETS]
     assert sorted(set(sets)) == sorted(name.upper() for name in SETS)
     deviations = {name: abs(check.worst_stiffness(figures).deviation) for name, figures in check.every_set().items()}
     assert f"**Stiffness**: {max(deviations, key=lambda name: deviations[name]).upper()} deviates most" in text
-    assert "HFUC-25-50 | CSF-25-50 | starting torque" in text
+    assert "| `HFUC-25-50` | CSF-25-50 | starting torque" in text
 
 
 def test_torques_without_load_are_printed_for_similar_gears(check: ModuleType) -> None:
