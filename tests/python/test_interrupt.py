@@ -24,7 +24,7 @@ from tests.reference_drive import DRIVE, command
 warnings.simplefilter("ignore")
 long = sw.scenario.sine(0.1, 1.0, 300.0)
 log = sw.simulate(DRIVE, command(100.0), sample=2e-3).select(["time", "command", "output_angle"])
-time_grid.CHUNK = 1_000_000  # steps at once, that one call of the core takes long enough
+time_grid.STEPS_PER_CHUNK = 1_000_000  # steps at once, that one call of the core takes long enough
 free = ["gear.friction_input.coulomb", "gear.stiffness.a1", "gear.damping"]
 verbs = {
     "simulate": lambda: sw.simulate(DRIVE, long, sample=1.0),

@@ -219,7 +219,7 @@ import sys
 from pathlib import Path
 from strainwave.simulation import ensemble
 from tests.python.files import test_ensemble_folder as test
-ensemble.PART = 1
+ensemble.PART_BYTES = 1
 test.simulate(Path(sys.argv[1]))
 """
 

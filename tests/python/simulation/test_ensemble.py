@@ -397,7 +397,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 from strainwave.simulation import ensemble
 from tests.python.simulation.test_ensemble import DRIVE, INERTIA, RISE
 import strainwave as sw
-ensemble.PART = 1
+ensemble.PART_BYTES = 1
 sw.simulate_to(sys.argv[1], DRIVE, RISE, {"load.inertia": INERTIA}, threads=1)
 """
 
@@ -477,7 +477,7 @@ from strainwave.simulation import ensemble
 from tests.python.simulation.test_ensemble import DRIVE, OUTPUTS, RISE, most_memory, varied
 import strainwave as sw
 from strainwave.simulation.signals import outputs
-ensemble.PART = 1 << 20
+ensemble.PART_BYTES = 1 << 20
 for members in (256, 2048):
     with tempfile.TemporaryDirectory() as folder:
         sw.simulate_to(folder + "/runs", DRIVE, RISE, varied(members), record=OUTPUTS, threads=1)
