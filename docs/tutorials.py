@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+from kept import kept
 
 SCRIPTS = Path(__file__).resolve().parents[1] / "examples" / "tutorials"
 HEAD = re.compile(r"^# %%(?: \[(markdown|console)\])?$", re.MULTILINE)  # of a cell
@@ -55,18 +56,33 @@ def write(folder: Path) -> None:
 
 
 def write_page(script: Path, folder: Path) -> None:
-    """Write the page of one tutorial, run by a process of its own in a temporary folder."""
+    """Write the page of one tutorial, or copy that of an earlier build."""
+    files = (Path(__file__), script, *supplied_with(script))
+    made = kept(
+        f"tutorial-{script.stem}", b"".join(path.read_bytes() for path in files), lambda folder: run_alone(script, folder)
+    )
+    shutil.copytree(made, folder, dirs_exist_ok=True)
+
+
+def run_alone(script: Path, folder: Path) -> None:
+    """Write the page of one tutorial, run by a process of its own; raise TutorialError if a cell fails."""
     done = subprocess.run([sys.executable, __file__, str(script), str(folder)], stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise TutorialError(done.stderr.strip())
     sys.stderr.write(COMPILED.sub("", done.stderr))
 
 
+def supplied_with(script: Path) -> list[Path]:
+    """Return the files beside a tutorial that it names."""
+    text = script.read_text(encoding="utf-8")
+    return [path for path in sorted(script.parent.glob("*.*")) if path.suffix != ".py" and is_named(path.name, text)]
+
+
 def run(script: Path, folder: Path) -> None:
     """Run the cells of a tutorial in a temporary folder, and write its page and pictures."""
     matplotlib.use("agg")
     text = script.read_text(encoding="utf-8")
-    supplied = [path for path in sorted(script.parent.glob("*.*")) if path.suffix != ".py" and is_named(path.name, text)]
+    supplied = supplied_with(script)
     folder.mkdir(parents=True, exist_ok=True)
     for path in (script, *supplied):
         shutil.copy(path, folder)

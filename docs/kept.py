@@ -1,0 +1,38 @@
+"""Results of scripts that earlier builds ran, kept in `build/pages` while neither script nor package changes."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import strainwave
+from strainwave import _core
+
+KEPT = Path(__file__).resolve().parent.parent / "build" / "pages"
+
+
+def kept(name: str, depends_on: bytes, make: Callable[[Path], None]) -> Path:
+    """Return the folder that `make` fills; it is called if `depends_on` or the package changed since the last build."""
+    folder = KEPT / f"{name}-{hashlib.sha256(depends_on + package_digest()).hexdigest()[:16]}"
+    if not folder.is_dir():
+        for old in KEPT.glob(f"{name}-*"):
+            shutil.rmtree(old)
+        begun = folder.with_suffix(".begun")
+        begun.mkdir(parents=True)
+        make(begun)
+        begun.rename(folder)
+    return folder
+
+
+@cache
+def package_digest() -> bytes:
+    """Return the digest of all files of the package that a run depends on."""
+    package = Path(strainwave.__file__).parent
+    files = [Path(_core.__file__), *sorted(path for path in package.rglob("*") if path.suffix in (".py", ".toml"))]
+    digest = hashlib.sha256()
+    for path in files:
+        digest.update(path.read_bytes())
+    return digest.digest()
