@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from strainwave.commands import cli
+from strainwave.commands import cli, exit_codes
 
 ABOUT = f"""\
 The command line
@@ -23,9 +23,9 @@ to use them.
 
    * - 0
      - The verb has done its work.
-   * - {cli.EXIT_REFUSED}
+   * - {exit_codes.REFUSED}
      - The input cannot be used. One line states what is wrong, where, and what to do. Nothing is written.
-   * - 3
+   * - {exit_codes.CONTRADICTED}
      - A check fails, a recording contradicts the saved gear, or a recording differs from the baseline: see the verb.
    * - 130
      - Ctrl-C has ended the verb. One line names the files that were written before."""

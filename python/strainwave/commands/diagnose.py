@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from strainwave.commands import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
 PLANNED_SAMPLE_RATE = 1000.0  # Hz, of the current
 BEARING_NUMBERS = (3, 4)  # of an option --bearing, without and with the contact angle
-ALARM_EXIT_CODE = 3  # of the process, if a recording differs from the baseline
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def diagnose(
     print(diagnose_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(written)[:-1])}")
     if any(each.alarms for each in found):
-        raise typer.Exit(ALARM_EXIT_CODE)
+        raise typer.Exit(exit_codes.CONTRADICTED)
 
 
 def _plan(gear: str | None, planned: RecordingPlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:

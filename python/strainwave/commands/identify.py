@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from strainwave.commands import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear, paths_in
 from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
@@ -15,8 +16,6 @@ from strainwave.commands.progress import progress
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.source import MeasurementFiles
-
-EXIT_FAILED = 3  # exit code if a check fails: no gear is written
 
 
 @with_groups
@@ -41,7 +40,7 @@ def identify(
     fit = _every_joint if given.joint == ALL else _one_gear
     if fit(gear, opened, given.mapping_of(opened.files), accept, name, out) and not accept:
         print("a gear with a failed check is not written: settle it, or --accept writes it")
-        raise typer.Exit(EXIT_FAILED)
+        raise typer.Exit(exit_codes.CONTRADICTED)
 
 
 def _one_gear(

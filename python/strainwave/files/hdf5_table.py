@@ -42,7 +42,7 @@ def hdf5_variables(path: Path, kind: str, budget: ReadBudget) -> Iterator[tuple[
     try:
         import h5py
     except ImportError:
-        raise ImportError(f"{path.name}: HDF5, as of MAT 7.3, is read by h5py: pip install strainwave[formats]") from None
+        raise ImportError(f"{path.name}: HDF5, as of MAT 7.3, is read by h5py: pip install 'strainwave[formats]'") from None
     with read_by_others(path, kind), h5py.File(path, "r") as opened:
         found = _Walk(opened, budget).root()
     yield from found.items()

@@ -69,7 +69,7 @@ class Program:
         try:
             import osqp
         except ImportError:
-            raise ImportError("predictive control solves by osqp: pip install strainwave[predictive]") from None
+            raise ImportError("predictive control solves by osqp: pip install 'strainwave[predictive]'") from None
         from scipy import sparse
 
         found = osqp.OSQP()
@@ -283,7 +283,7 @@ def predictive(
 
     It measures angle and speed of both shafts. Its model is linear, with the secant of the spring to the torque limit. So the
     torque is kept as far as that predicts it: hysteresis, and stiffness times kinematic error, come on top. The solver is OSQP,
-    which `pip install strainwave[predictive]` installs.
+    which `pip install 'strainwave[predictive]'` installs.
 
     Source: RawlingsMayneDiehl2017, sections 1.3 (regulator as its end) and 1.5 (bias); StellatoBanjacGoulartBemporadBoyd2020.
 

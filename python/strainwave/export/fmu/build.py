@@ -204,7 +204,7 @@ def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
             return compiler, FLAGS, LIBRARIES
     zig = zig_program()
     if zig is None:
-        raise NoCompilerError(f"a binary for {name} needs the package ziglang: `pip install strainwave[compiler]`, {instead}")
+        raise NoCompilerError(f"a binary for {name} needs the package ziglang: `pip install 'strainwave[compiler]'`, {instead}")
     target = PLATFORMS[name].target
     compiler = Compiler("zig c++", (zig, "c++", "-target", target), (zig, "cc", "-shared", "-target", target, "-s"), zig)
     flags = tuple(each for each in FLAGS if not (each == "-fPIC" and name.endswith("-windows")))

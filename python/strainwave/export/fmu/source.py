@@ -51,7 +51,7 @@ def _fmi_headers(version: int) -> dict[str, str]:
         folder = resources.files("fmpy") / "c-code"
     except ModuleNotFoundError:
         raise ImportError(
-            "an FMU needs the headers of FMI, which the package fmpy contains; `pip install strainwave[fmu]`"
+            "an FMU needs the headers of FMI, which the package fmpy contains; `pip install 'strainwave[fmu]'`"
         ) from None
     return {name: (folder / name).read_text("utf-8") for name in HEADERS_OF_VERSION[version]}
 

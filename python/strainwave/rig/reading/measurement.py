@@ -45,7 +45,7 @@ class AngleReading(NamedTuple):
     sigma: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TorsionTest(ComparedByFields):
     """A torsion test as it was read.
 
@@ -68,6 +68,11 @@ class TorsionTest(ComparedByFields):
     hashes: Mapping[str, str]
     remarks: tuple[str, ...]
     deviations: tuple[str, ...] | None = None
+
+    def __repr__(self) -> str:
+        """Return the counts: the markers of all photographs would fill pages."""
+        counts = f"{len(self.steps)} steps, {len(self.hashes)} photographs, {len(self.loops)} loops"
+        return f"<TorsionTest in {self.folder}: {counts}>"
 
 
 def read_test(

@@ -123,7 +123,7 @@ def video_images(path: str | Path) -> Iterator[Image]:
     try:
         import cv2
     except ImportError:
-        raise ImportError(f"{path.name}: videos are read by opencv: pip install strainwave[video]") from None
+        raise ImportError(f"{path.name}: videos are read by opencv: pip install 'strainwave[video]'") from None
     capture, count = _opened(cv2, path), 0
     try:
         if not capture.isOpened():
