@@ -179,6 +179,13 @@ def _in_combination(found: Identified) -> Iterator[CombinedParameter]:
                 yield CombinedParameter(each, f"{file.name}, identified in combination")
 
 
+def first_remarks(remarks: Sequence[str], before: str) -> Iterator[str]:
+    """Yield the remarks that a terminal shows, and how many more the report has."""
+    yield from (f"{before}{remark}" for remark in remarks[:MAX_REMARKS])
+    if len(remarks) > MAX_REMARKS:
+        yield f"{before}{len(remarks) - MAX_REMARKS} more in the report"
+
+
 def _of_file(result: FileResult) -> Iterator[str]:
     same = f", the same measurement as {result.same_as}" if result.same_as else ""
     yield f"{result.name}: {result.title}{same}"
@@ -191,4 +198,4 @@ def _of_file(result: FileResult) -> Iterator[str]:
     yield f"  {result.model}{f'; error on data held out: {share} of what varies' if share else ''}"
     if result.failed:
         yield f"  FAILED: {', '.join(check.name for check in result.failed)}; see above"
-    yield from (f"  {remark}" for remark in result.remarks[:MAX_REMARKS])
+    yield from first_remarks(result.remarks, "  ")

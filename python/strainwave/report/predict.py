@@ -14,6 +14,7 @@ from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.prediction import Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
 from strainwave.report.identify_figures import file_figure
+from strainwave.report.identify_files import first_remarks
 from strainwave.report.orders import line_numbers, line_words
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
@@ -21,7 +22,6 @@ from strainwave.report.rig_files import results_json
 from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 
 MAX_LINES = 4  # of the spectrum of a residual, on a terminal
-MAX_REMARKS = 5  # of a file on a terminal; the page has all
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 
 
@@ -77,7 +77,7 @@ def _lines(found: Prediction) -> Iterator[str]:
         lines = (f"{line_words(each)} {quantity(each.amplitude, found.unit, 2)}" for each in found.lines[:MAX_LINES])
         yield f"  {'lines of the residual':38} {'; '.join(lines)}"
     yield from (f"  {check.remedy}" for check in found.checks if check.failed)
-    yield from (f"  note: {remark}" for remark in found.remarks[:MAX_REMARKS])
+    yield from first_remarks(found.remarks, "  note: ")
 
 
 def _errors(found: Prediction) -> list[Row]:

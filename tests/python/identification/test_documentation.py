@@ -38,6 +38,7 @@ def percent(share: float) -> str:
         f"{sizes.MIN_ROWS_OF_LOG} rows or more, and the change of speed explains half of what is left",
         "the spring of a loop carries less than a fifth of the torque",
         f"stays at its end over more than {percent(sizes.MAX_CLIPPED_SHARE)} of the range of the angle",
+        f"the gravity of the load is more than {comparisons.MAX_GRAVITY_OF_RATING:g} times the largest torque in the ratings",
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
         f"with {percent(comparisons.REPEATABILITY['friction_input'])} of friction and hysteresis and "
         f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers from run to run",

@@ -9,7 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.checks.comparisons import MAX_CHANCE, between_files, other_loads, with_start_set
+from strainwave.identification.checks.comparisons import (
+    MAX_CHANCE,
+    between_files,
+    gravity_in_ratings,
+    other_loads,
+    with_start_set,
+)
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
@@ -161,3 +167,10 @@ def test_logs_with_different_loads_may_be_of_two_joints() -> None:
     assert not other_loads((first, log("copy.csv", {"load.inertia": (3.0, "kg.m2")}, same_as="one.csv")))
     in_current = log("a.csv", {"load.inertia": (30.0, "A.s2/rad"), "load.gravity_torque": (250.0, "A")})
     assert not other_loads((first, in_current))
+
+
+@pytest.mark.parametrize(("gravity", "unit", "failed"), [(1600.0, "N.m", [False]), (1700.0, "N.m", [True]), (1700.0, "A", [])])
+def test_gravity_that_would_destroy_the_gear_fails(gravity: float, unit: str, failed: list[bool]) -> None:
+    """The gear of size 20 buckles at 560 N.m, three times which are 1680 N.m."""
+    file = FileResult("log.csv", estimates=(FileEstimate("load.gravity_torque", unit, gravity, 1.0, ""),))
+    assert [check.failed for check in gravity_in_ratings(SMALL, combine([file]))] == failed
