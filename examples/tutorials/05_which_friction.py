@@ -109,7 +109,7 @@ lugre = sw.friction.LuGre(
 print(f"largest difference in a table: {np.abs(lugre.steady(grid) - stribeck.steady(grid)).max():.1e} N.m")
 
 # %% [markdown]
-# Small motions to and fro [determine the bristles](../how-to/identify.md#further-friction); reversals in a log show them.
+# Small motions to and fro [determine the bristles](../how-to/measure.md#further-friction); reversals in a log show them.
 #
 # ## 4. What a log shows
 #
@@ -157,5 +157,5 @@ for parameter in both.parameters:
 # | load on the joint | a table with a column `load`, two loads or more | with a loss under load |
 # | hours of running | a log with its temperature | `Thermal` |
 #
-# [Which model when](../how-to/which-model.md) compares all laws, and [What to measure](../how-to/identify.md#what-to-measure)
+# [Which model when](../how-to/which-model.md) compares all laws, and [What to measure](../how-to/measure.md)
 # has the details.

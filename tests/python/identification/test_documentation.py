@@ -24,7 +24,7 @@ def percent(share: float) -> str:
     [
         f"kept may move it by more than {percent(identifiability.MAX_SHIFT)}",
         f"kept parameters that move it by more than {percent(identifiability.MIN_SHIFT_LISTED)}",
-        f"it would move by more than {percent(identifiability.MAX_SHIFT_BY_WRONG)} were a parameter",
+        f"would change this one by more than {percent(identifiability.MAX_SHIFT_BY_WRONG)}",
         f"standard deviation exceeds half the value (of a phase: {identifiability.MAX_SIGMA_OF_PHASE:g} rad)",
         f"else {percent(influence.SIGMA_IF_NOT_STATED)}, and "
         f"{percent(influence.SIGMA_IF_ASSUMED)} where its source begins with",

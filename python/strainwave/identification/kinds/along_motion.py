@@ -115,7 +115,7 @@ def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_cur
         law, unit = other.model.law, "A" if in_current else "N·m"
         yield (
             f"another law of friction, {type(law).__name__}, predicts as well, with a Coulomb torque of {law.coulomb:.3g} "
-            f"{unit}: the record determines friction at the speeds measured, and numbers belong to their law"
+            f"{unit}: use the friction over the measured speeds, not the Coulomb torque alone"
         )
 
 

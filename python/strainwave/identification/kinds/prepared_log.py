@@ -145,7 +145,9 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         remarks.append("the torque constant is not known: torques are in A; give --constant torque_constant=… for N.m")
         gear = gear.replace(input_inertia=0.0)
     elif inertia is None:
-        remarks.append("the inertia of the motor is not known: that of the load has it inside, times the ratio squared")
+        remarks.append(
+            "the inertia of the motor is not known: load.inertia is that of the load and the motor, times the ratio squared"
+        )
     elif "motor_inertia" in constants:
         remarks.append(
             f"at the input turn the motor's {inertia:.3g} kg·m² and the set's {gear.input_inertia:.3g} kg·m² of the gear; "
