@@ -361,9 +361,9 @@ void bind_drives(nb::module_& core) {
                  nb::sig(kept(std::string("def ") + name + "(drive: Drive, state: " SW_ARRAY + more + ") -> " SW_ARRAY)), doc);
     };
     advanced(
-        "aged", ", inputs: " SW_ARRAY ", dt: float", "`state` with what friction remembers after `dt` [s] at constant speeds.",
+        "relaxed", ", inputs: " SW_ARRAY ", dt: float", "`state` with what friction remembers after `dt` [s] at constant speeds.",
         [](const ParameterDrive& drive, const Numbers& state, const Numbers& u, double dt) {
-            return array_of(general::aged(parts_of(drive).set(), state_from(drive, state), input_of(u), dt));
+            return array_of(general::relaxed(parts_of(drive).set(), state_from(drive, state), input_of(u), dt));
         },
         nb::arg("inputs"), nb::arg("dt"));
     advanced(

@@ -176,13 +176,14 @@ struct Drive {
         for (int i = 0; i < 8; ++i) settle_gear(x, geometry(x, x.continuous), S(0.0), S(0.0), S(0.0));
         x.input_slip_direction = S(input_sticks() ? 0.0 : 1.0);
         x.output_slip_direction = S(output_sticks() ? 0.0 : 1.0);
-        x.continuous.sensors = sensors.settled(measurable(x, x.continuous, Input{}, S(0.0)));
+        x.continuous.sensors = sensors.steady_state(measurable(x, x.continuous, Input{}, S(0.0)));
         return x;
     }
 
     /// The gear comes to rest where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
     constexpr void settle_gear(State& x, const Mesh& mesh, const S& twist, const S& torque, const S& temperature) const {
-        const auto found = gear.settled(x.continuous.structure, gear_shafts(x, x.continuous), mesh, twist, torque, temperature);
+        const auto found =
+            gear.steady_state(x.continuous.structure, gear_shafts(x, x.continuous), mesh, twist, torque, temperature);
         x.continuous.structure = found.state;
         x.continuous.transmission_error = found.transmission_error;
     }
@@ -307,7 +308,7 @@ struct Drive {
     }
 
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
-    constexpr State aged(State x, const Input& u, const S& dt) const {
+    constexpr State relaxed(State x, const Input& u, const S& dt) const {
         const Contacts at = contacts::at<S>(*this, x, x.continuous, mesh(x, x.continuous, u), u);
         x.continuous.friction_input = friction::advance(gear.friction_input, x.continuous.friction_input, at.input, dt);
         x.continuous.friction_mesh = friction::advance(gear.friction_mesh, x.continuous.friction_mesh, at.mesh, dt);

@@ -221,11 +221,11 @@ struct Gear {
     }
 
     /// How the gear rests where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
-    constexpr auto settled(const Inner& inner, const Shafts& at, Mesh mesh, const S& twist, const S& torque,
-                           const S& temperature) const {
+    constexpr auto steady_state(const Inner& inner, const Shafts& at, Mesh mesh, const S& twist, const S& torque,
+                                const S& temperature) const {
         mesh.twist = twist;
         mesh.spring = torque;
-        return structure.settled(inner, at, mesh, load(mesh, turning(stiffness_factor(inner, at), twist, temperature)));
+        return structure.steady_state(inner, at, mesh, load(mesh, turning(stiffness_factor(inner, at), twist, temperature)));
     }
     /// What the spring must hold so that this torque [N.m] reaches the output at rest: not the same where the error follows the
     /// load.
@@ -275,8 +275,8 @@ struct Gear {
     /// What of it is the random error's, at rest, where the spring has a stiffness [N.m/rad].
     constexpr structure::Unevenness<S> random_unevenness(const S& spring) const {
         if (!kinematic_noise.active()) return {S(0.0), S(0.0), S(0.0), S(0.0)};
-        const auto most = kinematic_noise.most();
-        return {S(0.0), most.slope, most.per_torque * spring, most.per_speed};
+        const auto change = kinematic_noise.max_change();
+        return {S(0.0), change.slope, change.per_torque * spring, change.per_speed};
     }
 
 private:
@@ -305,21 +305,21 @@ private:
     }
     /// Teeth that the kinematic error is told are those of the kinematics, or have its ratio where it is told no teeth.
     constexpr Contradiction<S> problem_of_teeth(const S& ratio) const {
-        const facts::Teeth told = facts::teeth(kinematic_error), own = facts::teeth(kinematics);
-        if (told.flexspline == 0) return {};
-        if (own.flexspline == 0)
-            return facts::agree(S(told.ratio()), ratio)
+        const facts::Teeth error_teeth = facts::teeth(kinematic_error), gear_teeth = facts::teeth(kinematics);
+        if (error_teeth.flexspline == 0) return {};
+        if (gear_teeth.flexspline == 0)
+            return facts::agree(S(error_teeth.ratio()), ratio)
                        ? Contradiction<S>{}
                        : Contradiction<S>{"the teeth of kinematic_error have the ratio {}, kinematics has {}; give both alike",
-                                          S(told.ratio()), ratio};
-        if (told.flexspline != own.flexspline)
+                                          S(error_teeth.ratio()), ratio};
+        if (error_teeth.flexspline != gear_teeth.flexspline)
             return {"the flexspline_teeth of kinematic_error, {}, must be those of kinematics, {}; give both alike",
-                    S(told.flexspline), S(own.flexspline)};
-        if (told.circular_spline != own.circular_spline)
+                    S(error_teeth.flexspline), S(gear_teeth.flexspline)};
+        if (error_teeth.circular_spline != gear_teeth.circular_spline)
             return {"the circular_spline_teeth of kinematic_error, {}, must be those of kinematics, {}; give both alike",
-                    S(told.circular_spline), S(own.circular_spline)};
-        if (told.fixed == own.fixed) return {};
-        return {own.fixed == kinematics::Fixed::flexspline
+                    S(error_teeth.circular_spline), S(gear_teeth.circular_spline)};
+        if (error_teeth.fixed == gear_teeth.fixed) return {};
+        return {gear_teeth.fixed == kinematics::Fixed::flexspline
                     ? "kinematic_error has the circular_spline fixed, kinematics the flexspline; give both alike"
                     : "kinematic_error has the flexspline fixed, kinematics the circular_spline; give both alike"};
     }

@@ -117,7 +117,7 @@ private:
         x.continuous.friction_input = fresh.continuous.friction_input;
         x.continuous.friction_mesh = fresh.continuous.friction_mesh;
         x.continuous.friction_output = fresh.continuous.friction_output;
-        x = drive.aged(drive.consistent(x), u, S(1e30));
+        x = drive.relaxed(drive.consistent(x), u, S(1e30));
     }
     /// Friction, a sampled controller, the motor and the sensors, in this order: each as those before have it.
     constexpr void settle() {
@@ -126,7 +126,7 @@ private:
         at = system::up_to_date(drive, at, u, S(0.0));  // before the first sample none is due but that
         x = at.state;
         settle_motor(at.derivatives.mesh.torque);
-        x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, u, at.derivatives.mesh.torque));
+        x.continuous.sensors = drive.sensors.steady_state(drive.measurable(x, x.continuous, u, at.derivatives.mesh.torque));
     }
     /// The currents at which none changes, with controller and sensors as they are then, under a torque [N.m] of the gear: by
     /// Newton's iteration, which for a linear winding ends at once. Where it finds none the motor stays as it was.
@@ -186,7 +186,7 @@ private:
     constexpr MotorNumbers motor_rate(const MotorNumbers& numbers, const MotorNumbers& relaxation, const S& gear_torque) const {
         auto y = x.continuous;
         refill(y.motor, numbers);
-        y.sensors = drive.sensors.settled(drive.measurable(x, y, u, gear_torque));
+        y.sensors = drive.sensors.steady_state(drive.measurable(x, y, u, gear_torque));
         MotorNumbers rate = flattened<S>(drive.derivatives(x, y, u).rate.motor);
         for (int i = 0; i < rate.size(); ++i) rate[i] = select(relaxation[i] > S(0.0), rate[i], S(0.0));
         return rate;

@@ -54,16 +54,16 @@ constexpr float select(bool mask, float a, float b) { return mask ? a : b; }
 constexpr bool any(bool mask) { return mask; }
 constexpr bool all(bool mask) { return mask; }
 
-/// Whether a scalar carries derivatives; `detached` drops them.
+/// Whether a scalar carries derivatives; `value_only` drops them.
 template <class S>
 inline constexpr bool differentiates = false;
 template <class S>
-constexpr S detached(const S& x) {
+constexpr S value_only(const S& x) {
     return x;
 }
 /// Whether derivatives with respect to `x` are asked for.
 template <class S>
-constexpr bool sought(const S&) {
+constexpr bool is_differentiated(const S&) {
     return false;
 }
 

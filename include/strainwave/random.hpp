@@ -14,7 +14,7 @@ struct WichmannHill {
 
     /// Neighbouring seeds share nothing: each component is stirred into the next, modulo another prime.
     static constexpr WichmannHill seeded(const S& seed) {
-        const S number = clip(rint(detached(seed)), S(0.0), S(highest_seed));
+        const S number = clip(rint(value_only(seed)), S(0.0), S(highest_seed));
         const S high = rint(number / S(4096.0)), low = number - S(4096.0) * high;
         WichmannHill drawn{low + S(2049.0), high + S(1.0), S(1.0)};
         for (int i = 0; i < 16; ++i) {

@@ -100,8 +100,8 @@ struct Sensors {
         return max(max(input, output), max(one(current), one(torque)));
     }
     /// The state in which they show what there is.
-    constexpr State settled(const Measurement& actual) const {
-        return each([](const auto& sensor, const S& value) { return sensor.settled(value); }, actual);
+    constexpr State steady_state(const Measurement& actual) const {
+        return each([](const auto& sensor, const S& value) { return sensor.steady_state(value); }, actual);
     }
 
 private:

@@ -56,14 +56,15 @@ void Feedforward<S, list>::places(Places& found) const {
 }
 template <class S, Requests list>
 auto Feedforward<S, list>::initial_state() const -> State {
-    return FeedforwardLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return FeedforwardLaws<S, list>::visit(*this,
+                                           [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S, Requests list>
 auto Feedforward<S, list>::step(const State& x, const control::Command<S>& command, const S& period) const
     -> compensation::RequestAndState<S, State> {
     return FeedforwardLaws<S, list>::visit(*this, [&](const auto& law) -> compensation::RequestAndState<S, State> {
-        const auto found = law.step(own<S>(law, x), command, period);
-        return {found.request, packed<State>(found.next)};
+        const auto found = law.step(unpack_state<S>(law, x), command, period);
+        return {found.request, pack_slots<State>(found.next)};
     });
 }
 
@@ -77,17 +78,18 @@ void Correction<S, list>::places(Places& found) const {
 }
 template <class S, Corrections list>
 auto Correction<S, list>::initial_state() const -> State {
-    return CorrectionLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return CorrectionLaws<S, list>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S, Corrections list>
 auto Correction<S, list>::request(const State& x, const compensation::Inputs<S>& inputs) const -> compensation::Request<S> {
-    return CorrectionLaws<S, list>::visit(*this, [&](const auto& law) { return law.request(own<S>(law, x), inputs); });
+    return CorrectionLaws<S, list>::visit(*this, [&](const auto& law) { return law.request(unpack_state<S>(law, x), inputs); });
 }
 template <class S, Corrections list>
 auto Correction<S, list>::advance(const State& x, const compensation::Inputs<S>& inputs, const compensation::Request<S>& request,
                                   const S& motor_torque, const S& period) const -> State {
-    return CorrectionLaws<S, list>::visit(
-        *this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), inputs, request, motor_torque, period)); });
+    return CorrectionLaws<S, list>::visit(*this, [&](const auto& law) {
+        return pack_slots<State>(law.advance(unpack_state<S>(law, x), inputs, request, motor_torque, period));
+    });
 }
 
 #define SW_FEEDFORWARDS(list)                  \

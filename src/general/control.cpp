@@ -53,11 +53,11 @@ void Control<S>::discrete_places(Places& found) const {
 }
 template <class S>
 auto Control<S>::initial_state() const -> State {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 auto Control<S>::initial_discrete() const -> Discrete {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return packed<Discrete>(control::initial_discrete<S>(law)); });
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return pack_slots<Discrete>(control::initial_discrete<S>(law)); });
 }
 template <class S>
 S Control<S>::act(const State& x, const Command& command, const Measurement& measured) const {
@@ -65,17 +65,17 @@ S Control<S>::act(const State& x, const Command& command, const Measurement& mea
         if constexpr (requires { typename Law::Discrete; })
             return S(0.0);  // no law that samples stands within another
         else
-            return law.act(own<S>(law, x), command, measured);
+            return law.act(unpack_state<S>(law, x), command, measured);
     });
 }
 template <class S>
 auto Control<S>::rate(const State& x, const Command& command, const Measurement& measured) const -> State {
-    return ControlLaws<S>::visit(*this,
-                                 [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), command, measured)); });
+    return ControlLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(law.rate(unpack_state<S>(law, x), command, measured)); });
 }
 template <class S>
 auto Control<S>::relaxation_rate() const -> State {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return packed<State>(law.relaxation_rate()); });
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(law.relaxation_rate()); });
 }
 template <class S>
 S Control<S>::fastest() const {
@@ -84,32 +84,32 @@ S Control<S>::fastest() const {
 template <class S>
 S Control<S>::actuation(const State& x, const Discrete& held, const Command& command, const Measurement& measured) const {
     return ControlLaws<S>::visit(*this, [&](const auto& law) {
-        return control::actuation(law, own<S>(law, x), own_discrete<S>(law, held), command, measured);
+        return control::actuation(law, unpack_state<S>(law, x), unpack_discrete<S>(law, held), command, measured);
     });
 }
 template <class S>
 S Control<S>::held(const Discrete& x) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::held<S>(law, own_discrete<S>(law, x)); });
+    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::held<S>(law, unpack_discrete<S>(law, x)); });
 }
 template <class S>
 auto Control<S>::sampled(const Discrete& x, const S& within, const Command& command, const Measurement& measured) const
     -> Discrete {
     return ControlLaws<S>::visit(*this, [&](const auto& law) {
-        return packed<Discrete>(control::sampled(law, own_discrete<S>(law, x), within, command, measured));
+        return pack_slots<Discrete>(control::sampled(law, unpack_discrete<S>(law, x), within, command, measured));
     });
 }
 template <class S>
 auto Control<S>::elapsed(const Discrete& x, const S& dt) const -> Discrete {
     return ControlLaws<S>::visit(
-        *this, [&](const auto& law) { return packed<Discrete>(control::elapsed(law, own_discrete<S>(law, x), dt)); });
+        *this, [&](const auto& law) { return pack_slots<Discrete>(control::elapsed(law, unpack_discrete<S>(law, x), dt)); });
 }
 template <class S>
 bool Control<S>::due(const Discrete& x, const S& within) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::due(law, own_discrete<S>(law, x), within); });
+    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::due(law, unpack_discrete<S>(law, x), within); });
 }
 template <class S>
 control::Schedule<S> Control<S>::schedule(const Discrete& x) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::schedule<S>(law, own_discrete<S>(law, x)); });
+    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::schedule<S>(law, unpack_discrete<S>(law, x)); });
 }
 
 SW_GENERAL(Control)

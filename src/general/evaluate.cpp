@@ -9,7 +9,7 @@ namespace strainwave::general {
 
 namespace {
 
-using kernel::begun;
+using kernel::initial_evaluation;
 using kernel::time_tolerance;
 using kernel::within_bounds;
 
@@ -73,7 +73,7 @@ Outcome step(const Drive& drive, typename Drive::State& x, const Interval<Input>
         return kernel::smooth_step(moved, at, over, h, steps);
     };
     const double within = std::min(rounding(drive.schedule(x)), time_tolerance(dt));
-    auto at = begun(drive, x, u.start, within);
+    auto at = initial_evaluation(drive, x, u.start, within);
     if (!within_bounds<double>(drive, at, 0.0, outcome)) return outcome;
     for (double done = 0.0;;) {
         const double next = done + next_instant(drive.schedule(at.state), within);
@@ -92,7 +92,7 @@ Outcome step(const Drive& drive, typename Drive::State& x, const Interval<Input>
 
 State begin(const Set& set, const State& x, const Input& u) {
     return changed(set, x, [&](const auto& drive, const auto& state) {
-        return begun(drive, state, u, rounding(drive.schedule(state))).state;
+        return initial_evaluation(drive, state, u, rounding(drive.schedule(state))).state;
     });
 }
 
@@ -100,8 +100,8 @@ control::Schedule<double> schedule(const Set& set, const State& x) {
     return with_drive(set, [&](const auto& drive) { return drive.schedule(kernel::state_of(drive, x.data())); });
 }
 
-State aged(const Set& set, const State& x, const Input& u, double dt) {
-    return changed(set, x, [&](const auto& drive, const auto& state) { return drive.aged(state, u, dt); });
+State relaxed(const Set& set, const State& x, const Input& u, double dt) {
+    return changed(set, x, [&](const auto& drive, const auto& state) { return drive.relaxed(state, u, dt); });
 }
 
 State advance_hysteresis(const Set& set, const State& x, double twist) {

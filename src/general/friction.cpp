@@ -19,17 +19,17 @@ void Friction<S>::places(Places& found) const {
 }
 template <class S>
 auto Friction<S>::initial_state() const -> State {
-    return FrictionLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return FrictionLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 S Friction<S>::torque(const State& x, const Contact& at) const {
-    return FrictionLaws<S>::visit(*this, [&](const auto& law) { return friction::torque(law, own<S>(law, x), at); });
+    return FrictionLaws<S>::visit(*this, [&](const auto& law) { return friction::torque(law, unpack_state<S>(law, x), at); });
 }
 template <class S>
 auto Friction<S>::response(const State& x, const Contact& at) const -> friction::Response<S, State> {
     return FrictionLaws<S>::visit(*this, [&](const auto& law) {
-        const auto found = friction::response(law, own<S>(law, x), at);
-        return friction::Response<S, State>{found.torque, packed<State>(found.rate)};
+        const auto found = friction::response(law, unpack_state<S>(law, x), at);
+        return friction::Response<S, State>{found.torque, pack_slots<State>(found.rate)};
     });
 }
 template <class S>
@@ -42,31 +42,32 @@ S Friction<S>::hold(const Contact& at) const {
 }
 template <class S>
 auto Friction<S>::rate(const State& x, const Contact& at) const -> State {
-    return FrictionLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(friction::rate(law, own<S>(law, x), at)); });
+    return FrictionLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(friction::rate(law, unpack_state<S>(law, x), at)); });
 }
 template <class S>
 auto Friction<S>::relaxation_rate(const State& x, const Contact& at) const -> State {
     return FrictionLaws<S>::visit(
-        *this, [&](const auto& law) { return packed<State>(friction::relaxation_rate(law, own<S>(law, x), at)); });
+        *this, [&](const auto& law) { return pack_slots<State>(friction::relaxation_rate(law, unpack_state<S>(law, x), at)); });
 }
 template <class S>
 auto Friction<S>::clamped(const State& x, const Contact& at) const -> State {
-    return FrictionLaws<S>::visit(*this,
-                                  [&](const auto& law) { return packed<State>(friction::clamped(law, own<S>(law, x), at)); });
+    return FrictionLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(friction::clamped(law, unpack_state<S>(law, x), at)); });
 }
 template <class S>
 auto Friction<S>::update_mode(const State& x, const Contact& at) const -> State {
-    return FrictionLaws<S>::visit(*this,
-                                  [&](const auto& law) { return packed<State>(friction::update_mode(law, own<S>(law, x), at)); });
+    return FrictionLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(friction::update_mode(law, unpack_state<S>(law, x), at)); });
 }
 template <class S>
 auto Friction<S>::advance(const State& x, const Contact& at, const S& dt) const -> State {
-    return FrictionLaws<S>::visit(*this,
-                                  [&](const auto& law) { return packed<State>(friction::advance(law, own<S>(law, x), at, dt)); });
+    return FrictionLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(friction::advance(law, unpack_state<S>(law, x), at, dt)); });
 }
 template <class S>
 auto Friction<S>::steady_state(const Contact& at) const -> State {
-    return FrictionLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(friction::steady_state(law, at)); });
+    return FrictionLaws<S>::visit(*this, [&](const auto& law) { return pack_slots<State>(friction::steady_state(law, at)); });
 }
 template <class S>
 bool Friction<S>::is_bounded() const {

@@ -27,7 +27,7 @@ void Thermal<S>::output_places(Places& found) const {
 }
 template <class S>
 auto Thermal<S>::initial_state() const -> State {
-    return ThermalLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return ThermalLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 bool Thermal<S>::active() const {
@@ -35,15 +35,16 @@ bool Thermal<S>::active() const {
 }
 template <class S>
 thermal::Temperatures<S> Thermal<S>::at(const State& x, const S& ambient) const {
-    return ThermalLaws<S>::visit(*this, [&](const auto& law) { return law.at(own<S>(law, x), ambient); });
+    return ThermalLaws<S>::visit(*this, [&](const auto& law) { return law.at(unpack_state<S>(law, x), ambient); });
 }
 template <class S>
 auto Thermal<S>::rate(const State& x, const thermal::Heat<S>& heat, const S& ambient) const -> State {
-    return ThermalLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), heat, ambient)); });
+    return ThermalLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(law.rate(unpack_state<S>(law, x), heat, ambient)); });
 }
 template <class S>
 S Thermal<S>::gear_rate(const State& rate, const S& ambient_rate) const {
-    return ThermalLaws<S>::visit(*this, [&](const auto& law) { return law.gear_rate(own<S>(law, rate), ambient_rate); });
+    return ThermalLaws<S>::visit(*this, [&](const auto& law) { return law.gear_rate(unpack_state<S>(law, rate), ambient_rate); });
 }
 template <class S>
 S Thermal<S>::fastest() const {
@@ -51,7 +52,8 @@ S Thermal<S>::fastest() const {
 }
 template <class S>
 auto Thermal<S>::output(const State& x, const S& ambient) const -> Output {
-    return ThermalLaws<S>::visit(*this, [&](const auto& law) { return packed<Output>(law.output(own<S>(law, x), ambient)); });
+    return ThermalLaws<S>::visit(*this,
+                                 [&](const auto& law) { return pack_slots<Output>(law.output(unpack_state<S>(law, x), ambient)); });
 }
 
 template <class S>
@@ -68,7 +70,7 @@ void Meter<S>::output_places(Places& found) const {
 }
 template <class S>
 auto Meter<S>::initial_state() const -> State {
-    return MeterLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return MeterLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 bool Meter<S>::active() const {
@@ -76,11 +78,12 @@ bool Meter<S>::active() const {
 }
 template <class S>
 auto Meter<S>::rate(const meter::Powers<S>& powers) const -> State {
-    return MeterLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(powers)); });
+    return MeterLaws<S>::visit(*this, [&](const auto& law) { return pack_slots<State>(law.rate(powers)); });
 }
 template <class S>
 auto Meter<S>::output(const State& x, const meter::Powers<S>& powers, const meter::Stored<S>& stored) const -> Output {
-    return MeterLaws<S>::visit(*this, [&](const auto& law) { return packed<Output>(law.output(own<S>(law, x), powers, stored)); });
+    return MeterLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<Output>(law.output(unpack_state<S>(law, x), powers, stored)); });
 }
 
 SW_GENERAL(Thermal)

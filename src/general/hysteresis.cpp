@@ -46,25 +46,26 @@ void Hysteresis<S>::places(Places& found) const {
 }
 template <class S>
 auto Hysteresis<S>::initial_state() const -> State {
-    return HysteresisLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return HysteresisLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 auto Hysteresis<S>::advance(const State& x, const S& increment) const -> State {
-    return HysteresisLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), increment)); });
+    return HysteresisLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(law.advance(unpack_state<S>(law, x), increment)); });
 }
 template <class S>
 S Hysteresis<S>::torque(const State& x, const S& increment) const {
-    return HysteresisLaws<S>::visit(*this, [&](const auto& law) { return law.torque(own<S>(law, x), increment); });
+    return HysteresisLaws<S>::visit(*this, [&](const auto& law) { return law.torque(unpack_state<S>(law, x), increment); });
 }
 template <class S>
 S Hysteresis<S>::work(const State& x, const S& increment) const {
-    return HysteresisLaws<S>::visit(*this, [&](const auto& law) { return law.work(own<S>(law, x), increment); });
+    return HysteresisLaws<S>::visit(*this, [&](const auto& law) { return law.work(unpack_state<S>(law, x), increment); });
 }
 template <class S>
 S Hysteresis<S>::stored(const State& x) const {
     return HysteresisLaws<S>::visit(*this, [&](const auto& law) {
-        if constexpr (requires { law.stored(own<S>(law, x)); })
-            return law.stored(own<S>(law, x));
+        if constexpr (requires { law.stored(unpack_state<S>(law, x)); })
+            return law.stored(unpack_state<S>(law, x));
         else
             return S(0.0);
     });

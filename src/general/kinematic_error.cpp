@@ -49,10 +49,10 @@ S KinematicNoise<S>::growth(const S& torque, const S& torque_rate, const S& spee
     return NoiseLaws<S>::visit(*this, [&](const auto& law) { return law.growth(torque, torque_rate, speed, acceleration); });
 }
 template <class S>
-MostChange<S> KinematicNoise<S>::most() const {
+MaxChange<S> KinematicNoise<S>::max_change() const {
     return NoiseLaws<S>::visit(*this, [](const auto& law) {
-        const auto found = law.most();
-        return MostChange<S>{found.slope, found.per_torque, found.per_speed};
+        const auto found = law.max_change();
+        return MaxChange<S>{found.slope, found.per_torque, found.per_speed};
     });
 }
 

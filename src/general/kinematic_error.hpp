@@ -18,7 +18,7 @@ struct KinematicError : Part {
 
 /// Largest derivatives of a random error, at rest and without load.
 template <class S>
-struct MostChange {
+struct MaxChange {
     S slope, per_torque, per_speed;
 };
 
@@ -30,7 +30,7 @@ struct KinematicNoise : Part {
     bool active() const;
     kinematic_error::Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const;
     S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const;
-    MostChange<S> most() const;
+    MaxChange<S> max_change() const;
 };
 
 }  // namespace strainwave::general

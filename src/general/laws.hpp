@@ -83,9 +83,9 @@ template <class S, class X>
 inline constexpr bool is_of_fixed_size = strainwave::detail::counter_of<S, X>.fixed;
 }
 
-/// The state of a law, out of the slots of its part; `begun()` is that without history.
-template <class X, class S, int n, int few, class Begun>
-X unpacked(const Storage<S, n, few>& slots, const Begun& begun) {
+/// The state of a law, out of the slots of its part; `initial()` is that without history.
+template <class X, class S, int n, int few, class Initial>
+X unpack_slots(const Storage<S, n, few>& slots, const Initial& initial) {
     if constexpr (std::is_same_v<X, Storage<S, n, few>>) {  // a law that varies another has its state
         return slots;
     } else if constexpr (detail::is_of_fixed_size<S, X>) {
@@ -96,23 +96,23 @@ X unpacked(const Storage<S, n, few>& slots, const Begun& begun) {
         }
         return x;
     } else {
-        X x = begun();
+        X x = initial();
         if (slots.slot.size() > 0) refill(x, slots.slot);
         return x;
     }
 }
 template <class S, class Law, class Slots>
-auto own(const Law& law, const Slots& slots) {
-    return unpacked<StateOf<S, Law>, S>(slots, [&] { return strainwave::initial_state(law); });
+auto unpack_state(const Law& law, const Slots& slots) {
+    return unpack_slots<StateOf<S, Law>, S>(slots, [&] { return strainwave::initial_state(law); });
 }
 template <class S, class Law, class Slots>
-auto own_discrete(const Law& law, const Slots& slots) {
-    return unpacked<control::DiscreteOf<S, Law>, S>(slots, [&] { return control::initial_discrete<S>(law); });
+auto unpack_discrete(const Law& law, const Slots& slots) {
+    return unpack_slots<control::DiscreteOf<S, Law>, S>(slots, [&] { return control::initial_discrete<S>(law); });
 }
 
 /// A state or an output of a law in the slots of its part.
 template <class Slots, class X>
-Slots packed(const X& x) {
+Slots pack_slots(const X& x) {
     if constexpr (std::is_same_v<Slots, X>) {
         return x;
     } else {

@@ -24,36 +24,37 @@ void Motor<S>::output_places(Places& found) const {
 }
 template <class S>
 auto Motor<S>::initial_state() const -> State {
-    return MotorLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return MotorLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 S Motor<S>::torque(const State& x, const S& actuation, const Rotor& rotor) const {
-    return MotorLaws<S>::visit(*this, [&](const auto& law) { return law.torque(own<S>(law, x), actuation, rotor); });
+    return MotorLaws<S>::visit(*this, [&](const auto& law) { return law.torque(unpack_state<S>(law, x), actuation, rotor); });
 }
 template <class S>
 S Motor<S>::current(const State& x, const S& actuation, const Rotor& rotor) const {
-    return MotorLaws<S>::visit(*this, [&](const auto& law) { return law.current(own<S>(law, x), actuation, rotor); });
+    return MotorLaws<S>::visit(*this, [&](const auto& law) { return law.current(unpack_state<S>(law, x), actuation, rotor); });
 }
 template <class S>
 auto Motor<S>::output(const State& x, const S& actuation, const Rotor& rotor) const -> Output {
-    return MotorLaws<S>::visit(*this,
-                               [&](const auto& law) { return packed<Output>(law.output(own<S>(law, x), actuation, rotor)); });
+    return MotorLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<Output>(law.output(unpack_state<S>(law, x), actuation, rotor)); });
 }
 template <class S>
 motor::Power<S> Motor<S>::power(const State& x, const S& actuation, const Rotor& rotor) const {
-    return MotorLaws<S>::visit(*this, [&](const auto& law) { return law.power(own<S>(law, x), actuation, rotor); });
+    return MotorLaws<S>::visit(*this, [&](const auto& law) { return law.power(unpack_state<S>(law, x), actuation, rotor); });
 }
 template <class S>
 auto Motor<S>::rate(const State& x, const S& actuation, const Rotor& rotor) const -> State {
-    return MotorLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), actuation, rotor)); });
+    return MotorLaws<S>::visit(
+        *this, [&](const auto& law) { return pack_slots<State>(law.rate(unpack_state<S>(law, x), actuation, rotor)); });
 }
 template <class S>
 auto Motor<S>::relaxation_rate() const -> State {
-    return MotorLaws<S>::visit(*this, [](const auto& law) { return packed<State>(law.relaxation_rate()); });
+    return MotorLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(law.relaxation_rate()); });
 }
 template <class S>
 Limits<S> Motor<S>::limits(const State& x, const Rotor& rotor) const {
-    return MotorLaws<S>::visit(*this, [&](const auto& law) { return motor::limits(law, own<S>(law, x), rotor); });
+    return MotorLaws<S>::visit(*this, [&](const auto& law) { return motor::limits(law, unpack_state<S>(law, x), rotor); });
 }
 template <class S>
 bool Motor<S>::prescribes() const {

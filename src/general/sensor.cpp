@@ -59,23 +59,24 @@ void SensorOf<S, list>::places(Places& found) const {
 }
 template <class S, SensorList list>
 auto SensorOf<S, list>::initial_state() const -> State {
-    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S, SensorList list>
 S SensorOf<S, list>::shown(const State& x, const S& value) const {
-    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return law.shown(own<S>(law, x), value); });
+    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return law.shown(unpack_state<S>(law, x), value); });
 }
 template <class S, SensorList list>
 auto SensorOf<S, list>::rate(const State& x, const S& value) const -> State {
-    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), value)); });
+    return SensorLaws<S, list>::visit(*this,
+                                      [&](const auto& law) { return pack_slots<State>(law.rate(unpack_state<S>(law, x), value)); });
 }
 template <class S, SensorList list>
 auto SensorOf<S, list>::relaxation_rate() const -> State {
-    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(law.relaxation_rate()); });
+    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return pack_slots<State>(law.relaxation_rate()); });
 }
 template <class S, SensorList list>
-auto SensorOf<S, list>::settled(const S& value) const -> State {
-    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return packed<State>(law.settled(value)); });
+auto SensorOf<S, list>::steady_state(const S& value) const -> State {
+    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return pack_slots<State>(law.steady_state(value)); });
 }
 template <class S, SensorList list>
 S SensorOf<S, list>::fastest() const {

@@ -20,7 +20,7 @@ struct SensorOf : Part {
     S shown(const State& x, const S& value) const;
     State rate(const State& x, const S& value) const;
     State relaxation_rate() const;
-    State settled(const S& value) const;
+    State steady_state(const S& value) const;
     S fastest() const;
 };
 template <class S>

@@ -24,7 +24,7 @@ void Structure<S>::output_places(Places& found) const {
 }
 template <class S>
 auto Structure<S>::initial_state() const -> State {
-    return StructureLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+    return StructureLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
 }
 template <class S>
 bool Structure<S>::rigid() const {
@@ -32,58 +32,61 @@ bool Structure<S>::rigid() const {
 }
 template <class S>
 structure::Generator<S> Structure<S>::generator(const State& inner, const Shafts& at) const {
-    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.generator(own<S>(law, inner), at); });
+    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.generator(unpack_state<S>(law, inner), at); });
 }
 template <class S>
 S Structure<S>::generator_acceleration(const State& rate, const S& input_acceleration) const {
     return StructureLaws<S>::visit(
-        *this, [&](const auto& law) { return law.generator_acceleration(own<S>(law, rate), input_acceleration); });
+        *this, [&](const auto& law) { return law.generator_acceleration(unpack_state<S>(law, rate), input_acceleration); });
 }
 template <class S>
 S Structure<S>::gap(const State& inner, const Shafts& at) const {
-    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.gap(own<S>(law, inner), at); });
+    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.gap(unpack_state<S>(law, inner), at); });
 }
 template <class S>
 S Structure<S>::spring_twist(const State& inner, const Shafts& at, const S& deformation) const {
-    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.spring_twist(own<S>(law, inner), at, deformation); });
+    return StructureLaws<S>::visit(*this,
+                                   [&](const auto& law) { return law.spring_twist(unpack_state<S>(law, inner), at, deformation); });
 }
 template <class S>
 S Structure<S>::spring_twist_rate(const State& inner, const Shafts& at, const Mesh& mesh) const {
-    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.spring_twist_rate(own<S>(law, inner), at, mesh); });
+    return StructureLaws<S>::visit(*this,
+                                   [&](const auto& law) { return law.spring_twist_rate(unpack_state<S>(law, inner), at, mesh); });
 }
 template <class S>
 S Structure<S>::deformation_rate(const State& inner, const Mesh& mesh) const {
-    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.deformation_rate(own<S>(law, inner), mesh); });
+    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.deformation_rate(unpack_state<S>(law, inner), mesh); });
 }
 template <class S>
 auto Structure<S>::reaction(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const -> Reaction {
     return StructureLaws<S>::visit(*this, [&](const auto& law) {
-        const auto found = law.reaction(own<S>(law, inner), at, mesh, load);
-        return Reaction{found.torque, found.input_torque, packed<State>(found.rate)};
+        const auto found = law.reaction(unpack_state<S>(law, inner), at, mesh, load);
+        return Reaction{found.torque, found.input_torque, pack_slots<State>(found.rate)};
     });
 }
 template <class S>
 auto Structure<S>::even_reaction(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const -> Reaction {
     return StructureLaws<S>::visit(*this, [&](const auto& law) {
-        const auto found = law.even_reaction(own<S>(law, inner), at, mesh, load);
-        return Reaction{found.torque, found.input_torque, packed<State>(found.rate)};
+        const auto found = law.even_reaction(unpack_state<S>(law, inner), at, mesh, load);
+        return Reaction{found.torque, found.input_torque, pack_slots<State>(found.rate)};
     });
 }
 template <class S>
 structure::Energies<S> Structure<S>::energies(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const {
-    return StructureLaws<S>::visit(*this, [&](const auto& law) { return law.energies(own<S>(law, inner), at, mesh, load); });
+    return StructureLaws<S>::visit(*this,
+                                   [&](const auto& law) { return law.energies(unpack_state<S>(law, inner), at, mesh, load); });
 }
 template <class S>
 auto Structure<S>::output(const State& inner, const Shafts& at, const Mesh& mesh, const S& friction) const -> Output {
     return StructureLaws<S>::visit(
-        *this, [&](const auto& law) { return packed<Output>(law.output(own<S>(law, inner), at, mesh, friction)); });
+        *this, [&](const auto& law) { return pack_slots<Output>(law.output(unpack_state<S>(law, inner), at, mesh, friction)); });
 }
 template <class S>
-auto Structure<S>::settled(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const
-    -> structure::Settled<S, State> {
+auto Structure<S>::steady_state(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const
+    -> structure::SteadyState<S, State> {
     return StructureLaws<S>::visit(*this, [&](const auto& law) {
-        const auto found = law.settled(own<S>(law, inner), at, mesh, load);
-        return structure::Settled<S, State>{packed<State>(found.state), found.transmission_error};
+        const auto found = law.steady_state(unpack_state<S>(law, inner), at, mesh, load);
+        return structure::SteadyState<S, State>{pack_slots<State>(found.state), found.transmission_error};
     });
 }
 template <class S>

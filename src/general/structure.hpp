@@ -33,7 +33,7 @@ struct Structure : Part {
     Reaction even_reaction(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const;
     structure::Energies<S> energies(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const;
     Output output(const State& inner, const Shafts& at, const Mesh& mesh, const S& friction) const;
-    structure::Settled<S, State> settled(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const;
+    structure::SteadyState<S, State> steady_state(const State& inner, const Shafts& at, const Mesh& mesh, const Load& load) const;
     S compliance(const Shafts& at, const Mesh& mesh) const;
     S natural_frequency(const Bodies& bodies) const;
     S uneven_frequency(const Bodies& bodies, const Unevenness& of) const;

@@ -31,7 +31,7 @@ State begin(const Set& drive, const State& x, const Input& u);
 /// When its controller acts.
 control::Schedule<double> schedule(const Set& drive, const State& x);
 /// With what friction remembers after `dt` [s] at constant speeds.
-State aged(const Set& drive, const State& x, const Input& u, double dt);
+State relaxed(const Set& drive, const State& x, const Input& u, double dt);
 /// With its hysteresis brought up to date at a twist [rad].
 State advance_hysteresis(const Set& drive, const State& x, double twist);
 /// With those shafts slipping that stick and are driven beyond what holds them.

@@ -37,7 +37,7 @@ Outcome differentiate_by(const Drive& drive, const Beginning& beginning, const S
     const Input<S> at_start = input_from<S>(schedule.inputs);
     typename Drive::State state =
         beginning.at_rest ? drive.rest() : initial::state(drive, in_scalars<S>(beginning.known), at_start);
-    record(shown<S>(drive, begun(drive, state, at_start, S(time_tolerance(schedule.first_step()))), at_start));
+    record(shown<S>(drive, initial_evaluation(drive, state, at_start, S(time_tolerance(schedule.first_step()))), at_start));
     const Outcome outcome = run<S>(drive, state, schedule, record, progress);
     record.flush();
     return outcome;

@@ -70,7 +70,8 @@ inline constexpr double time_tolerance(double dt) { return 0.5 * dt; }
 
 /// A state from outside where a run begins.
 template <class S, class Drive>
-typename Drive::Evaluation begun(const Drive& drive, const typename Drive::State& start, const Input<S>& u, const S& within) {
+typename Drive::Evaluation initial_evaluation(const Drive& drive, const typename Drive::State& start, const Input<S>& u,
+                                              const S& within) {
     return system::up_to_date(drive, drive.evaluate(drive.consistent(start), u), u, within);
 }
 
@@ -99,8 +100,8 @@ Outcome run_steps(const Drive& drive, typename Drive::State& state, const Schedu
     const bool has_bounds = drive.has_bounds();
     Interval<Input<S>> u = interval<S>(schedule.inputs);
     using Evaluation = typename Drive::Evaluation;
-    Evaluation places[2]{begun(drive, state, u.start, S(time_tolerance(schedule.first_step()))), {}}, *here = places,
-                                                                                                      *there = places + 1;
+    Evaluation places[2]{initial_evaluation(drive, state, u.start, S(time_tolerance(schedule.first_step()))), {}},
+        *here = places, *there = places + 1;
     if (has_bounds && !within_bounds<S>(drive, *here, schedule.instants[0], outcome)) return outcome;
     bool lost = false;
     for (std::size_t i = 0; i < schedule.steps; ++i) {

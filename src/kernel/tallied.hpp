@@ -24,7 +24,7 @@ Outcome run_from(const Drive& drive, typename Drive::State state, const Schedule
             sound = min(sound, soundness(outputs));
             twist = max(twist, abs(outputs[twist_place]));
         };
-        note(shown<S>(drive, begun(drive, state, at_start, S(time_tolerance(schedule.first_step()))), at_start));
+        note(shown<S>(drive, initial_evaluation(drive, state, at_start, S(time_tolerance(schedule.first_step()))), at_start));
         outcome = run<S>(drive, state, schedule, note, progress);
         if (outcome.ending != Ending::done) return outcome;
         fastest = select(too_fast, at_rest, own_motion::max_rate<S>(drive, twist, at_start.temperature));

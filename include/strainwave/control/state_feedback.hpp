@@ -46,7 +46,7 @@ struct StateFeedback {
 
     using State = Stateless<S>;
 
-    constexpr bool needs_current() const { return sought(current) || any(!(current == S(0.0))); }
+    constexpr bool needs_current() const { return is_differentiated(current) || any(!(current == S(0.0))); }
     constexpr S act(const State&, const Command<S>& command, const Measurement<S>& measured) const {
         const S of_input = input_angle * (command.input_angle() - measured.input_angle) +
                            input_speed * (command.input_speed() - measured.input_speed);

@@ -80,7 +80,7 @@ struct StateSpace {
 
     constexpr bool needs_current() const {
         constexpr int current = 4;
-        return D.count > current && (sought(D[current]) || any(!(D[current] == S(0.0))));
+        return D.count > current && (is_differentiated(D[current]) || any(!(D[current] == S(0.0))));
     }
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         return measured.limits.within(limit).limited(unlimited(x, inputs(command, measured), command));

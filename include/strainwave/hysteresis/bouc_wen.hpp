@@ -139,20 +139,20 @@ private:
     constexpr S path(const S& v) const { return v * polynomial(path_terms, loss(v)); }
     constexpr BoucWenFlow plain() const {
         if constexpr (differentiates<S>)
-            return of(detached(n), detached(reversal));
+            return of(value_only(n), value_only(reversal));
         else
             return *this;
     }
 
     /// The torque at which path(v) = `target`, where wanted. That function is convex: Newton's iteration comes down from above.
     constexpr S before_knee(const S& from, const S& p, const S& target, auto wanted) const {
-        const S low = detached(from), way = detached(p);
+        const S low = value_only(from), way = value_only(p);
         if (!any(wanted)) return low;
         const BoucWenFlow flow = plain();
         const S high = flow.knee(), gone = flow.loss(low), bend = flow.n * gone / along(low, max(abs(low), S(tiny)));
         S v = clip(low + way * (S(1.0) - gone) * (S(1.0) - S(0.5) * way * bend), low, high);
         for (int i = 0; (i < 16) && any(wanted); ++i) {
-            const S step = flow.newton(v, detached(target));
+            const S step = flow.newton(v, value_only(target));
             v = select(wanted, clip(v + step, low, high), v);
             wanted = wanted & (flow.n * step * step > S(settled));
         }
@@ -164,7 +164,7 @@ private:
 
     /// The torque after the path `p`, where wanted: the logarithm of the depth falls nearly in proportion to the path.
     constexpr S after_knee(const S& from, const S& p, auto wanted) const {
-        const S start = depth(from), fall = min(n * p, S(beyond_digits)), origin = detached(start), goal = detached(fall);
+        const S start = depth(from), fall = min(n * p, S(beyond_digits)), origin = value_only(start), goal = value_only(fall);
         if (!any(wanted)) return origin;
         const Depths terms = bernoulli(S(1.0) - S(1.0) / n), plain_terms = detached_all(terms);
         S y = log_step(plain_terms, S(0.0), origin, goal);
@@ -184,10 +184,10 @@ private:
         return (polynomial(terms, start) - polynomial(terms, depth) - y - fall) / (S(1.0) + polynomial(slopes, depth));
     }
     /// What a last step of Newton's adds: derivatives, and to the value nothing, as in scalars without.
-    static constexpr S slope_of(const S& step) { return step - detached(step); }
+    static constexpr S slope_of(const S& step) { return step - value_only(step); }
     static constexpr Depths detached_all(Depths terms) {
         if constexpr (differentiates<S>)
-            for (S& term : terms.item) term = detached(term);
+            for (S& term : terms.item) term = value_only(term);
         return terms;
     }
 };

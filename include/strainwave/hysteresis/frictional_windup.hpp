@@ -83,7 +83,7 @@ struct FrictionalWindup {
         }
         // At rest no rounding moves it; what derivatives there are is the trial's.
         const auto rests = increment == S(0.0);
-        next.torque = select(rests, detached(x.torque) + (trial - detached(trial)), next.torque);
+        next.torque = select(rests, value_only(x.torque) + (trial - value_only(trial)), next.torque);
         next.windup_torque = select(rests, held, next.windup_torque);
         return next;
     }
@@ -129,14 +129,14 @@ private:
     /// Torque of the wave generator's spring once it has slid forwards to `twist`, from `held`: at most to `most`, where the
     /// flexspline alone would bear the rest. What the search leaves, one step of Newton's does.
     constexpr S slid(const Springs& both, const S& twist, const S& held, const S& most) const {
-        const S from = detached(held), loss = detached(friction), end = max(detached(most), from);
-        const S found = searched(both.constant(), detached(twist), from, loss, end - from);
+        const S from = value_only(held), loss = value_only(friction), end = max(value_only(most), from);
+        const S found = searched(both.constant(), value_only(twist), from, loss, end - from);
         const auto near = under(both, found, found + loss);
-        const S level = clip(found + detached((twist - near.twist) / near.compliance), from, end);
+        const S level = clip(found + value_only((twist - near.twist) / near.compliance), from, end);
         if constexpr (differentiates<S>) {  // implicit function theorem
             const auto given = under(both, level, level + friction);
-            const S step = (twist - given.twist) / detached(given.compliance);
-            return select(level + loss < both.largest(), level + (step - detached(step)), level);
+            const S step = (twist - given.twist) / value_only(given.compliance);
+            return select(level + loss < both.largest(), level + (step - value_only(step)), level);
         }
         return level;
     }
@@ -145,10 +145,10 @@ private:
     static constexpr S searched(const Springs& both, const S& twist, const S& held, const S& friction, const S& farthest) {
         const S softest = both.flexspline.softness + both.wave_generator.softness;
         auto given = under(both, held, held + friction);
-        S low = clip((twist - given.twist) / softest, S(0.0), farthest), high = farthest, missed = S(unbounded);
+        S low = clip((twist - given.twist) / softest, S(0.0), farthest), high = farthest, mismatch = S(unbounded);
         S gone = clip((twist - given.twist) / given.compliance, low, high);
-        auto sought = gone > S(0.0);
-        for (int i = 0; i < max_steps && any(sought); ++i) {
+        auto searching = gone > S(0.0);
+        for (int i = 0; i < max_steps && any(searching); ++i) {
             const S flexspline = held + gone + friction;
             given = under(both, held + gone, flexspline);
             const S off = twist - given.twist, step = off / given.compliance;
@@ -157,12 +157,12 @@ private:
             const S bend = S(1.0) + S(0.5) * step * given.curvature / given.compliance;
             const S bent = gone + step / max(bend, S(0.5));
             // Between two bends it may go to and fro.
-            const auto trusted = (bent >= low) & (high >= bent) & (missed > S(2.0) * abs(off));
+            const auto trusted = (bent >= low) & (high >= bent) & (mismatch > S(2.0) * abs(off));
             const S next = select(trusted, bent, sqrt(low * high));
             const S moved = select(trusted, abs(next - gone), S(unbounded));
-            missed = abs(off);
-            gone = select(sought, next, gone);
-            sought = sought & (moved > S(close) * scale(both, flexspline));
+            mismatch = abs(off);
+            gone = select(searching, next, gone);
+            searching = searching & (moved > S(close) * scale(both, flexspline));
         }
         return held + gone;
     }

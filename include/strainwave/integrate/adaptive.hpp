@@ -29,7 +29,7 @@ public:
     long accepted = 0, rejected = 0;
 
     /// Whether one of the shortest steps after the other missed the tolerance, where `through` ended.
-    constexpr bool gave_up() const { return missed > max_missed; }
+    constexpr bool gave_up() const { return failed_shortest > max_failed_shortest; }
 
     /// `like` is a state of the system, `first` the length of the first step [s].
     constexpr Adaptive(const System& system_, const typename System::State& like, const Smooth& smooth_,
@@ -71,7 +71,7 @@ public:
             if (stop.event) tried.end = apply_event(tried.end);
             if (!within(done, tried.to, tried.end, [&](const S& at) { return along(from, tried, u, dt, at); })) return from;
             events = chatters() ? max_events - 1 : taken > S(brief) ? stop.event : events + stop.event;
-            if (missed == 0) note(tried.end);
+            if (failed_shortest == 0) note(tried.end);
             from = tried.end;
             done = tried.to;
         }
@@ -80,8 +80,8 @@ public:
 
 private:
     static constexpr double shortest = 1e-9;  ///< s
-    static constexpr int max_missed = 100;
-    int missed = 0;  ///< of the shortest steps, one after the other
+    static constexpr int max_failed_shortest = 100;
+    int failed_shortest = 0;  ///< of the shortest steps, one after the other
     /// s. Where a jump of the forces makes a step this short, its error no longer falls faster than its length.
     static constexpr double brief = 1e-6;
     /// s. A system forgets an error within about this time, so that errors of steps may add up to the tolerance over it.
@@ -100,7 +100,7 @@ private:
         const bool kept = error <= S(1.0), last = next <= S(shortest);
         if (!kept || !(cut || max_growth * length < next)) next = max(length * factor, S(shortest));
         ++(kept || last ? accepted : rejected);
-        if (kept || last) missed = kept ? 0 : missed + 1;
+        if (kept || last) failed_shortest = kept ? 0 : failed_shortest + 1;
         return kept || last;
     }
 
@@ -199,15 +199,15 @@ private:
     /// By how much the speeds miss Simpson's rule over the two halves: of the same order and size as what the whole is off, but
     /// where a force kinks on the way, and whole and halves happen to agree, it does not vanish.
     constexpr Flat<S, Continuous> contradiction(const Evaluation& from, const Trial& tried, const S& length) const {
-        auto missed = flattened<S>(zeroed<S>(from.state.continuous));
-        if (chatters()) return missed;
+        auto difference = flattened<S>(zeroed<S>(from.state.continuous));
+        if (chatters()) return difference;
         const auto speeds = [&](const Continuous& y) { return flattened<S>(system::speeds<S>(system, y)); };
         const auto begin = speeds(from.derivatives.rate), middle = speeds(tried.half.derivatives.rate),
                    end = speeds(tried.end.derivatives.rate);
         const auto y = speeds(from.state.continuous), z = speeds(tried.end.state.continuous);
-        for (int i = 0; i < missed.size(); ++i)
-            missed[i] = z[i] - y[i] - length * S(1.0 / 6.0) * (begin[i] + S(4.0) * middle[i] + end[i]);
-        return missed;
+        for (int i = 0; i < difference.size(); ++i)
+            difference[i] = z[i] - y[i] - length * S(1.0 / 6.0) * (begin[i] + S(4.0) * middle[i] + end[i]);
+        return difference;
     }
     constexpr void note(const Evaluation& at) {
         const Measured now = measured(at.state, at);

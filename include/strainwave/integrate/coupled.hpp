@@ -142,7 +142,7 @@ class Steps {
 public:
     /// Sets the length of a step [s] that events may divide. As times add up, steps of one length differ by their rounding: they
     /// count as the first of them. Lengths of parts never do, so that no lane of a pack depends on events in the others.
-    constexpr void begin(const S& dt) { undivided = select(close(dt, undivided), undivided, detached(dt)); }
+    constexpr void begin(const S& dt) { undivided = select(close(dt, undivided), undivided, value_only(dt)); }
     constexpr State operator()(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt) {
         if (!system.couples()) return exponential_step(system, from, u, dt);
         prepare(system, from.state, dt);
@@ -163,11 +163,11 @@ private:
     static constexpr auto close(const S& dt, const S& to) { return abs(dt - to) < S(rounding) * to; }
     constexpr void prepare(const System& system, const State& x, const S& dt) {
         const Mode asked = system.coupled_mode(x);
-        const S taken = select(close(dt, undivided), undivided + (dt - detached(dt)), dt);
+        const S taken = select(close(dt, undivided), undivided + (dt - value_only(dt)), dt);
         if (known) {
             auto same = taken == length;
             for (int i = 0; i < asked.size(); ++i) same = same & (mode[i] == asked[i]);
-            if (all(same) && !sought(taken - length)) return;
+            if (all(same) && !is_differentiated(taken - length)) return;
         }
         coupling.set(coupled_matrix<S>(system, asked), taken);
         mode = asked;

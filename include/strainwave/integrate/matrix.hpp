@@ -37,7 +37,7 @@ constexpr Array<S, n> balance(Square<S, n>& z) {
                 of_column = of_column + abs(z[i][j]);
                 of_row = of_row + abs(z[j][i]);
             }
-            const S by = detached(S(sqrt(of_row / of_column))), inverse = S(1.0) / by;
+            const S by = value_only(S(sqrt(of_row / of_column))), inverse = S(1.0) / by;
             for (int j = 0; j < n; ++j) {
                 if (j == i) continue;
                 z[i][j] = by * z[i][j];
@@ -72,7 +72,7 @@ struct PhiFunctions {
         constexpr double small = 0.5;
         constexpr int most = 64;
         const Array<S, n> scale = balance(z);
-        S norm = detached(largest_column(z)), part{1.0}, doublings{0.0};
+        S norm = value_only(largest_column(z)), part{1.0}, doublings{0.0};
         for (int i = 0; i < most; ++i) {
             const auto large = norm > S(small);
             if (!any(large)) break;

@@ -33,7 +33,7 @@ constexpr typename System::State moreau_jean_parts(const System& system, const t
     for (auto& column : block.item)
         for (S& x : column.item) x = dt * x;
     balance(block);
-    const S parts = clip(rint(S(2.0) * detached(largest_column(block)) + S(0.5)), S(1.0), S(most)), share = S(1.0) / parts;
+    const S parts = clip(rint(S(2.0) * value_only(largest_column(block)) + S(0.5)), S(1.0), S(most)), share = S(1.0) / parts;
     auto at = from;
     auto end = from.state;
     for (S done{0.0};;) {

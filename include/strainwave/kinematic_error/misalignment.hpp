@@ -272,7 +272,7 @@ private:
     /// carries no derivative.
     constexpr void add_max(Fourier<S>& sum, const Planar<S>& m) const {
         const S length = m.length(), per_length = S(1.0) / max(length, S(smallest)), c = centre().x;
-        const S share = clip(detached(c / max(length, S(smallest))), S(-1.0), S(1.0)), step = S(-2.0) * share;
+        const S share = clip(value_only(c / max(length, S(smallest))), S(-1.0), S(1.0)), step = S(-2.0) * share;
         const S edge = max((S(1.0) - share) * (S(1.0) + share), S(smallest)), height = sqrt(edge);
         const Planar<S> heading = m.scaled(per_length);
         Planar<S> direction = heading;

@@ -64,7 +64,7 @@ struct Scaled {
                                                  load_sensitivity, follows_load()};
     }
 
-    constexpr bool follows_load() const { return sought(load_sensitivity) || any(load_sensitivity > S(0.0)); }
+    constexpr bool follows_load() const { return is_differentiated(load_sensitivity) || any(load_sensitivity > S(0.0)); }
     constexpr Relief<S> relief(const S& torque) const { return compile().relief(torque); }
     constexpr S side(const Angle<S>& angle) const { return compile().side(angle); }
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }

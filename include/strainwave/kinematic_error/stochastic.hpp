@@ -63,7 +63,7 @@ struct Stochastic {
     }
 
     /// How it changes at the most, at rest and without load.
-    struct Most {
+    struct MaxChange {
         S slope;       ///< over the input angle, rad/rad
         S per_torque;  ///< over the torque transmitted, rad/(N.m)
         S per_speed;   ///< over the input speed, rad.s/rad
@@ -90,7 +90,7 @@ struct Stochastic {
         }
 
         /// By four standard deviations of what is close to Gaussian: one place in 16000 has more.
-        constexpr Most most() const {
+        constexpr MaxChange max_change() const {
             S squares{0.0};
             for (int k = 0; k < waves; ++k) squares = squares + order[k] * order[k];
             const S largest = S(4.0) * rms(S(0.0), S(0.0));
@@ -112,7 +112,7 @@ struct Stochastic {
     };
 
     /// Whether it makes any difference, or could be sought to make one.
-    constexpr bool active() const { return sought(amplitude) || any(amplitude > S(0.0)); }
+    constexpr bool active() const { return is_differentiated(amplitude) || any(amplitude > S(0.0)); }
 
     constexpr S rms(const S& torque, const S& speed) const { return scaled().rms(torque, speed); }
 
@@ -120,7 +120,7 @@ struct Stochastic {
         return scaled().growth(torque, torque_rate, speed, acceleration);
     }
 
-    constexpr Most most() const { return compile().most(); }
+    constexpr MaxChange max_change() const { return compile().max_change(); }
 
     constexpr Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const {
         return compile().at(angle, torque, speed);

@@ -161,7 +161,7 @@ private:
             start[i] = at_zero;
         };
         for (int i = 0; i < amplitude.count; ++i) add(i + 1, amplitude[i], phase[i]);
-        if (sought(total) || any(total > S(0.0)))
+        if (is_differentiated(total) || any(total > S(0.0)))
             for (int i = 0; i < highest; ++i) add(i + 1, S(0.25397454373696393) * total / S(i + 1), drawn[i]);  // sqrt(2 / pi) / pi
         return Harmonics<S, 1, highest>::of(order, size, start);
     }

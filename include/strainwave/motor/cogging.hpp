@@ -11,7 +11,7 @@ struct CoggingTorque {
     bool acts = false;
 
     static constexpr CoggingTorque of(const S& amplitude, const S& order) {
-        return {amplitude, order, sought(amplitude) || any(amplitude > S(0.0))};
+        return {amplitude, order, is_differentiated(amplitude) || any(amplitude > S(0.0))};
     }
     /// Torque of a motor with this electric torque [N.m]; exactly that torque without cogging.
     constexpr S added_to(const S& electric, const Angle<S>& angle) const {

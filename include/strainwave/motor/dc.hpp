@@ -119,7 +119,7 @@ struct DC {
                 back_emf,
                 inertia,
                 brush_drop,
-                sought(brush_drop) || any(brush_drop > S(0.0)),
+                is_differentiated(brush_drop) || any(brush_drop > S(0.0)),
                 CoggingTorque<S>::of(cogging_torque, cogging_order)};
     }
 

@@ -183,7 +183,7 @@ struct PMSM {
 
 private:
     constexpr bool has_faults() const {
-        return sought(phase_resistance_excess) || sought(dead_time_voltage) ||
+        return is_differentiated(phase_resistance_excess) || is_differentiated(dead_time_voltage) ||
                any(max(phase_resistance_excess, dead_time_voltage) > S(0.0));
     }
     constexpr Phases<S> phases_of(const State& x, const Rotor<S>& rotor) const {

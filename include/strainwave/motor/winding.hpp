@@ -12,7 +12,7 @@ struct Winding {
     bool rises = false;
 
     static constexpr Winding of(const S& resistance, const S& rise) {
-        return {resistance, S(1.0) / resistance, rise, sought(rise) || any(rise > S(0.0))};
+        return {resistance, S(1.0) / resistance, rise, is_differentiated(rise) || any(rise > S(0.0))};
     }
     constexpr S resistance_at(const S& temperature) const { return rises ? resistance * factor(temperature) : resistance; }
     constexpr S conductance_at(const S& temperature) const { return rises ? conductance / factor(temperature) : conductance; }

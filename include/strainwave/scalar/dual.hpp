@@ -82,7 +82,7 @@ struct Dual {
         return y;
     }
     friend constexpr Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
-    friend constexpr Dual detached(const Dual& x) { return Dual(x.value); }
+    friend constexpr Dual value_only(const Dual& x) { return Dual(x.value); }
     /// A root of f with its derivatives by the parameters of f (implicit function theorem). The derivative of f by its argument
     /// follows from an argument whose slope is larger by 2^100, so that the slopes of the parameters round nothing. Each lane uses
     /// its own: a derivative is the same whichever others are taken with it.
@@ -116,13 +116,15 @@ struct Dual {
         const auto [s, c] = strainwave::sincos(x.value);
         return {chain(x, s, c), chain(x, c, -s)};
     }
-    friend constexpr bool sought(const Dual& x) {
+    friend constexpr bool is_differentiated(const Dual& x) {
         for (int i = 0; i < n; ++i)
             if (x.slope[i] != 0.0) return true;
         return false;
     }
     /// A number that a derivative is sought for is treated as any other, whole or not.
-    friend constexpr int whole(const Dual& x, int highest) { return sought(x) ? 0 : strainwave::whole(x.value, highest); }
+    friend constexpr int whole(const Dual& x, int highest) {
+        return is_differentiated(x) ? 0 : strainwave::whole(x.value, highest);
+    }
 };
 
 template <int n>

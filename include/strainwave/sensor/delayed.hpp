@@ -69,8 +69,8 @@ struct Delayed {
         return {{}, law.relaxation_rate()};
     }
     constexpr S fastest() const { return max(strainwave::fastest<S>(law), per_second()); }
-    constexpr State settled(const S& value) const {
-        State x{{}, law.settled(value)};
+    constexpr State steady_state(const S& value) const {
+        State x{{}, law.steady_state(value)};
         for (int i = 0; i < sections; ++i) x.section[i] = law.shown(x.law, value);
         return x;
     }

@@ -39,13 +39,13 @@ struct Encoder {
         const S marked = angle + offset + eccentricity * sin(angle + eccentricity_phase);
         const S count = S(2.0 * pi) / counts, counted = count * rint(marked / count);
         if constexpr (differentiates<S>)
-            return marked + detached(counted - marked);
+            return marked + value_only(counted - marked);
         else
             return counted;
     }
     constexpr State rate(const State&, const S&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
-    constexpr State settled(const S&) const { return {}; }
+    constexpr State steady_state(const S&) const { return {}; }
 };
 
 }  // namespace strainwave::sensor

@@ -37,7 +37,7 @@ struct FirstOrder {
     constexpr S shown(const State& x, const S&) const { return x.shown; }
     constexpr State rate(const State& x, const S& value) const { return {(value - x.shown) / time_constant}; }
     constexpr State relaxation_rate() const { return {S(1.0) / time_constant}; }
-    constexpr State settled(const S& value) const { return {value}; }
+    constexpr State steady_state(const S& value) const { return {value}; }
 };
 
 }  // namespace strainwave::sensor

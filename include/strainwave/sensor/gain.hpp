@@ -32,7 +32,7 @@ struct Gain {
     constexpr S shown(const State&, const S& value) const { return gain * value + offset; }
     constexpr State rate(const State&, const S&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
-    constexpr State settled(const S&) const { return {}; }
+    constexpr State steady_state(const S&) const { return {}; }
 };
 
 }  // namespace strainwave::sensor

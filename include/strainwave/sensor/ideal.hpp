@@ -24,7 +24,7 @@ struct Ideal {
     constexpr S shown(const State&, const S& value) const { return value; }
     constexpr State rate(const State&, const S&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
-    constexpr State settled(const S&) const { return {}; }
+    constexpr State steady_state(const S&) const { return {}; }
 };
 
 }  // namespace strainwave::sensor

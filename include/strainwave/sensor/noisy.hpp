@@ -63,7 +63,7 @@ struct Noisy {
         constexpr S shown(const State& x, const S& value) const { return law.shown(x.law, value) + weight * spectrum.sum(x.clock); }
         constexpr State rate(const State& x, const S& value) const { return {S(1.0), law.rate(x.law, value)}; }
         constexpr State relaxation_rate() const { return {S(0.0), law.relaxation_rate()}; }
-        constexpr State settled(const S& value) const { return {S(0.0), law.settled(value)}; }
+        constexpr State steady_state(const S& value) const { return {S(0.0), law.steady_state(value)}; }
         constexpr S fastest() const { return strainwave::fastest<S>(law); }
     };
     constexpr Compiled compile() const {
@@ -74,7 +74,7 @@ struct Noisy {
     constexpr S shown(const State& x, const S& value) const { return compile().shown(x, value); }
     constexpr State rate(const State& x, const S& value) const { return compile().rate(x, value); }
     constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
-    constexpr State settled(const S& value) const { return compile().settled(value); }
+    constexpr State steady_state(const S& value) const { return compile().steady_state(value); }
     constexpr S fastest() const { return strainwave::fastest<S>(law); }
 };
 

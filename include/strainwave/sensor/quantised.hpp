@@ -49,13 +49,13 @@ struct Quantised {
     constexpr S shown(const State& x, const S& value) const {
         const S exact = law.shown(x.law, value), read = resolution * rint(exact / resolution);
         if constexpr (differentiates<S>)
-            return exact + detached(read - exact);
+            return exact + value_only(read - exact);
         else
             return read;
     }
     constexpr State rate(const State& x, const S& value) const { return {law.rate(x.law, value)}; }
     constexpr State relaxation_rate() const { return {law.relaxation_rate()}; }
-    constexpr State settled(const S& value) const { return {law.settled(value)}; }
+    constexpr State steady_state(const S& value) const { return {law.steady_state(value)}; }
     constexpr S fastest() const { return strainwave::fastest<S>(law); }
 };
 

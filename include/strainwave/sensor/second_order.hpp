@@ -43,7 +43,7 @@ struct SecondOrder {
         return {x.rate, natural_frequency * (natural_frequency * (value - x.shown) - S(2.0) * damping_ratio * x.rate)};
     }
     constexpr State relaxation_rate() const { return {S(0.0), S(2.0) * damping_ratio * natural_frequency}; }
-    constexpr State settled(const S& value) const { return {value, S(0.0)}; }
+    constexpr State steady_state(const S& value) const { return {value, S(0.0)}; }
     constexpr S fastest() const { return natural_frequency; }
 };
 

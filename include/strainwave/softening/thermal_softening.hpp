@@ -38,7 +38,7 @@ struct ThermalSoftening {
 
     /// Whether it makes any difference, or could be sought to make one.
     constexpr bool active() const {
-        return sought(stiffness_fall) || sought(hysteresis_fall) || any(!(stiffness_fall == S(0.0))) ||
+        return is_differentiated(stiffness_fall) || is_differentiated(hysteresis_fall) || any(!(stiffness_fall == S(0.0))) ||
                any(!(hysteresis_fall == S(0.0)));
     }
     /// The share of the elastic energy that turns to heat each second [1/s], where the gear warms up at `warming` [K/s].

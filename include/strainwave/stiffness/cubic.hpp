@@ -36,7 +36,7 @@ struct Cubic {
     /// without differences, which neither cancels nor overflows.
     constexpr S twist(const S& torque) const {
         const S level = abs(torque), alone = exp((log(level) - log(select(a3 > S(0.0), a3, S(1.0)))) / S(3.0));
-        S x = detached(min(level / a1, alone));
+        S x = value_only(min(level / a1, alone));
         for (int i = 0; i < newton_steps; ++i) {
             const S hardening = a3 * x * x, slope = a1 + S(3.0) * hardening;
             x = min(level / slope + S(2.0) * hardening / slope * x, S(unbounded));

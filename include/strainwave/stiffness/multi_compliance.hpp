@@ -113,27 +113,27 @@ struct InSeries {
     /// The twist that is missing. What is left up to the bound is more exact than what lies behind, once it is less; its
     /// derivatives are not.
     constexpr S missing(const S& d, const Given<S>& given) const {
-        const S end = bound(), missed = d - given.twist, left = detached(given.rest - (end - d));
-        return select((end < S(unbounded)) & (d > S(0.5) * end), left + (missed - detached(missed)), missed);
+        const S end = bound(), mismatch = d - given.twist, left = value_only(given.rest - (end - d));
+        return select((end < S(unbounded)) & (d > S(0.5) * end), left + (mismatch - value_only(mismatch)), mismatch);
     }
     constexpr S torque(const S& d) const {
-        const S level = constant().solved(detached(d));
+        const S level = constant().solved(value_only(d));
         if constexpr (differentiates<S>) {  // implicit function theorem
             const Given<S> given = at(level);
-            const S top = largest(), step = missing(d, given) / detached(given.compliance);
-            return select(level < top, level + (step - detached(step)), top);
+            const S top = largest(), step = missing(d, given) / value_only(given.compliance);
+            return select(level < top, level + (step - value_only(step)), top);
         }
         return level;
     }
 
     /// Without derivatives.
     constexpr InSeries constant() const {
-        return {{detached(flexspline.softness), detached(flexspline.hardening)},
-                {detached(wave_generator.softness), detached(wave_generator.hardening)}};
+        return {{value_only(flexspline.softness), value_only(flexspline.hardening)},
+                {value_only(wave_generator.softness), value_only(wave_generator.hardening)}};
     }
 
 private:
-    /// Below the torque sought, and near it: no part gives way more than its linear self, nor beyond its bound; and with that
+    /// Below the torque, and near it: no part gives way more than its linear self, nor beyond its bound; and with that
     /// as x and y, arctan x <= x (1 + 4 x^2 / 15) / (1 + 3 x^2 / 5) and 1 - exp(-y) <= y / (1 + y / 2).
     constexpr S start(const S& d) const {
         const S at_least = max(linear(d), max(flexed(d), waved(d)));
@@ -165,7 +165,7 @@ private:
     constexpr S search(const S& d) const {
         const S top = largest(), scale = S(1.0) / max(wave_generator.hardening, S(1e-30));
         S level = min(start(d), top), low = S(0.5) * min(linear(d), top), high = top + top;
-        auto sought = top > S(0.0);  // everywhere
+        auto searching = top > S(0.0);  // everywhere
         for (int i = 0; i < max_steps; ++i) {
             const Given<S> given = at(level);
             const S off = missing(d, given), step = off / given.compliance;
@@ -175,9 +175,9 @@ private:
             const S bent = level + step / max(bend, S(0.5));
             const S next = select((bent >= low) & (high >= bent), bent, sqrt(low * high));
             const S moved = abs(min(next, top) - min(level, top));
-            level = select(sought, next, level);
-            sought = sought & (moved > S(close) * min(level, scale));
-            if (!any(sought)) break;
+            level = select(searching, next, level);
+            searching = searching & (moved > S(close) * min(level, scale));
+            if (!any(searching)) break;
         }
         return min(level, top);
     }

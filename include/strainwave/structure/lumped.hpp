@@ -59,7 +59,7 @@ struct Lumped {
         return {};
     }
     template <class Mesh>
-    constexpr Settled<S, State> settled(const State&, const Shafts<S>&, const Mesh& mesh, const Load<S>&) const {
+    constexpr SteadyState<S, State> steady_state(const State&, const Shafts<S>&, const Mesh& mesh, const Load<S>&) const {
         return {{}, mesh.error + mesh.twist};
     }
     template <class Mesh>

@@ -165,8 +165,8 @@ struct Staged {
         constexpr variation::Factor<S> factor(const Angle<S>& generator) const {
             return variation.active() ? variation.at(generator) : variation::Factor<S>{};
         }
-        constexpr S most() const { return stiffness * variation.largest(); }
-        constexpr S uneven() const { return most() - stiffness; }
+        constexpr S max_stiffness() const { return stiffness * variation.largest(); }
+        constexpr S varying_part() const { return max_stiffness() - stiffness; }
     };
     /// A joint that is deformed, and what it holds.
     struct Strained {
@@ -250,8 +250,8 @@ struct Staged {
         }
 
         template <class Mesh>
-        constexpr Settled<S, State> settled(const State& inner, const Shafts<S>& at, const Mesh& stance,
-                                            const Load<S>& load) const {
+        constexpr SteadyState<S, State> steady_state(const State& inner, const Shafts<S>& at, const Mesh& stance,
+                                                     const Load<S>& load) const {
             const auto held_flexspline = flexspline_held(at);
             const Angle<S> angle = generator(inner, at).angle;
             const S torque = load.spring / (S(1.0) + stance.apart.per_twist);
@@ -279,9 +279,9 @@ struct Staged {
 
         /// Of the fastest mode without damping.
         constexpr S natural_frequency(const Bodies<S>& bodies) const {
-            const Ends ends = at_ends(bodies.inverse_ratio, bodies.stiffness, spline.most());
-            return sqrt(largest_eigenvalue(
-                bodies, {coupling.most(), bearing.most(), mesh.most(), ends.held, ends.driving, bodies.load_stiffness}));
+            const Ends ends = at_ends(bodies.inverse_ratio, bodies.stiffness, spline.max_stiffness());
+            return sqrt(largest_eigenvalue(bodies, {coupling.max_stiffness(), bearing.max_stiffness(), mesh.max_stiffness(),
+                                                    ends.held, ends.driving, bodies.load_stiffness}));
         }
         /// Of springs as stiff as they vary by, twice: at resonances of step and vibration a step of one radian of these could
         /// still set off what nothing damps. In shorter ones it still grows a little, which dampers must outdo. And of a bearing
@@ -289,17 +289,17 @@ struct Staged {
         /// of b d' + d b' + d d', with b how the bearing deforms by each position, and d how the error does, both over the roots of
         /// the inertias.
         constexpr S uneven_frequency(const Bodies<S>& bodies, const Unevenness<S>& of) const {
-            const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.uneven());
-            const S springs =
-                largest_eigenvalue(bodies, {coupling.uneven(), bearing.uneven(), mesh.uneven(), ends.held, ends.driving, S(0.0)});
+            const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.varying_part());
+            const S springs = largest_eigenvalue(
+                bodies, {coupling.varying_part(), bearing.varying_part(), mesh.varying_part(), ends.held, ends.driving, S(0.0)});
             const S straight = bodies.inverse_ratio * bodies.inverse_ratio / bodies.generator_inertia + S(1.0) / radial_inertia;
             const S bent = of.slope * of.slope / bodies.generator_inertia + of.per_twist * of.per_twist / flexspline_inertia;
             const S along_both = abs(bodies.inverse_ratio) * of.slope / bodies.generator_inertia;
-            const S square = S(4.0) * springs + bearing.most() * (along_both + sqrt(straight * bent) + bent);
+            const S square = S(4.0) * springs + bearing.max_stiffness() * (along_both + sqrt(straight * bent) + bent);
             return max(sqrt(square), S(growth) * square / max(slowest_decay(bodies), S(smallest)));
         }
         constexpr S uneven_decay(const Bodies<S>& bodies, const Unevenness<S>& of) const {
-            return bearing.most() * of.per_speed * (abs(bodies.inverse_ratio) + of.slope) / bodies.generator_inertia;
+            return bearing.max_stiffness() * of.per_speed * (abs(bodies.inverse_ratio) + of.slope) / bodies.generator_inertia;
         }
         constexpr S decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
@@ -454,7 +454,7 @@ struct Staged {
     SW_OF_CHAIN(even_reaction)
     SW_OF_CHAIN(energies)
     SW_OF_CHAIN(output)
-    SW_OF_CHAIN(settled)
+    SW_OF_CHAIN(steady_state)
     SW_OF_CHAIN(compliance)
     SW_OF_CHAIN(natural_frequency)
     SW_OF_CHAIN(uneven_frequency)

@@ -15,7 +15,7 @@
 ///     even_reaction(inner, shafts, mesh, load)   -> Reaction, if no spring of its own varied: linear
 ///     energies(inner, shafts, mesh, load)    -> Energies
 ///     output(inner, shafts, mesh, friction)  -> Output, with the friction at the output [N.m]
-///     settled(inner, shafts, mesh, load)     -> Settled: at rest under the torque of the spring
+///     steady_state(inner, shafts, mesh, load)     -> SteadyState: at rest under the torque of the spring
 ///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
 ///     natural_frequency(bodies)              rad/s, of the fastest mode
 ///     uneven_frequency(bodies, unevenness)   rad/s, that what the even reaction leaves out would have by itself
@@ -90,7 +90,7 @@ struct Energies {
 };
 
 template <class S, class State>
-struct Settled {
+struct SteadyState {
     State state;
     S transmission_error;  ///< rad
 };

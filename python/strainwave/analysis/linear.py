@@ -305,7 +305,7 @@ def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array
         twist += way * little
         found = _core.advance_hysteresis(drive, found, twist)
         if at_rest:
-            found = _core.aged(drive, passing(found, way), inputs, QUASI_STATIC_TIME)
+            found = _core.relaxed(drive, passing(found, way), inputs, QUASI_STATIC_TIME)
     return passing(_core.advance_hysteresis(drive, found, twist - 0.5 * sense * little), sense)
 
 

@@ -260,7 +260,7 @@ class _Slow(ComparedByFields):
             (turned / self.drive.gear.kinematics.ratio - wound) / QUASI_STATIC_TIME if self.free[1] else 0.0
         )
         return _settled(
-            self.drive, _core.aged(self.drive, moving, self.inputs, QUASI_STATIC_TIME), self.inputs, _sensing(self.layout)
+            self.drive, _core.relaxed(self.drive, moving, self.inputs, QUASI_STATIC_TIME), self.inputs, _sensing(self.layout)
         )
 
     def directions(self, rates: Rates) -> Array:
@@ -368,8 +368,8 @@ class _Steady(ComparedByFields):
         """All transients of friction and of sensors gone."""
         state = self.start.copy()
         state[: self.layout.count] = numbers
-        aged = _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, QUASI_STATIC_TIME)
-        return _settled(self.drive, aged, self.inputs, _sensing(self.layout))
+        relaxed = _core.relaxed(self.drive, _core.consistent(self.drive, state), self.inputs, QUASI_STATIC_TIME)
+        return _settled(self.drive, relaxed, self.inputs, _sensing(self.layout))
 
     def directions(self, rates: Rates) -> Array:
         """Return the free motions in columns; friction and sensors keep their rates."""

@@ -208,7 +208,7 @@ def test_derivatives_are_those_of_differences(place: str, model: object, data: s
         output_speed=sense * 0.02,
     )
     inputs = np.array([0.001, 0.02, 0.7, 0.0, 300.0, 0.0])
-    state = _core.aged(drive, _core.consistent(drive, moving.numbers), inputs, 1e-4)
+    state = _core.relaxed(drive, _core.consistent(drive, moving.numbers), inputs, 1e-4)
     values, slopes = _core.differentiate_rates(drive, state, inputs)
     layout = StateLayout(drive)
     count = layout.count
