@@ -22,7 +22,7 @@ template <class T = double>
 std::unique_ptr<T[]> room(std::size_t size) {
     std::unique_ptr<T[]> numbers(new (std::nothrow) T[size + 1]);
     if (numbers) return numbers;
-    PyErr_Format(PyExc_MemoryError, "there is no memory for %zu numbers, which take %zu MB; take fewer at a time", size,
+    PyErr_Format(PyExc_MemoryError, "there is no memory for %zu numbers, which need %zu MB; use fewer at a time", size,
                  size / 1000000 * sizeof(T));
     throw nb::python_error();
 }

@@ -5,7 +5,7 @@ namespace strainwave::host {
 void bind_drive_parts(nb::module_& core) {
     bind_family<NoVerbs>(core, "motor", "Motors on the input shaft.", motor::Models{});
     bind_family<NoVerbs>(core, "loads", "What the output shaft carries.", load::Models{});
-    nb::module_ compensation = family_module(core, "compensation", "What takes away what the gear does to the motion.");
+    nb::module_ compensation = family_module(core, "compensation", "Compensation of the errors of a gear: feed-forward, learning, observers, dither.");
     bind_list<FeedforwardVerbs>(core, compensation, "feedforward", strainwave::compensation::Feedforwards{});
     bind_list<NoVerbs>(core, compensation, "learning", strainwave::compensation::Learners{});
     bind_list<NoVerbs>(core, compensation, "observer", strainwave::compensation::Observers{});

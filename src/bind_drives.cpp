@@ -302,8 +302,7 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
         nb::sig("def natural_frequency(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
-        "The fastest angular frequency [rad/s] at which gear and load vibrate at twists up to `twist` [rad], where a run of this "
-        "`temperature` [K] begins.");
+        "Highest angular frequency [rad/s] at which gear and load vibrate, at twists up to `twist` [rad] and the initial `temperature` [K] of a run.");
     core.def(
         "max_rate",
         [](const ParameterDrive& drive, double twist, double temperature) {
@@ -311,12 +310,11 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
         nb::sig("def max_rate(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
-        "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s], where a run of "
-        "this `temperature` [K] begins: the vibration of gear and load, the decay of speeds, sensors and controller.");
+        "Highest rate that fixed steps must resolve, as an angular frequency [rad/s], at twists up to `twist` [rad] and the initial `temperature` [K] of a run: vibration of gear and load, decay of speeds, sensors and controller.");
     core.def(
         "bristle_frequency", [](const ParameterDrive& drive) { return general::bristle_frequency(parts_of(drive).set()); },
         nb::arg("drive"), nb::sig("def bristle_frequency(drive: Drive) -> float"),
-        "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
+        "Highest angular frequency [rad/s] at which a shaft vibrates on the bristles of its friction.");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
              "All channels in `state`, shape (channels, 1).");
@@ -327,8 +325,7 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def measured(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
-        "What a controller sees through the sensors: input angle and speed, output angle and speed, current, torque; then the "
-        "least and the largest actuation that the motor can follow.");
+        "Readings of the sensors: input angle and speed, output angle and speed, current, torque; then the least and the largest actuation that the motor can follow.");
     core.def(
         "differentiate_rates", &rate_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def differentiate_rates(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> tuple[" SW_ARRAY ", " SW_ARRAY
@@ -337,9 +334,9 @@ void bind_drives(nb::module_& core) {
         "the inputs, shape (n + 6, n + channels).");
     core.def("state", &state_of_drive, nb::arg("drive"),
              nb::sig("def state(drive: Drive) -> tuple[list[tuple[str, str, str]], int]"),
-             "Name, unit and part of each number of a drive's state, and how many of them are continuous; those come first.");
+             "Name, unit and part of each number of a drive's state, and the count of continuous numbers, which come first.");
     core.def("shape", &shape_of, nb::arg("drive"), nb::sig("def shape(drive: Drive) -> dict[str, tuple[str, str]]"),
-             "Of each part that has a state, the name of its model and the counts that say which number means what.");
+             "Name of the model and element counts of each part that has a state: they determine the meaning of each number.");
 
     nb::list quantities;
     for (const Field& field : initial::fields) quantities.append(nb::make_tuple(field.name, field.unit, field.doc));
@@ -352,8 +349,7 @@ void bind_drives(nb::module_& core) {
         nb::arg("drive"), nb::arg("quantities"), nb::arg("values"), nb::arg("inputs"),
         nb::sig("def started(drive: Drive, quantities: collections.abc.Sequence[int], values: " SW_ARRAY ", inputs: " SW_ARRAY
                 ") -> " SW_ARRAY),
-        "The state in which some quantities are known and the rest has settled; its transmission error is not finite where there "
-        "is none.");
+        "State with the given quantities, and all others in equilibrium. Its transmission error is not finite if there is no such state.");
 
     // Functions from one state to another.
     const auto advanced = [&core](const char* name, const char* more, const char* doc, auto f, const auto&... arguments) {
@@ -361,7 +357,7 @@ void bind_drives(nb::module_& core) {
                  nb::sig(kept(std::string("def ") + name + "(drive: Drive, state: " SW_ARRAY + more + ") -> " SW_ARRAY)), doc);
     };
     advanced(
-        "relaxed", ", inputs: " SW_ARRAY ", dt: float", "`state` with what friction remembers after `dt` [s] at constant speeds.",
+        "relaxed", ", inputs: " SW_ARRAY ", dt: float", "`state` with the memory of friction after `dt` [s] at constant speeds.",
         [](const ParameterDrive& drive, const Numbers& state, const Numbers& u, double dt) {
             return array_of(general::relaxed(parts_of(drive).set(), state_from(drive, state), input_of(u), dt));
         },
@@ -372,18 +368,18 @@ void bind_drives(nb::module_& core) {
             return array_of(general::advance_hysteresis(parts_of(drive).set(), state_from(drive, numbers), twist));
         },
         nb::arg("twist"));
-    advanced("consistent", "", "`state` with the slip direction of each shaft as its speed and its law have it.",
+    advanced("consistent", "", "`state` with the slip direction of each shaft that follows from its speed and its law.",
              [](const ParameterDrive& drive, const Numbers& state) {
                  return array_of(general::consistent(parts_of(drive).set(), state_from(drive, state)));
              });
     advanced(
-        "break_away", ", inputs: " SW_ARRAY, "`state` with those shafts slipping that stick and are driven beyond what holds them.",
+        "break_away", ", inputs: " SW_ARRAY, "`state` in which each shaft slips that is driven beyond its breakaway torque.",
         [](const ParameterDrive& drive, const Numbers& state, const Numbers& u) {
             return array_of(general::break_away(parts_of(drive).set(), state_from(drive, state), input_of(u)));
         },
         nb::arg("inputs"));
     advanced(
-        "begin", ", inputs: " SW_ARRAY, "`state` as a run begins in it: consistent, and sampled if its controller samples.",
+        "begin", ", inputs: " SW_ARRAY, "`state` at the start of a run: consistent, and sampled if its controller samples.",
         [](const ParameterDrive& drive, const Numbers& state, const Numbers& u) {
             return array_of(general::begin(parts_of(drive).set(), state_from(drive, state), input_of(u)));
         },
@@ -404,10 +400,10 @@ void bind_drives(nb::module_& core) {
              nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
              "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
     core.def("parts", &parts_in, nb::arg("drive"), nb::sig("def parts(drive: Drive) -> tuple[list[int], list[int], " SW_ARRAY "]"),
-             "The laws that a drive has chosen, its other whole numbers (counts, teeth, options), and its numbers.");
+             "Indices of the laws of a drive, its other whole numbers (counts, teeth, options), and its real numbers.");
     core.def("with_numbers", &model_with_numbers, nb::arg("model"), nb::arg("numbers"),
              nb::sig("def with_numbers(model: typing.Any, numbers: collections.abc.Sequence[float]) -> typing.Any"),
-             "The same models with other numbers, in the order of `parameters`.");
+             "Return the models with other parameter values, in the order of `parameters`.");
 }
 
 }  // namespace strainwave::host

@@ -370,7 +370,7 @@ void bind_runs(nb::module_& core) {
         "The parameters of each member and the numbers of the state in which it begins, not-a-number where it cannot, and why it "
         "cannot; the arguments are those of `simulate_many`.");
     core.def("no_beginning", &no_beginning, nb::arg("known"),
-             "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
+             "Error message of a run that cannot begin, from the quantities known at the start or the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");
     core.def(
         "inverse_dynamics", &needed_torque, nb::arg("drive"), nb::arg("motion"), nb::arg("inputs"), nb::arg("parameters"),

@@ -16,12 +16,12 @@ inline const Layout& layout_of(const ParameterDrive& drive) { return layout_of(d
 
 inline void check_numbers(const Parts& parts, const std::vector<int>& numbers) {
     for (const int number : numbers)
-        if (number < 0 || number >= int(parts.numbers.size())) throw nb::value_error("a drive has no such parameter");
+        if (number < 0 || number >= int(parts.numbers.size())) throw nb::value_error("the drive has no parameter of this index");
 }
 
 /// The numbers of a state, refused unless there are as many as the drive has.
 inline general::State state_from(const Layout& layout, const Numbers& numbers) {
-    if (numbers.size() != layout.state.size()) throw nb::value_error("a state has as many numbers as its drive names");
+    if (numbers.size() != layout.state.size()) throw nb::value_error("the count of numbers must be that of the state of the drive");
     return {numbers.data(), numbers.data() + numbers.size()};
 }
 inline general::State state_from(const ParameterDrive& drive, const Numbers& numbers) {
@@ -33,7 +33,7 @@ inline Start start_of(const std::vector<int>& quantities, const Numbers& values,
     if (values.size() != quantities.size() * members)
         throw nb::value_error("values of n quantities and m members have shape (n, m)");
     for (const int quantity : quantities)
-        if (quantity < 0 || quantity >= initial::quantities) throw nb::value_error("there is no such quantity");
+        if (quantity < 0 || quantity >= initial::quantities) throw nb::value_error("there is no quantity of this index");
     return {false, quantities, values.data(), members};
 }
 

@@ -85,7 +85,7 @@ void own_verbs(const Bound<M>& c) {
              });
         verb(c, "leading", {}, python_type<kinematic_error::Fourier<double>>(false),
              "The harmonics to leading order, in closed form: a Fourier law.", [](const M& m, const Call&) { return m.leading(); });
-        property(c, "eccentricity", "tuple[float, float]", "What harmonics can tell: the vector m, x and y [m].",
+        property(c, "eccentricity", "tuple[float, float]", "Vector m that the harmonics determine, x and y [m].",
                  [](const M& m) { return nb::make_tuple(m.eccentricity().x, m.eccentricity().y); });
     }
     if constexpr (requires(const M& m) { m.active(); })

@@ -186,7 +186,7 @@ void set_numbers(const Description& description, void* model, const double* numb
 
 nb::object with_numbers(const void* model, const Description& description, const std::vector<double>& numbers) {
     if (numbers.size() != parts_of(description, model).numbers.size())
-        throw nb::value_error("as many numbers as the model has parameters are needed");
+        throw nb::value_error("the count of numbers must be that of the parameters of the model");
     nb::object other = description.cast(model);  // Python's alone until it is handed over
     void* const copy = nb::inst_ptr<void>(other);
     set_numbers(description, copy, numbers.data());

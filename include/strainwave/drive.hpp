@@ -32,17 +32,17 @@ struct Drive {
     static constexpr auto name = "drive";
     static constexpr auto source = "document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)";
     static constexpr auto doc = R"(
-        A motor, its controller, one strain wave gear, a load, and the sensors through which the controller sees the drive.
+        Drive of a motor, its controller, one strain wave gear, a load, and the sensors of the controller.
 
         .. math:: J_{in} \ddot\theta_{in} = \tau - (T + F_{mesh})\,(1/i - e') - F_{in}, \qquad
                   J_{out} \ddot\theta_{out} = T - T_{load} - F_{out}
 
-        with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
-        F the friction of each place. A load can also prescribe the motion of the output shaft, a motor that of the input. The temperature of a run is that
-        of gear and winding, unless the drive has a thermal model: then it is that around them.
-        Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
-        told apart: it is reported in proportion to what each can hold.
-        Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
+        with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the
+        gear, F the friction of each place. A load can also prescribe the motion of the output shaft, a motor that of the
+        input. The temperature of a run is that of gear and winding. With a thermal model it is the ambient temperature. If
+        set-valued friction of input and mesh both hold the input at rest, their two torques are not determined separately:
+        each is reported in proportion to its breakaway torque. Angles are relative to the rigid motion, so an hour of rotation
+        is as accurate as a second.
 
         >>> import strainwave as sw
         >>> drive = sw.Drive(motor=sw.motor.DC(resistance=2.0), load=sw.loads.Inertia(inertia=0.005))
@@ -53,11 +53,11 @@ struct Drive {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, gear, "The gear"));
         visit(SW_PART(m, motor, "The motor on the input shaft"));
-        visit(SW_PART(m, control, "What turns the command into the motor's voltage, current or torque"));
-        visit(SW_PART(m, load, "What the output shaft carries"));
-        visit(SW_PART(m, sensors, "What the controller sees the drive through"));
-        visit(SW_PART(m, thermal, "How warm gear and winding become"));
-        visit(SW_PART(m, meter, "What is measured of powers and energies"));
+        visit(SW_PART(m, control, "Controller: turns the command into voltage, current or torque of the motor"));
+        visit(SW_PART(m, load, "Load on the output shaft"));
+        visit(SW_PART(m, sensors, "Sensors of the controller"));
+        visit(SW_PART(m, thermal, "Thermal model of gear and winding"));
+        visit(SW_PART(m, meter, "Meter of powers and energies"));
     }
 
     constexpr Contradiction<S> problem() const {

@@ -33,27 +33,28 @@ struct Gear {
         "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5); for the bodies within "
         "it, document A";
     static constexpr auto doc = R"(
-        One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
+        Strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
 
         .. math:: \delta = \theta_{in}/i - \theta_{out} - e(\theta_{in}), \qquad
                   T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta
 
         T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
-        input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
-        e is the deterministic kinematic error plus the noise, whose amplitude follows the elastic torque and the input speed.
+        input. The review derives none (E-R3) and the actuator paper omits it (E-A5); without it energy is not conserved. e is
+        the deterministic kinematic error plus the noise, whose amplitude follows the elastic torque and the input speed.
 
         Friction acts at the input (wave generator), at the mesh, and at the output (bearing). The mesh lies between the
-        kinematics and the spring: it moves with (1/i - e') times the input speed, at the output's scale, transmits T, and
-        what it takes weighs on the input. Every law of friction may stand at every place, each under the load that its place
-        transmits, the angle it stands at and the temperature.
+        kinematics and the spring: it moves with (1/i - e') times the input speed, at the output's scale, transmits T, and its
+        friction acts on the input. Every law of friction is allowed at every place. It depends on the load that its place
+        transmits, the angle of the place and the temperature.
 
-        Where the stiffness varies with the angle of the wave generator, the energy in the spring turns the wave generator, too.
-        A ``structure`` says whether the bodies within the gear move by themselves, between input shaft and output shaft.
+        If the stiffness varies with the angle of the wave generator, the energy in the spring also turns the wave generator.
+        The ``structure`` determines whether the bodies between input shaft and output shaft have their own motion.
 
-        What two parts are told alike must agree: the ratio, the teeth, and, with stages, pitch radius and pressure angle.
+        Parameters that two parts have in common must agree: the ratio, the teeth, and, with stages, pitch radius and pressure
+        angle.
 
-        Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
-        temperature; change one with ``gear.replace(hysteresis=...)``.
+        Each part is a separate law, from the ideal gear to a gear with all effects of speed, load and temperature. Change one
+        with ``gear.replace(hysteresis=...)``.
 
         >>> import strainwave as sw
         >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), damping=10.0)
@@ -72,9 +73,9 @@ struct Gear {
         visit(SW_PART(m, friction_mesh, "Friction of the mesh, at the output's scale, over the speed of the input referred to it"));
         visit(SW_PART(m, friction_output, "Friction at the output, over the output speed"));
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
-        visit(SW_PART(m, softening, "How stiffness and hysteresis give way as the gear warms up"));
-        visit(SW_PART(m, stiffness_variation, "How the stiffness varies as the wave generator turns"));
-        visit(SW_PART(m, structure, "What moves within the gear by itself"));
+        visit(SW_PART(m, softening, "Fall of stiffness and hysteresis with the temperature"));
+        visit(SW_PART(m, stiffness_variation, "Variation of the stiffness with the angle of the wave generator"));
+        visit(SW_PART(m, structure, "Bodies within the gear that have their own motion"));
     }
 
     /// What its parts are told twice must agree.

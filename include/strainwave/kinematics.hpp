@@ -68,7 +68,7 @@ struct PlainRatio {
     static constexpr auto name = "plain_ratio";
     static constexpr auto source = "document P, eqs. of motion, which leave the sign of the ratio out; erratum E-P1";
     static constexpr auto doc = R"(
-        A reducer of which only the reduction is known, output turning with the input.
+        Reducer of a known reduction, whose output turns with the input.
 
         .. math:: i = \omega_{in} / \omega_{out} = \text{reduction}
 

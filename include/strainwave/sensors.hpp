@@ -39,9 +39,9 @@ struct Sensors {
     static constexpr auto name = "sensors";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        What the controller of a drive sees: one sensor for each quantity.
+        Sensors of the controller of a drive: one for each quantity.
 
-        Recordings show the quantities themselves, not what sensors make of them.
+        Recordings contain the true quantities, not the readings of the sensors.
 
         >>> import strainwave as sw
         >>> sensors = sw.Sensors(output_angle=sw.sensor.FirstOrder(time_constant=2e-3))

@@ -30,13 +30,15 @@ struct Cascade {
 
         .. math:: u = \operatorname{clip}(k_c (i_r - i_m) + k_{ci} \textstyle\int (i_r - i_m)\,dt + K \omega, \pm u_{max})
 
-        with i_r what the loops of PositionSpeed ask for, limited to current_limit, i_m the measured current, omega the measured input
-        speed, k_c = current_proportional, k_ci = current_integral, K = back_emf_feedforward, u_max = voltage_limit. The motor
-        hands back what it can follow. Where u_max or the motor limits the voltage, neither integral leads further beyond; where
-        the current is limited the integral of the speed does not. It fades there as that of PI.
+        with i_r the current that the loops of PositionSpeed request, limited to current_limit, i_m the measured current, omega
+        the measured input speed, k_c = current_proportional, k_ci = current_integral, K = back_emf_feedforward, u_max =
+        voltage_limit. The motor returns the voltage that it can follow. If u_max or the motor limits the voltage, neither
+        integral grows further; if the current is limited, the integral of the speed does not. The rate of the integral falls
+        to zero at a limit as that of PI.
 
-        A current loop of the bandwidth w [rad/s] around resistance R and inductance L has k_c = L w and k_ci = R w. The motor must
-        have an inductance, or the controller must be sampled: else voltage and current would determine each other at once.
+        A current loop of the bandwidth w [rad/s] around resistance R and inductance L has k_c = L w and k_ci = R w. The motor
+        must have an inductance, or the controller must be sampled. Otherwise voltage and current determine each other in the
+        same instant.
 
         >>> from strainwave.control import Cascade
         >>> law = Cascade(position_gain=30.0, speed_proportional=0.1, speed_integral=2.0, current_proportional=2.0)
@@ -50,10 +52,10 @@ struct Cascade {
         visit(SW_FIELD(m, speed_integral, "A/rad", "Current per integral of the error of the input speed", 0));
         visit(SW_FIELD(m, current_proportional, "V/A", "Voltage per error of the current", 0));
         visit(SW_FIELD(m, current_integral, "V/(A.s)", "Voltage per integral of the error of the current", 0));
-        visit(SW_FIELD(m, speed_limit, "rad/s", "Largest input speed that is asked for", smallest));
-        visit(SW_FIELD(m, current_limit, "A", "Largest current that is asked for, of either sign", smallest));
+        visit(SW_FIELD(m, speed_limit, "rad/s", "Largest input speed that is requested", smallest));
+        visit(SW_FIELD(m, current_limit, "A", "Largest current that is requested, of either sign", smallest));
         visit(SW_FIELD(m, voltage_limit, "V", "Largest voltage, of either sign", smallest));
-        visit(SW_FIELD(m, speed_feedforward, "1", "Share of the commanded speed that is asked for without any error"));
+        visit(SW_FIELD(m, speed_feedforward, "1", "Share of the commanded speed that is requested without any error"));
         visit(SW_FIELD(m, viscous_feedforward, "A.s/rad", "Current per commanded input speed"));
         visit(SW_FIELD(m, coulomb_feedforward, "A", "Current in the sense of the commanded speed"));
         visit(SW_FIELD(m, back_emf_feedforward, "V.s/rad", "Voltage per input speed, as the back-EMF takes it"));

@@ -52,7 +52,7 @@ struct Measurement {
         visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
         visit(SW_FIELD(m, current, "A", "Motor current, under the actuation that a sampled controller holds"));
         visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
-        visit(SW_PART(m, limits, "What the motor can follow"));
+        visit(SW_PART(m, limits, "Limits of the actuation that the motor can follow"));
     }
 };
 

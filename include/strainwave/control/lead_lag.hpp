@@ -17,20 +17,20 @@ struct LeadLag {
     static constexpr auto command_unit = "rad";
     static constexpr auto source = "FranklinPowellEmamiNaeini2002, section 6.7";
     static constexpr auto doc = R"(
-        Position controller of two sections, one to lead and one to lag.
+        Position controller of two first-order sections: lead and lag.
 
         .. math:: u = \operatorname{clip}\left(k\, \frac{1 + a_1 s}{1 + b_1 s}\, \frac{1 + a_2 s}{1 + b_2 s}\, \epsilon,
                   \pm u_{max}\right)
 
-        with epsilon the error of the angle, referred to the input, of the shaft which feedback names: i r - theta_in or
-        i (r - theta_out); k = gain, a_1, b_1 = lead_numerator, lead_denominator, a_2, b_2 = lag_numerator, lag_denominator,
-        u_max = limit. The first leads where a_1 > b_1, the second lags where a_2 < b_2; either may do either. Both sections
-        begin at rest. Steps of a fixed length must not be longer than 2.5 times the shorter of b_1 and b_2, unless the controller
-        is sampled: then the first section is exact for an error that is held over a period. The second takes what the first gives at
-        the begin of each period as constant over it, of first order in the period.
+        with epsilon the angle error of the shaft that feedback names, referred to the input: i r - theta_in or i (r -
+        theta_out); k = gain, a_1, b_1 = lead_numerator, lead_denominator, a_2, b_2 = lag_numerator, lag_denominator, u_max =
+        limit. The first section leads if a_1 > b_1, the second lags if a_2 < b_2. Either section can do either. Both begin at
+        rest. Steps of a fixed length must not be longer than 2.5 times the shorter of b_1 and b_2, unless the controller is
+        sampled. The first section of a sampled controller is exact for an error that is constant over a period. The second is
+        of first order in the period: it takes the output of the first as constant over the period.
 
-        u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
-        read A or N.m in place of V.
+        The units below are those of a motor that takes a voltage u. For a motor that takes a current or a torque read A or N.m
+        in place of V.
 
         >>> from strainwave.control import LeadLag
         >>> LeadLag(gain=2.0, lead_numerator=0.02, lead_denominator=0.002).limit
@@ -53,7 +53,7 @@ struct LeadLag {
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, lead, "rad", "Error through the first denominator"));
-            visit(SW_FIELD(m, lag, "rad", "What the first section gives through the second denominator"));
+            visit(SW_FIELD(m, lag, "rad", "Output of the first section through the second denominator"));
         }
     };
 

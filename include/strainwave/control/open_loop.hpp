@@ -11,7 +11,7 @@ struct OpenLoop {
     static constexpr auto command_unit = "";  // that of what the motor takes
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        No controller: the command, times a gain, is what the motor takes.
+        No controller: the actuation of the motor is the command times a gain.
 
         .. math:: u = g r
 

@@ -19,12 +19,12 @@ struct PI {
         .. math:: u = \operatorname{clip}(k_p \epsilon + k_i \textstyle\int \epsilon\,dt, \pm u_{max}), \qquad
                   \epsilon = i r - \omega_{in} \text{ or } \epsilon = i\,(r - \omega_{out})
 
-        with r the commanded output speed [rad/s], i the signed ratio, k_p = proportional, k_i = integral, u_max = limit. The error
-        is that of the shaft which feedback names, referred to the input. What leads the integral further beyond what limit or
-        motor allow fades, and is nothing a twentieth of that range beyond.
+        with r the commanded output speed [rad/s], i the signed ratio, k_p = proportional, k_i = integral, u_max = limit. The
+        error is that of the shaft that feedback names, referred to the input. The integral grows up to the limits of
+        controller and motor. Beyond a limit its rate falls, to zero at 5 % of the range between the limits.
 
-        u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
-        read A or N.m in place of V.
+        The units below are those of a motor that takes a voltage u. For a motor that takes a current or a torque read A or N.m
+        in place of V.
 
         >>> from strainwave.control import PI
         >>> PI(proportional=0.2, integral=5.0).limit

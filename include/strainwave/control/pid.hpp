@@ -17,19 +17,19 @@ struct PID {
     static constexpr auto command_unit = "rad";
     static constexpr auto source = "AstromHagglund1995, chapter 3; anti-windup by conditional integration, section 3.5";
     static constexpr auto doc = R"(
-        Position controller: proportional, integral, derivative, with a limit.
+        Position controller with proportional, integral and derivative gain, and a limit.
 
         .. math:: u = \operatorname{clip}(k_p \epsilon + k_i \textstyle\int \epsilon\,dt + k_d \dot\epsilon, \pm u_{max}), \qquad
                   \epsilon = i r - \theta_{in} \text{ or } \epsilon = i\,(r - \theta_{out})
 
         with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
-        u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
-        kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-        error is referred to the input, so that the gains mean the same. What leads the integral further beyond what limit or
-        motor allow fades, and is nothing a twentieth of that range beyond.
+        u_max = limit. The error is that of the encoder that feedback names. If it is the encoder of the motor, on the input
+        shaft, the loop does not correct kinematic error and wind-up of the gear. If it is the encoder of the output shaft, the
+        loop corrects them. The error is referred to the input, so that the gains have the same meaning. The integral grows up
+        to the limits of controller and motor. Beyond a limit its rate falls, to zero at 5 % of the range between the limits.
 
-        u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
-        read A or N.m in place of V.
+        The units below are those of a motor that takes a voltage u. For a motor that takes a current or a torque read A or N.m
+        in place of V.
 
         >>> from strainwave.control import PID
         >>> PID(proportional=2.0, derivative=0.05, limit=48.0).integral

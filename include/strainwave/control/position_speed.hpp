@@ -27,14 +27,14 @@ struct PositionSpeed {
                   u = \operatorname{clip}(k_s (\omega_r - \omega) + k_i \textstyle\int (\omega_r - \omega)\,dt
                   + b\, i \dot r + c \operatorname{sgn}(i \dot r), \pm u_{max})
 
-        with r the commanded output angle, i the signed ratio, omega the input speed, epsilon the error of the angle, referred to the
-        input: that of the input shaft, i r - theta_in, or of the output shaft, i (r - theta_out), as feedback names it.
-        k_p = position_gain, k_s = speed_proportional, k_i = speed_integral, f, b, c = speed_, viscous_ and coulomb_feedforward,
-        omega_max = speed_limit, u_max = limit. What leads the integral further beyond what limit or motor allow fades, and is
-        nothing a twentieth of that range beyond.
+        with r the commanded output angle, i the signed ratio, omega the input speed, epsilon the error of the angle, referred
+        to the input: that of the input shaft, i r - theta_in, or of the output shaft, i (r - theta_out), as feedback names it.
+        k_p = position_gain, k_s = speed_proportional, k_i = speed_integral, f, b, c = speed_, viscous_ and
+        coulomb_feedforward, omega_max = speed_limit, u_max = limit. The integral grows up to the limits of controller and
+        motor. Beyond a limit its rate falls, to zero at 5 % of the range between the limits.
 
-        u is a current, and the units below are those, of a motor that takes one. For a motor that takes a torque or a voltage
-        read N.m or V in place of A.
+        The units below are those of a motor that takes a current u. For a motor that takes a torque or a voltage read N.m or V
+        in place of A.
 
         >>> from strainwave.control import PositionSpeed
         >>> PositionSpeed(position_gain=30.0, speed_proportional=0.1, speed_integral=2.0).speed_limit
@@ -45,9 +45,9 @@ struct PositionSpeed {
         visit(SW_FIELD(m, position_gain, "1/s", "Input speed per error of the input angle", 0));
         visit(SW_FIELD(m, speed_proportional, "A.s/rad", "Current per error of the input speed", 0));
         visit(SW_FIELD(m, speed_integral, "A/rad", "Current per integral of the error of the input speed", 0));
-        visit(SW_FIELD(m, speed_limit, "rad/s", "Largest input speed that is asked for", smallest));
+        visit(SW_FIELD(m, speed_limit, "rad/s", "Largest input speed that is requested", smallest));
         visit(SW_FIELD(m, limit, "A", "Largest current, of either sign", smallest));
-        visit(SW_FIELD(m, speed_feedforward, "1", "Share of the commanded speed that is asked for without any error"));
+        visit(SW_FIELD(m, speed_feedforward, "1", "Share of the commanded speed that is requested without any error"));
         visit(SW_FIELD(m, viscous_feedforward, "A.s/rad", "Current per commanded input speed"));
         visit(SW_FIELD(m, coulomb_feedforward, "A", "Current in the sense of the commanded speed"));
         visit(SW_FIELD(m, feedback, "1", "The shaft whose encoder the position loop closes on"));

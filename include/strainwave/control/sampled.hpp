@@ -19,20 +19,19 @@ struct Sampled {
         "AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly for a constant "
         "input";
     static constexpr auto doc = R"(
-        A controller that runs in a computer: it acts at instants and holds its output between them.
+        Controller that runs in a computer: it acts at instants and holds its output between them.
 
         .. math:: u(t) = u_k, \quad t_k + d \le t < t_{k+1} + d, \qquad u_k = \text{law}(x_k, r_k, y_k), \qquad
                   x_{k+1} = x_k + \frac{1 - e^{-\lambda T}}{\lambda}\, \dot x_k
 
-        with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
+        with t_k = k T, T = period, d = delay (the computing time, at most a period), r_k and y_k command and measurement at
         t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
-        lambda = 1 / b: over a period it moves as it does under a constant input, which its second section does not have: that one is
-        of first order in T, as an integral is. Before the first output the actuation is 0. ``compensation`` adds to the command at each
-        instant what it knows of the drive.
-        Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
-        sampled itself.
+        lambda = 1 / b, which is exact under a constant input. The input of its second section is not constant, so that this
+        section is of first order in T, as an integral is. Before the first output the actuation is 0. ``compensation`` adds a
+        lead and a feed-forward at each instant. Steps end at each t_k and each t_k + d, so that events of the controller are
+        exact. The law is any that is not sampled itself.
 
-        In an ensemble, period and delay are the same for all members. They have no derivatives: time is not among the numbers.
+        In an ensemble, period and delay are the same for all members. They have no derivatives.
 
         >>> from strainwave.control import PID, Sampled
         >>> law = PID(proportional=2.0, derivative=0.05)
@@ -41,10 +40,10 @@ struct Sampled {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, law, "What is worked out at each instant"));
-        visit(SW_PART(m, compensation, "What is known of the drive, and asked for beside the error"));
+        visit(SW_PART(m, law, "Law of control, evaluated at each instant"));
+        visit(SW_PART(m, compensation, "Lead and feed-forward that are added to the command"));
         visit(SW_FIELD(m, period, "s", "Time from one sample to the next", smallest));
-        visit(SW_FIELD(m, delay, "s", "Time from a sample to the output that is worked out from it", 0));
+        visit(SW_FIELD(m, delay, "s", "Time from a sample to the output that follows from it", 0));
     }
 
     constexpr const char* problem() const {
@@ -83,8 +82,8 @@ struct Sampled {
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_PART(m, law, "State of the law"));
             visit(SW_PART(m, compensation, "State of the compensation"));
-            visit(SW_FIELD(m, actuation, "1", "What the motor is given, in its unit"));
-            visit(SW_FIELD(m, pending, "1", "What it is given once it is computed"));
+            visit(SW_FIELD(m, actuation, "1", "Actuation of the motor, in its unit"));
+            visit(SW_FIELD(m, pending, "1", "Actuation after the delay, in the unit of the motor"));
             visit(SW_FIELD(m, until_sample, "s", "Time until the next sample"));
         }
     };

@@ -17,7 +17,7 @@ struct StateFeedback {
     static constexpr auto command_unit = "rad";
     static constexpr auto source = "FranklinPowellEmamiNaeini2002, section 7.5";
     static constexpr auto doc = R"(
-        Position controller that feeds back all that is measured, each with a gain of its own.
+        Position controller that feeds back all measured quantities, each with its own gain.
 
         .. math:: u = \operatorname{clip}\big(k_1 (i r - \theta_{in}) + k_2 (i \dot r - \omega_{in}) + k_3 (r - \theta_{out})
                   + k_4 (\dot r - \omega_{out}) - k_5 i_m - k_6 T, \pm u_{max}\big)
@@ -26,8 +26,8 @@ struct StateFeedback {
         input_speed, output_angle, output_speed, current, torque, u_max = limit. ``sw.linearise`` gives the matrices from which the
         gains follow, by placing poles or as a linear-quadratic regulator.
 
-        u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
-        read A or N.m in place of V.
+        The units below are those of a motor that takes a voltage u. For a motor that takes a current or a torque read A or N.m
+        in place of V.
 
         >>> from strainwave.control import StateFeedback
         >>> StateFeedback(input_angle=2.0, input_speed=0.05, torque=0.01).limit

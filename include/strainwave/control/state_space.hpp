@@ -28,10 +28,11 @@ struct StateSpace {
         .. math:: y = \big(i r - \theta_{in},\; i \dot r - \omega_{in},\; r - \theta_{out},\; \dot r - \omega_{out},\;
                   i_m,\; T,\; r,\; \dot r\big)
 
-        with r the commanded output angle, i the signed ratio, i_m the current, T the torque transmitted, u_f the feed-forward of a
-        compensation, l = tracking, u_max = limit or what the motor limits. C has one element for each state. D has one element for each
-        input: the controller takes the first inputs of y, and D determines how many. A and B are written row by row, one row for each
-        state. The states begin at 0. An angle error counts from the input lead of the compensation, as in StateFeedback.
+        with r the commanded output angle, i the signed ratio, i_m the current, T the torque transmitted, u_f the feed-forward
+        of a compensation, l = tracking, u_max = limit or the limit of the motor. C has one element for each state. D has one
+        element for each input: the controller takes the first inputs of y, and D determines how many. A and B are written row
+        by row, one row for each state. The states begin at 0. An angle error counts from the input lead of the compensation,
+        as in StateFeedback.
 
         In ``control.Sampled`` the states go forward by Euler, x + T (A x + B y). A controller of discrete time, x + = A_d x + B_d y, has
         A = (A_d - 1)/T and B = B_d/T, and the same C and D. It is then exact.
@@ -39,7 +40,8 @@ struct StateSpace {
         Where the output is limited, ``tracking`` leads the states. An observer that contains C takes the actuation limited with l =
         the input matrix of its model. A PI controller takes l = 1/(C t), with t its tracking time. Without tracking an integral winds up.
 
-        u is a voltage, and the units of a motor that takes one. For a motor that takes a current or a torque read A or N.m in place of V.
+        The units below are those of a motor that takes a voltage u. For a motor that takes a current or a torque read A or N.m
+        in place of V.
 
         >>> from strainwave.control import StateSpace
         >>> pi = StateSpace(A=[0.0], B=[1.0], C=[3.0], D=[0.5], tracking=[10.0], limit=10.0)

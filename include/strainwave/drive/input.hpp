@@ -19,7 +19,7 @@ struct Input {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, command, "1", "Command of the controller, in the unit that it takes"));
         visit(SW_FIELD(m, command_rate, "1/s", "Its rate"));
-        visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, or what else it takes"));
+        visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, a brake torque or an output angle"));
         visit(SW_FIELD(m, load_rate, "1/s", "Its rate"));
         visit(SW_FIELD(m, temperature, "K", "Temperature around the drive"));
         visit(SW_FIELD(m, temperature_rate, "K/s", "Its rate"));

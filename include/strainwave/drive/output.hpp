@@ -29,10 +29,10 @@ struct Output {
         visit(SW_FIELD(m, friction_output, "N.m", "Friction torque at the output, opposing its motion"));
         visit(SW_FIELD(m, load_torque, "N.m", "Torque of the load, holding the output back"));
         visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
-        visit(SW_PART(m, motor, "What the motor shows of itself"));
-        visit(SW_PART(m, thermal, "What the thermal model shows of itself"));
-        visit(SW_PART(m, meter, "What the meter shows"));
-        visit(SW_PART(m, structure, "What the gear shows of the bodies within it"));
+        visit(SW_PART(m, motor, "Outputs of the motor"));
+        visit(SW_PART(m, thermal, "Outputs of the thermal model"));
+        visit(SW_PART(m, meter, "Outputs of the meter"));
+        visit(SW_PART(m, structure, "Outputs of the bodies within the gear"));
     }
 };
 

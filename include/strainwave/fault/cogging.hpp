@@ -14,7 +14,7 @@ struct Cogging {
     static constexpr auto signal = "the order cogging_order of the input in motor current, without load too, at low speed most";
     static constexpr auto source = "definition; the torque at severity 1 is assumed";
     static constexpr auto doc = R"(
-        Cogging that has grown, as by a rotor off its axis or a displaced magnet.
+        Increased cogging, for example from a rotor off its axis or a displaced magnet.
 
         .. math:: \tau_c \leftarrow \tau_c + s\, \Delta\tau
 

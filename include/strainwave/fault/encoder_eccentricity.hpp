@@ -16,13 +16,13 @@ struct EncoderEccentricity {
     static constexpr auto signal = "order 1 of its own shaft in position, speed and current: order 1 of the input, or 1 / i";
     static constexpr auto source = "definition; the amount is assumed";
     static constexpr auto doc = R"(
-        An encoder whose disc moved off the centre of its shaft.
+        Encoder whose disc has moved off the centre of its shaft.
 
         .. math:: y \leftarrow y + s\, a \sin(x + \varphi)
 
-        with s = severity, a = eccentricity, phi = phase, x the angle of ``shaft``. It adds as a vector to the eccentricity that
-        the encoder has. At severity 1 the error has the amplitude a. The sensor must be a ``sensor.Encoder``; no other sensor
-        depends on where the shaft is.
+        with s = severity, a = eccentricity, phi = phase, x the angle of ``shaft``. It adds as a vector to the eccentricity
+        that the encoder has. At severity 1 the error has the amplitude a. The sensor must be a ``sensor.Encoder``: no other
+        sensor depends on the angle of the shaft.
 
         >>> from strainwave.fault import EncoderEccentricity, Facts
         >>> EncoderEccentricity(severity=0.5).changes(Facts())[0][:4]

@@ -15,7 +15,7 @@ struct EncoderOffset {
     static constexpr auto signal = "difference of the two encoders at rest; constant error of position";
     static constexpr auto source = "definition; the amount is assumed";
     static constexpr auto doc = R"(
-        An encoder that slipped on its shaft, or lost counts.
+        Encoder that has slipped on its shaft, or has lost counts.
 
         .. math:: y \leftarrow y + s\, x_0
 

@@ -21,7 +21,7 @@ struct FlexsplineCrack {
         "order: kinematics of the three members; the pulse is a raised cosine, and its Fourier series follows from its "
         "definition; depth and width are assumed";
     static constexpr auto doc = R"(
-        A crack at one place of the flexspline: the gear is softer while one of the two lobes passes it.
+        Crack at one place of the flexspline: the gear is softer while one of the two lobes passes it.
 
         .. math:: k \leftarrow k \left(1 - s\, d\, p(\psi)\right), \qquad
                   p(\psi) = \tfrac{1}{2} \left(1 + \cos\frac{2 \pi \psi}{w}\right) \text{ for } |\psi| < \tfrac{w}{2}, \qquad
@@ -30,13 +30,13 @@ struct FlexsplineCrack {
         with s = severity, d = depth, w = width, psi_0 = angle, theta the input angle, rho revolutions of the wave generator
         against the flexspline per revolution of the input: z_c / z_f if the circular spline is fixed, 1 if the flexspline is.
         There are two lobes, so that p repeats after pi. At severity 1 the stiffness falls by the share d at the middle of the
-        pulse. The pulse is held as its mean and ``waves`` harmonics,
+        pulse. The pulse is stored as its mean and ``waves`` harmonics,
 
         .. math:: p = \frac{w}{2 \pi} + \sum_k a_k \cos(2 k \psi), \qquad
                   a_k = \frac{w}{\pi} \frac{\operatorname{sinc} x}{1 - x^2}, \qquad x = \frac{k w}{\pi}
 
         with sinc x = sin(pi x) / (pi x). A narrow pulse needs more harmonics; a gear holds 8 waves in all, the mean is one of
-        them. Leaves out the error that the crack makes without load, and what opens or closes it.
+        them. Leaves out the kinematic error that the crack causes without load, and its opening and closing.
 
         >>> from strainwave.fault import Facts, FlexsplineCrack
         >>> facts = Facts(flexspline_teeth=200, circular_spline_teeth=202, ratio=-100.0)
@@ -50,7 +50,7 @@ struct FlexsplineCrack {
         visit(
             SW_FIELD(m, width, "rad", "Width w of the pulse, as an angle of the wave generator against the flexspline", 1e-3, pi));
         visit(SW_FIELD(m, angle, "rad", "Place psi_0 of the crack: that angle at the middle of the pulse"));
-        visit(SW_FIELD(m, waves, "1", "Harmonics that the pulse is held by", 1, 7));
+        visit(SW_FIELD(m, waves, "1", "Number of harmonics of the pulse", 1, 7));
     }
 
     constexpr const char* missing(const Facts<S>& facts) const { return facts.has_teeth() ? nullptr : needs_teeth; }

@@ -15,7 +15,7 @@ struct InverterDeadTime {
         "order 6 p of the input in motor current and torque, less where a current loop is fast; voltage per current";
     static constexpr auto source = "JeongPark1991; the voltage at severity 1 is assumed";
     static constexpr auto doc = R"(
-        An inverter that waits longer between its switches, or whose compensation of this wait fails.
+        Inverter with a longer dead time between its switches, or without compensation of it.
 
         .. math:: V \leftarrow V + s\, \Delta V
 

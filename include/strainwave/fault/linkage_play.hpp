@@ -14,15 +14,15 @@ struct LinkagePlay {
     static constexpr auto signal = "lost motion of the load; blows at reversals; limit cycles of a loop closed at the output";
     static constexpr auto source = "definition: play in series with a spring; its amount is assumed";
     static constexpr auto doc = R"(
-        A worn joint, key or coupling between the gear and its load.
+        Play of a worn joint, key or coupling between the gear and its load.
 
         .. math:: c \leftarrow c + s\, \Delta c
 
         with s = severity, Delta c = play, c the clearance in series with the spring of the gear. At severity 1 the play at the
-        output has grown by Delta c. The inertia between gear and linkage is left out: play of the linkage and play of the teeth
-        then are one number, and no measurement at input and load separates them. An encoder on the output shaft of the gear,
-        before the linkage, would: the model has its output encoder at the load. Hysteresis and damping of the gear also act
-        within the play.
+        output has grown by Delta c. The inertia between gear and linkage is left out: play of the linkage and play of the
+        teeth then are one number, and no measurement at input and load separates them. An encoder on the output shaft of the
+        gear, before the linkage, separates them; the model has its output encoder at the load. Hysteresis and damping of the
+        gear also act within the play.
 
         >>> from strainwave.fault import Facts, LinkagePlay
         >>> LinkagePlay(severity=0.5).changes(Facts())[0][:4]

@@ -17,7 +17,7 @@ struct LubricationLoss {
     static constexpr auto source =
         "Stribeck1902 for the sense: a thinner film carries later, so the Stribeck speed rises; the amounts are assumed";
     static constexpr auto doc = R"(
-        A gear that runs short of lubricant: its surfaces touch at higher speeds, and less oil is sheared.
+        Lack of lubricant: surfaces touch up to higher speeds, and less oil is sheared.
 
         .. math:: F_{dry} \leftarrow (1 + s\, r_d)\, F_{dry}, \qquad v_s \leftarrow (1 + s\, r_s)\, v_s, \qquad
                   b \leftarrow (1 - s\, f_v)\, b

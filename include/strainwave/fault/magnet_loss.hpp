@@ -14,7 +14,7 @@ struct MagnetLoss {
     static constexpr auto signal = "mean motor current at the same load; ratio of voltage to speed without load";
     static constexpr auto source = "definition; the loss at severity 1 is assumed";
     static constexpr auto doc = R"(
-        Magnets that have lost a share of their flux, all alike.
+        Loss of flux, the same share of each magnet.
 
         .. math:: K_m \leftarrow (1 - s\, l)\, K_m, \qquad K_b \leftarrow (1 - s\, l)\, K_b, \qquad \psi \leftarrow (1 - s\, l)\, \psi
 

@@ -30,7 +30,7 @@ struct Misalignment {
     static constexpr auto source =
         "document A, section Kinematic error, worked out (erratum E-A4); the numbers at severity 1, and `combine`, are assumed";
     static constexpr auto doc = R"(
-        Input shaft and wave generator that stand off the axis of the circular spline, or lean against it.
+        Eccentricity and tilt of input shaft and wave generator against the circular spline.
 
         .. math:: e_1 \leftarrow e_1 + s\, \Delta e_1, \quad \beta \leftarrow \beta + s\, \Delta\beta, \quad
                   e_2 \leftarrow e_2 + s\, \Delta e_2, \quad \alpha \leftarrow \alpha + s\, \Delta\alpha
@@ -60,12 +60,12 @@ struct Misalignment {
         visit(SW_FIELD(m, generator_direction, "rad", "Direction alpha_1 of that distance, turning with the shaft"));
         visit(SW_FIELD(m, generator_tilt_x, "rad", "Lean alpha_2 of the wave generator on the shaft", -0.5, 0.5));
         visit(SW_FIELD(m, generator_tilt_y, "rad", "Lean alpha_3 of the wave generator on the shaft", -0.5, 0.5));
-        visit(SW_FIELD(m, offset, "m", "Distance h of the teeth from the point about which things tilt"));
+        visit(SW_FIELD(m, offset, "m", "Distance h of the teeth from the centre of tilt"));
         visit(SW_FIELD(m, major_radius, "m", "Half axis a of the wave generator", smallest));
         visit(SW_FIELD(m, minor_radius, "m", "Half axis b of the wave generator", smallest));
         visit(SW_FIELD(m, pitch_radius, "m", "Pitch radius r_g of the circular spline", smallest));
         visit(SW_FIELD(m, pressure_angle, "rad", "Pressure angle alpha_t of the teeth", 0, 1.5));
-        visit(SW_FIELD(m, combine, "1", "How the two lobes decide on the output"));
+        visit(SW_FIELD(m, combine, "1", "Combination of the displacements of the two lobes"));
     }
 
     constexpr const char* problem() const {

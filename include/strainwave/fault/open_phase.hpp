@@ -14,7 +14,7 @@ struct OpenPhase {
     static constexpr auto signal = "order 2 p of the input in motor current, torque and speed, as large as their mean";
     static constexpr auto source = "Kirchhoff's laws of three phases; the resistance at severity 1 is assumed";
     static constexpr auto doc = R"(
-        A phase of a PMSM that conducts hardly any current.
+        Open phase of a PMSM: it conducts hardly any current.
 
         .. math:: \Delta R \leftarrow \Delta R + s\, R_o
 

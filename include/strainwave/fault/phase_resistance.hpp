@@ -16,7 +16,7 @@ struct PhaseResistance {
         "ratio of voltage to current at low speed; of an uneven phase, order 2 p of the input in motor current and torque";
     static constexpr auto source = "Kirchhoff's laws of three phases; the numbers at severity 1 are assumed";
     static constexpr auto doc = R"(
-        A winding whose resistance has risen in all phases, or in one by a bad contact.
+        Increased resistance of the winding, in all phases, or in one by a bad contact.
 
         .. math:: R \leftarrow (1 + s\, r)\, R, \qquad \Delta R \leftarrow \Delta R + s\, \Delta
 

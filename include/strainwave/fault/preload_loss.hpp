@@ -15,7 +15,7 @@ struct PreloadLoss {
     static constexpr auto signal = "twist at low torque, lost motion, a lower resonance at small amplitudes";
     static constexpr auto source = "the form, a soft and free centre, is assumed; so are softening and play";
     static constexpr auto doc = R"(
-        Splines that no longer press on each other: the gear is soft, then free, around zero torque.
+        Loss of preload between the splines: the gear is soft, then has play, around zero torque.
 
         .. math:: k_1 \leftarrow (1 - s\, f)\, k_1, \qquad c \leftarrow c + s\, \Delta c
 

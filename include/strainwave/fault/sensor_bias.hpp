@@ -19,7 +19,7 @@ struct SensorBias {
     static constexpr auto signal = "the reading at rest and without load; a mean that does not change with the direction of motion";
     static constexpr auto source = "definition; the amount is assumed";
     static constexpr auto doc = R"(
-        A sensor that shows too much by a constant. A drift is a bias with an onset that grows.
+        Constant offset of a sensor. A drift is a bias with an onset that grows.
 
         .. math:: y \leftarrow y + s\, y_0
 
@@ -34,8 +34,8 @@ struct SensorBias {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, severity, "1", "Share s of the offset", 0, 1));
-        visit(SW_FIELD(m, quantity, "1", "What the sensor measures"));
-        visit(SW_FIELD(m, offset, "1", "Offset y_0 at severity 1, in the unit of what the sensor measures"));
+        visit(SW_FIELD(m, quantity, "1", "Quantity that the sensor measures"));
+        visit(SW_FIELD(m, offset, "1", "Offset y_0 at severity 1, in the unit of the measured quantity"));
     }
 
     template <class Visit>

@@ -18,7 +18,7 @@ struct ToothWear {
         "lost motion; order 2 or 2 z_c / z_f of the input (2 z_f / z_c with the flexspline fixed) in output position and current";
     static constexpr auto source = "order: kinematics of the three members; play and amplitude are assumed (1 and 0.5 arc minutes)";
     static constexpr auto doc = R"(
-        Teeth of one spline that wear, unevenly around it.
+        Wear of the teeth of one spline, uneven around it.
 
         .. math:: c \leftarrow c + s\, \Delta c, \qquad e(\theta) \leftarrow e(\theta) + s A \sin(2 \rho \theta + \varphi)
 

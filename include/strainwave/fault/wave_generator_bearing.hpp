@@ -28,7 +28,7 @@ struct WaveGeneratorBearing {
         "RandallAntoni2011, eqs. (1) to (4), for the orders; the depths, and waves that fall with their number, are assumed; so "
         "are the default balls, no data sheet states them";
     static constexpr auto doc = R"(
-        A damaged ring, ball or cage of the thin ball bearing that carries the flexspline on the wave generator.
+        Damaged ring, ball or cage of the thin ball bearing between wave generator and flexspline.
 
         .. math:: f \leftarrow f + s\, d \sum_{h=1}^{n} \tfrac{1}{h} \sin(h B \theta + h \varphi)
 
@@ -42,8 +42,8 @@ struct WaveGeneratorBearing {
         the circular spline is fixed, else 0. These are the orders of ``sw.bearing_orders``. At severity 1 the first wave has the
         depth d, relative to the healthy friction or stiffness.
 
-        Leaves out that the inner ring is elliptic: it loads each ball twice a turn, so that lines 2 orders away come as well. A
-        damaged ball meets both rings: twice its order is then the stronger.
+        Leaves out the ellipse of the inner ring, which loads each ball twice a turn and adds lines 2 orders away. A damaged
+        ball meets both rings, so that twice its order is the stronger line.
 
         >>> from strainwave.fault import Facts, WaveGeneratorBearing
         >>> facts = Facts(flexspline_teeth=200, circular_spline_teeth=202, fixed="flexspline", ratio=101.0)

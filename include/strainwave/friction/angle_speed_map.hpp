@@ -18,13 +18,14 @@ struct AngleSpeedMap {
 
         .. math:: F = F(\theta, |v|) \operatorname{sgn} v \quad (v \ne 0), \qquad |F| \le c_s\, F(\theta, 0) \quad (v = 0)
 
-        with v the speed of the place it acts on and theta its angle, c_s = static_ratio. F is bilinear between the entries of level.
-        For each speed in turn, level lists the torques at equally spaced angles of one turn, beginning at theta = 0:
-        n = len(level) / len(speed) of them, at 2 pi j / n. Periodic in the angle. Below the first and beyond the last speed the
-        torque stays what it is there. Up to 8 speeds and 128 torques; without any there is no friction.
+        with v the speed of the place it acts on and theta its angle, c_s = static_ratio. F is bilinear between the entries of
+        level. For each speed in turn, level lists the torques at equally spaced angles of one turn, beginning at theta = 0: n
+        = len(level) / len(speed) of them, at 2 pi j / n. Periodic in the angle. Below the first and beyond the last speed the
+        torque is constant. Up to 8 speeds and 128 torques; an empty table is no friction.
 
-        All of it counts as dry friction where another law modulates it. Asymmetric around it tells the directions apart. For
-        what no formula describes; where one does, as Cyclic around Stribeck, it needs fewer numbers and less data.
+        Another law that modulates this one treats all of it as dry friction. Asymmetric around it separates the directions.
+        Use the table for friction that no formula describes. A formula, as Cyclic around Stribeck, needs fewer numbers and
+        less data.
 
         >>> from strainwave.friction import AngleSpeedMap
         >>> law = AngleSpeedMap(speed=[1.0, 11.0], level=[0.1, 0.2, 0.3, 0.4])  # at 0 and at pi
@@ -34,7 +35,7 @@ struct AngleSpeedMap {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, speed, "rad/s", "Speeds of the table, increasing", 0));
-        visit(SW_FIELD(m, level, "N.m", "Torques: of each speed in turn, those at equally spaced angles of one turn", 0));
+        visit(SW_FIELD(m, level, "N.m", "Torques at equally spaced angles of one turn, for each speed in turn", 0));
         visit(SW_FIELD(m, static_ratio, "1", "Static friction over the friction at the lowest speed", 1));
     }
 

@@ -18,19 +18,21 @@ struct Asymmetric {
         "each direction is assumed";
     static constexpr bool odd = false;
     static constexpr auto doc = R"(
-        Friction that is larger one way than the other.
+        Friction that differs between the two directions of motion.
 
         .. math:: F_{dry} \propto 1 + a_d \operatorname{sgn} v, \qquad F_{viscous} \propto 1 + a_v \operatorname{sgn} v
 
-        with v the speed of the place it acts on, a_d = dry_asymmetry, a_v = viscous_asymmetry, law the mean of both directions:
-        its dry levels (Coulomb, breakaway) and its viscous torque are multiplied. At rest the torque that drives it says which
-        way counts. A viscous_asymmetry that is not given equals dry_asymmetry: the whole curve is then larger one way.
+        with v the speed of the place it acts on, a_d = dry_asymmetry, a_v = viscous_asymmetry, law the mean of both
+        directions. The factors multiply its dry levels (Coulomb, breakaway) and its viscous torque. At rest the direction is
+        that of the driving torque. viscous_asymmetry defaults to dry_asymmetry: the whole curve then has one factor for each
+        direction.
 
-        Each way it is the law itself with other levels, so it takes power from every motion where those would. A bristle keeps
-        its stiffness and damping, and must be damped so little that it dissipates with the smaller viscous torque, too. Not for
-        ``TorqueEfficiency``, whose torque would jump in a reversal and give energy.
+        In each direction it is the law with other levels, so it dissipates if the law dissipates with these levels. A bristle
+        keeps its stiffness and damping; it must also dissipate with the smaller viscous torque. ``TorqueEfficiency`` is not
+        allowed: its torque would jump at a reversal and create energy.
 
-        A constant error of a torque sensor looks much the same: of Coulomb friction without viscous_asymmetry, exactly.
+        A constant offset of a torque sensor looks similar. For Coulomb friction without viscous_asymmetry the two are the
+        same.
 
         >>> from strainwave.friction import Asymmetric, Coulomb
         >>> law = Asymmetric(law=Coulomb(coulomb=0.25, viscous=0.01), dry_asymmetry=0.5, viscous_asymmetry=0.0)
@@ -39,10 +41,10 @@ struct Asymmetric {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, law, "The friction, mean of both directions"));
-        visit(SW_FIELD(m, dry_asymmetry, "1", "How much more dry friction a positive speed has, relative to the mean", -1, 1));
+        visit(SW_PART(m, law, "Friction law, mean of both directions"));
+        visit(SW_FIELD(m, dry_asymmetry, "1", "Excess a_d of dry friction at positive speed, relative to the mean", -1, 1));
         visit(SW_FOLLOWS(m, viscous_asymmetry, dry_asymmetry, "1",
-                         "How much more viscous friction a positive speed has, relative to the mean", -1, 1));
+                         "Excess a_v of viscous friction at positive speed, relative to the mean", -1, 1));
     }
 
     using State = typename Law::State;

@@ -12,13 +12,13 @@ struct Coulomb {
     static constexpr auto name = "coulomb";
     static constexpr auto source = "document P, simplified friction model (static + Coulomb + viscous); Coulomb1785";
     static constexpr auto doc = R"(
-        Static, Coulomb and viscous friction, set-valued at rest: it sticks exactly.
+        Coulomb and viscous friction with a breakaway torque, set-valued at rest.
 
         .. math:: F = F_c \operatorname{sgn} v + b v \quad (v \ne 0), \qquad |F| \le F_s \quad (v = 0)
 
-        with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, b = viscous. At rest F balances whatever
-        drives the side, up to F_s; there is no smoothed sign and no dead band of speed, both of which leave an error that no
-        step size removes. A breakaway that is not given equals coulomb; one below coulomb counts as coulomb.
+        with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, b = viscous. At rest F balances the driving
+        torque up to F_s, so that the side sticks exactly. The sign is not smoothed and the speed has no dead band: both leave
+        an error that no step size removes. breakaway defaults to coulomb; a smaller value counts as coulomb.
 
         >>> from strainwave.friction import Coulomb
         >>> Coulomb(coulomb=0.07, breakaway=0.075, viscous=5e-4).steady(-20.0)

@@ -15,17 +15,17 @@ struct CurvedViscous {
     static constexpr auto name = "curved_viscous";
     static constexpr auto source = "Olsson1998, section 2: viscous friction with an exponent; the fall as in Stribeck";
     static constexpr auto doc = R"(
-        Friction whose viscous part bends over the speed, with Stribeck's fall, set-valued at rest.
+        Friction with a viscous part that is a power of the speed, and a Stribeck fall, set-valued at rest.
 
         .. math:: F = \left[F_c + (F_s - F_c) e^{-(v/v_s)^2} + F_v \left(|v|/v_r\right)^p\right] \operatorname{sgn} v
                   \quad (v \ne 0), \qquad |F| \le F_s \quad (v = 0)
 
-        with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, F_v = viscous_torque at the
-        speed v_r = reference_speed, p = exponent. The torque of a wave generator's grease often rises fast at first and then
-        ever less: p < 1 (0.5 to 1 is an order of magnitude, assumed); p = 1 is Stribeck's law with viscous = F_v / v_r, and p = 2
-        a drag. A breakaway that is not given equals coulomb, and one below counts as coulomb; stribeck_speed then says nothing.
-        Below v_r / 10^6 the viscous part falls linearly, so that it has a slope at rest. Valid within the speeds it was measured
-        at; leaves out presliding (see LuGre).
+        with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, F_v = viscous_torque at
+        the speed v_r = reference_speed, p = exponent. Grease of a wave generator has p < 1 as a rule: the torque rises fast at
+        first, then more slowly (0.5 to 1 is an order of magnitude, assumed). p = 1 is Stribeck's law with viscous = F_v / v_r,
+        and p = 2 a drag. breakaway defaults to coulomb, and a smaller value counts as coulomb; stribeck_speed then has no
+        effect. Below v_r / 10^6 the viscous part falls linearly, so that it has a slope at rest. Valid within the measured
+        range of speeds. Leaves out presliding (see LuGre).
 
         >>> from strainwave.friction import CurvedViscous
         >>> law = CurvedViscous(coulomb=0.02, viscous_torque=0.03, exponent=0.5, reference_speed=100.0)

@@ -18,16 +18,16 @@ struct Cyclic {
     static constexpr auto name = "cyclic";
     static constexpr auto source = "document R, section 2, cyclic part of the friction torque; erratum E-R7";
     static constexpr auto doc = R"(
-        Friction that varies with the angle, as the wave generator's contacts do over its turn.
+        Friction that varies with the angle, in harmonics of one turn.
 
         .. math:: F = f(\theta)\, F_{law}, \qquad f(\theta) = 1 + \sum_h A_h \sin(B_h \theta + \varphi_h) \ge 0
 
         with theta the angle of the place it acts on, B_h = order, A_h = amplitude relative to the mean, phi_h = phase, law the
-        friction that is modulated: its dry levels (Coulomb, breakaway) and its viscous torque are multiplied, so that a bristle
-        keeps its stiffness. Up to 16 harmonics; where the sum falls below zero, f is zero.
+        friction that is modulated. f multiplies its dry levels (Coulomb, breakaway) and its viscous torque; a bristle keeps
+        its stiffness. Up to 16 harmonics. f is zero where the sum falls below zero.
 
-        Document R prints (A + B v) f(theta), which pushes a reversed motion along: it must read (A sgn v + B v) f(theta)
-        (E-R7). With law a Coulomb friction of coulomb = A and viscous = B this is that term.
+        Document R prints (A + B v) f(theta), which drives a reversed motion. It must read (A sgn v + B v) f(theta) (E-R7).
+        With law a Coulomb friction of coulomb = A and viscous = B this is that term.
 
         >>> from strainwave.friction import Coulomb, Cyclic
         >>> law = Cyclic(law=Coulomb(coulomb=0.25, viscous=0.0), order=[2], amplitude=[0.5], phase=[0.0])
@@ -36,7 +36,7 @@ struct Cyclic {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, law, "The friction that varies"));
+        visit(SW_PART(m, law, "Friction law that is modulated"));
         visit(SW_FIELD(m, order, "1", "Order B_h: periods per revolution", 0));
         visit(SW_FIELD(m, amplitude, "1", "Amplitude A_h, relative to the mean friction", 0));
         visit(SW_FIELD(m, phase, "rad", "Phase phi_h"));

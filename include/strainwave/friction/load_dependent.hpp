@@ -14,19 +14,18 @@ struct LoadDependent {
     static constexpr auto source = "Coulomb1785: friction proportional to load; one ratio for each quadrant, assumed";
     static constexpr bool odd = false;
     static constexpr auto doc = R"(
-        Loss proportional to the torque transmitted, one ratio for each quadrant, set-valued at rest.
+        Friction proportional to the torque transmitted, one ratio for each quadrant, set-valued at rest.
 
         .. math:: F = \mu |T| \operatorname{sgn} v \quad (v \ne 0), \qquad |F| \le \mu |T| \quad (v = 0)
 
-        with v the speed of the place it acts on, T the torque it transmits (load), mu the ratio of the quadrant: if T v > 0 the
-        power flows to the output, and mu = driving_forward for v > 0, driving_reverse for v < 0; if T v < 0 it flows back to
-        the input, and mu = backdriving_forward for v > 0, backdriving_reverse for v < 0. At rest it is the quadrant of the
-        motion that is about to begin.
+        with v the speed of the place it acts on, T the torque it transmits (load), mu the ratio of the quadrant: if T v > 0
+        the power flows to the output, and mu = driving_forward for v > 0, driving_reverse for v < 0; if T v < 0 it flows back
+        to the input, and mu = backdriving_forward for v > 0, backdriving_reverse for v < 0. At rest the quadrant is that of
+        the motion that is about to begin.
 
-        T is what arrives on the output's side. The efficiency is therefore 1 / (1 + mu) when driving and 1 - mu when
-        back-driven; with backdriving mu >= 1 the output cannot turn the input: self-locking. Multiplying the stiffness by the
-        efficiency instead creates energy when back-driven, for the input then receives more than the output gives. Leaves out
-        what an idle gear loses.
+        T is the torque on the side of the output. The efficiency is 1 / (1 + mu) when driving and 1 - mu when back-driven.
+        With backdriving mu >= 1 the output cannot turn the input (self-locking). A stiffness multiplied by the efficiency
+        would create energy when back-driven. Leaves out the loss of an idle gear.
 
         >>> from strainwave.friction import LoadDependent
         >>> LoadDependent(driving_forward=0.25, backdriving_reverse=0.5).steady([10.0, -10.0], load=4.0)

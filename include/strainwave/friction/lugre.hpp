@@ -18,7 +18,7 @@ struct LuGre {
     static constexpr auto source = "CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000; fading damping: document R";
     static constexpr bool odd = true;
     static constexpr auto doc = R"(
-        Friction of an elastic bristle that bends before it slips: presliding, breakaway, Stribeck fall, viscous rise.
+        LuGre friction of an elastic bristle: presliding, breakaway, Stribeck fall and viscous rise.
 
         .. math:: \dot z = v - \sigma_0 |v| z / G(v), \quad G(v) = F_c + (F_s - F_c) e^{-(v/v_s)^2}, \quad
                   F = \sigma_0 z + \sigma_1(v) \dot z + \sigma_2 v, \quad \sigma_1(v) = \sigma_1 e^{-(\varphi v)^2}
@@ -27,12 +27,12 @@ struct LuGre {
         sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous, phi = damping_fading: the reciprocal of the
         speed v_d at which the bristle's damping has fallen to 1/e, 0 for a constant one.
 
-        Valid for one contact under constant load; leaves out load, position and temperature. At rest it holds elastically and
-        drifts: under a load that wavers below breakaway each wave moves the shaft a little further, without end. Where the
-        shaft must hold, use Coulomb or Stribeck. G must be positive: a bristle without reach at rest would lose all its
-        torque in every reversal, in no time. Dissipates for every motion if sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which
-        for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then also necessary. A set that violates this is
-        accepted, and ``check()`` warns with both sides.
+        Valid for one contact under constant load. Leaves out load, position and temperature. At rest it is elastic and drifts:
+        each wave of a load that varies below breakaway moves the shaft a little further. Use Coulomb or Stribeck if the shaft
+        must not drift. G must be positive: without reach at rest a bristle would lose all its torque at every reversal at
+        once. Dissipates for every motion if sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which for a constant damping is
+        sigma_2 >= sigma_1 (F_s - F_c)/F_c and then also necessary. A set that violates this is accepted, and ``check()`` warns
+        with both sides.
 
         >>> from strainwave.friction import LuGre
         >>> law = LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5,

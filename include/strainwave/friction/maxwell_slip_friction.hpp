@@ -21,21 +21,21 @@ struct MaxwellSlipFriction {
         "AlBenderLampaertSwevers2005, generalized Maxwell-slip model, slip law with a constant attraction";
     static constexpr bool odd = true;
     static constexpr auto doc = R"(
-        Parallel springs that each stick or slip: presliding hysteresis with non-local memory, Stribeck fall, frictional lag.
+        Generalised Maxwell-slip friction: presliding hysteresis with non-local memory, Stribeck fall, frictional lag.
 
         .. math:: F = \sum_i F_i + \sigma_2 v, \quad \text{sticking: } \dot F_i = k_i v, \quad
                   \text{slipping: } \dot F_i = \operatorname{sgn}(v)\, C \left(\alpha_i - |F_i| / s(v)\right), \quad
                   s(v) = F_c + (F_s - F_c) e^{-(v/v_s)^2}
 
         with v the speed of the place it acts on, k_i = stiffness, alpha_i = share over the sum of all shares, F_c = coulomb,
-        F_s = breakaway, v_s = stribeck_speed, C = attraction, sigma_2 = viscous; up to 8 elements, none at all is no dry
-        friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A slipping
-        element follows s(v) with the time constant s/C. A breakaway that is not given equals coulomb; one below counts as coulomb. Where dry friction is
-        scaled (Cyclic, Thermal), s and C scale, stiffness and time constant do not.
+        F_s = breakaway, v_s = stribeck_speed, C = attraction, sigma_2 = viscous; up to 8 elements; without elements there is
+        no dry friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A
+        slipping element follows s(v) with the time constant s/C. breakaway defaults to coulomb; a smaller value counts as
+        coulomb. Cyclic and Thermal scale s and C, but not stiffness and time constant.
 
-        With breakaway = coulomb no element lags, it is Maxwell's slip with the levels alpha_i F_c, and dissipates for every
-        motion. A Stribeck fall makes the law, as published, able to create energy: an element that slips fast, slows down, and
-        goes back a little while it sticks returns up to alpha_i^2 (F_s - F_c)^2 / (2 k_i) more than it took; ``check()`` warns.
+        With breakaway = coulomb no element lags: the law is Maxwell slip with the levels alpha_i F_c, and dissipates for every
+        motion. With a Stribeck fall the law, as published, can create energy. An element that slips fast, slows down, and
+        reverses a little while it sticks returns up to alpha_i^2 (F_s - F_c)^2 / (2 k_i) more than it took; ``check()`` warns.
         Leaves out load, position and temperature.
 
         >>> from strainwave.friction import MaxwellSlipFriction

@@ -18,7 +18,7 @@ struct MixedLubrication {
         "Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; "
         "this curve, and how the load enters, are assumed";
     static constexpr auto doc = R"(
-        Friction of a lubricated bearing, as that of the wave generator: boundary, mixed and hydrodynamic by one number.
+        Friction of a lubricated bearing, from boundary to hydrodynamic lubrication, by the Hersey number.
 
         .. math:: F = p \left[F_c + (F_s - F_c) e^{-h^2}\right] \operatorname{sgn} v + b\, \eta\, v \quad (v \ne 0), \qquad
                   |F| \le p F_s \quad (v = 0), \\
@@ -26,10 +26,10 @@ struct MixedLubrication {
 
         with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
         viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque that its place
-        transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to
-        T_0 and no load. The speed at which the lubricant carries grows as the load grows and as the lubricant thins: h is the
-        number of Hersey. Warm oil lowers the viscous part, and lets dry friction last to higher speeds; ``Thermal`` around
-        ``Stribeck`` leaves these speeds where they are.
+        transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative
+        to T_0 and no load. h is the Hersey number: the speed at which the lubricant carries rises with the load and with the
+        temperature. Warm oil lowers the viscous part and extends dry friction to higher speeds. ``Thermal`` around
+        ``Stribeck`` keeps these speeds.
 
         >>> from strainwave.friction import MixedLubrication
         >>> law = MixedLubrication(coulomb=0.02, breakaway=0.05, stribeck_speed=5.0, viscous=1e-3, viscosity_fall=0.03)
@@ -47,7 +47,7 @@ struct MixedLubrication {
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed at T_0", 0));
         visit(SW_FIELD(m, viscosity_fall, "1/K", "Relative fall beta of the viscosity per kelvin", 0));
         visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "Rise s of the load on the bearing with the torque transmitted", 0));
-        visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 at which the numbers hold", smallest));
+        visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 at which the parameters were measured", smallest));
     }
 
     using State = Stateless<S>;

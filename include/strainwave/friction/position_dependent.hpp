@@ -29,7 +29,7 @@ struct PositionDependent {
     static constexpr auto source = "document P, friction model of the motor side; errata E-P3, E-P4, E-P5, E-P8, E-P9";
     static constexpr bool odd = true;
     static constexpr auto doc = R"(
-        Coulomb friction that varies with the angle, on average and over each turn, set-valued at rest.
+        Coulomb friction that depends on the angle, by a parabola and by harmonics of one turn, set-valued at rest.
 
         .. math:: F = f(q, v) \operatorname{sgn} v + b v \; (v \ne 0), \quad
                   |F| \le \kappa\, [f_{aver}(q) + f_{peri}(q)] \; (v = 0), \quad
@@ -42,14 +42,14 @@ struct PositionDependent {
         f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k; its other numbers
         are those of the example, all SI.
 
-        Valid for q from domain_start to domain_end. A parabola grows without bound: the one of document P has its minimum,
-        0.0491812523669 N.m, at 120.412377685 rad, and is back at its start at twice that angle (E-P8). Beyond the domain,
-        outside says what f_aver does: ``"clamp"`` keeps the value of the nearer end, ``"periodic"`` repeats the domain,
-        ``"refuse"`` is an error. f_peri repeats with every turn anyway.
+        Valid for q from domain_start to domain_end. A parabola has no bound: that of document P has its minimum,
+        0.0491812523669 N.m, at 120.412377685 rad, and its first value again at twice that angle (E-P8). ``outside`` sets
+        f_aver beyond the domain: ``"clamp"`` keeps the value of the nearer end, ``"periodic"`` repeats the domain,
+        ``"refuse"`` is an error. f_peri is periodic in any case.
 
         Document P prints the sliding branch with the wrong sign and for v > 0 only (E-P3); its factor 0.0004 needs the unit
-        s/rad (E-P4), and its v_c is no threshold but the reference speed (E-P5); a constant a_0 / 2 could not be told from s_3
-        and is left out (E-P9).
+        s/rad (E-P4), and its v_c is the reference speed, not a threshold (E-P5). A constant a_0 / 2 is not identifiable beside
+        s_3 and is left out (E-P9).
 
         >>> from strainwave.friction import PositionDependent
         >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, static_ratio=1.0388,
@@ -67,10 +67,10 @@ struct PositionDependent {
         visit(SW_FIELD(m, static_ratio, "1", "Static over kinetic friction kappa", 1));
         visit(SW_FIELD(m, speed_factor, "s/rad", "Relative rise of the average friction with speed", 0));
         visit(SW_FIELD(m, reference_speed, "rad/s", "Speed v_c at which the average friction was measured", 0));
-        visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed, besides", 0));
+        visit(SW_FIELD(m, viscous, "N.m.s/rad", "Viscous torque per speed", 0));
         visit(SW_REQUIRED(m, domain_start, "rad", "Least angle at which the average friction was measured"));
         visit(SW_REQUIRED(m, domain_end, "rad", "Greatest angle at which the average friction was measured"));
-        visit(SW_FIELD(m, outside, "1", "What the average friction does beyond its domain"));
+        visit(SW_FIELD(m, outside, "1", "Average friction beyond its domain"));
     }
 
     constexpr const char* problem() const {

@@ -20,13 +20,13 @@ struct Stribeck {
     static constexpr auto name = "stribeck";
     static constexpr auto source = "Stribeck1902; ArmstrongHelouvry1994, eq. (3) with exponent 2";
     static constexpr auto doc = R"(
-        Friction that falls from its static to its kinetic level as sliding sets in, set-valued at rest.
+        Stribeck friction: the level falls from static to kinetic with speed; viscous, and set-valued at rest.
 
         .. math:: F = \left[F_c + (F_s - F_c) e^{-(v/v_s)^2}\right] \operatorname{sgn} v + b v \quad (v \ne 0), \qquad
                   |F| \le F_s \quad (v = 0)
 
         with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous. Leaves out
-        presliding: the contact is rigid until it breaks away (see LuGre).
+        presliding: the contact is rigid before breakaway (see LuGre).
 
         >>> from strainwave.friction import Stribeck
         >>> Stribeck(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, viscous=4e-4).steady(1.0)

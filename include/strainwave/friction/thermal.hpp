@@ -16,14 +16,14 @@ struct Thermal {
     static constexpr auto name = "thermal";
     static constexpr auto source = "exponential fall of lubricant viscosity with temperature (Reynolds1886); rates: the user's";
     static constexpr auto doc = R"(
-        Friction that falls as the gear warms up.
+        Friction that falls exponentially with the temperature.
 
         .. math:: F_{dry} \propto e^{-\kappa_d (T - T_0)}, \qquad F_{viscous} \propto e^{-\kappa_v (T - T_0)}
 
-        with T the temperature, T_0 = reference_temperature, kappa_d = dry_fall, kappa_v = viscous_fall, law the friction as it
-        is at T_0: its dry levels (Coulomb, breakaway) and its viscous torque are multiplied. The rates are not known from a
-        catalogue; identify them. For the viscous part 0.02 to 0.03 per kelvin is an order of magnitude (assumed). Valid over
-        some tens of kelvin; leaves out that friction heats the gear: the temperature is given.
+        with T the temperature, T_0 = reference_temperature, kappa_d = dry_fall, kappa_v = viscous_fall, law the friction at
+        T_0. The factors multiply its dry levels (Coulomb, breakaway) and its viscous torque. No catalogue gives the rates;
+        identify them. For the viscous part 0.02 to 0.03 per kelvin is an order of magnitude (assumed). Valid over some tens of
+        kelvin. Leaves out the heat of friction: the temperature is an input.
 
         >>> from strainwave.friction import Coulomb, Thermal
         >>> law = Thermal(law=Coulomb(coulomb=0.0, viscous=0.01), viscous_fall=0.025, reference_temperature=293.15)
@@ -32,7 +32,7 @@ struct Thermal {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, law, "The friction at the reference temperature"));
+        visit(SW_PART(m, law, "Friction law at the reference temperature"));
         visit(SW_FIELD(m, dry_fall, "1/K", "Relative fall kappa_d of dry friction per kelvin"));
         visit(SW_FIELD(m, viscous_fall, "1/K", "Relative fall kappa_v of viscous friction per kelvin"));
         visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 at which the law was measured", smallest));

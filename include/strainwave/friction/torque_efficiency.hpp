@@ -15,20 +15,19 @@ struct TorqueEfficiency {
         "public thread google-deepmind/mujoco#3528, comment of 2026-09-18 (there tau is the electrical torque of the motor)";
     static constexpr bool odd = true;
     static constexpr auto doc = R"(
-        Loss proportional to the torque transmitted, which turns round with the motion over a presliding angle.
+        Friction proportional to the torque transmitted, which reverses over a presliding angle.
 
         .. math:: \dot z = (v - |v| z) / h, \qquad F = \mu_{avg} |T| z + \mu_{dif} T z^2 + b v
 
-        with v the speed of the place it acts on, T the torque it transmits (load), z the engagement, +1 or -1 in steady motion,
-        mu_avg = average_loss, mu_dif = difference_loss, h = presliding, b = viscous. In steady motion the loss per torque
-        transmitted is mu_avg + mu_dif when driving (T v > 0) and mu_avg - mu_dif when back-driven: LoadDependent with equal
-        ratios in both senses. mu_avg must not lie below the size of mu_dif, or steady motion would create energy.
+        with v the speed of the place it acts on, T the torque it transmits (load), z the engagement, +1 or -1 in steady
+        motion, mu_avg = average_loss, mu_dif = difference_loss, h = presliding, b = viscous. In steady motion the loss per
+        torque transmitted is mu_avg + mu_dif when driving (T v > 0) and mu_avg - mu_dif when back-driven: LoadDependent with
+        equal ratios in both senses. mu_avg must be at least the size of mu_dif: otherwise steady motion creates energy.
 
-        Under constant load it dissipates for every motion, with the stored energy mu_avg T h z^2 / 2 (size of T). Where the
-        load varies, this energy rises and falls with it: a change of load can put in as much, and the motion after it take it
-        out. It does not stick at rest: it yields by about h. Leaves out what an idle gear loses besides b v. The thread's tau
-        is the torque of the motor; T is what arrives on the output's side, so a ratio m found there when driving is
-        m / (1 - m) here.
+        Under constant load it dissipates for every motion, with the stored energy mu_avg T h z^2 / 2 (size of T). If the load
+        varies, this energy varies with it: a change of load can add energy that the next motion takes out. It does not stick
+        at rest: it yields by about h. Leaves out losses of an idle gear other than b v. The thread's tau is the torque of the
+        motor; T is the torque on the side of the output, so a ratio m of the thread when driving is m / (1 - m) here.
 
         >>> from strainwave.friction import TorqueEfficiency
         >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, presliding=0.001).steady([10.0, -10.0], load=4.0)
@@ -37,7 +36,7 @@ struct TorqueEfficiency {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, average_loss, "1", "Loss per torque transmitted, mean of driving and back-driving", 0));
-        visit(SW_FIELD(m, difference_loss, "1", "Half of what driving loses more than back-driving, per torque transmitted"));
+        visit(SW_FIELD(m, difference_loss, "1", "Half the difference of the losses when driving and when back-driven, per torque transmitted"));
         visit(SW_REQUIRED(m, presliding, "rad", "Angle h over which the loss turns round after a reversal", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
@@ -51,7 +50,7 @@ struct TorqueEfficiency {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, engagement, "1", "Engagement z: the sense of motion, as far as friction has followed it"));
+            visit(SW_FIELD(m, engagement, "1", "Engagement z: the sense of motion, lagging by the presliding angle"));
         }
     };
 

@@ -10,11 +10,11 @@ struct Viscous {
     static constexpr auto name = "viscous";
     static constexpr auto source = "Newton's law of viscosity; document P, b_m and b_l of Table 3";
     static constexpr auto doc = R"(
-        Friction proportional to speed.
+        Viscous friction, proportional to the speed.
 
         .. math:: F = b v
 
-        with v the speed of the side it acts on, b = viscous. Leaves out everything that friction does near rest.
+        with v the speed of the side it acts on, b = viscous. Leaves out all effects of friction near rest.
 
         >>> from strainwave.friction import Viscous
         >>> Viscous(viscous=0.5).steady(2.0)

@@ -202,16 +202,16 @@ struct BoucWen {
     static constexpr auto name = "bouc_wen";
     static constexpr auto source = "Bouc1967; Wen1976; passivity: ErlicherPoint2004; IkhouaneRodellar2007";
     static constexpr auto doc = R"(
-        Bouc and Wen's hysteresis: a torque that bends smoothly towards its saturation.
+        Bouc-Wen hysteresis: a torque that bends smoothly towards its saturation.
 
         .. math:: dT = A\, d\delta - \beta\, |d\delta|\, |T|^{n-1} T - \gamma\, d\delta\, |T|^n, \qquad
                   \beta = \sigma A / T_s^n, \quad \gamma = (1 - \sigma) A / T_s^n
 
-        with delta the twist, A = stiffness, T_s = saturation, n = sharpness, sigma = shape; that is
-        T_s = (A / (beta + gamma))^(1/n) and sigma = beta / (beta + gamma), in units that do not depend on n. Exact over any
-        monotone step: solved by its integrals. The elastic energy is T^2 / (2 A); what is lost grows along every path, because
-        gamma lies in [0, beta]. From saturation it unloads with the slope 2 sigma A at first: shape 1/2 unloads straight, shape
-        1 twice as steeply.
+        with delta the twist, A = stiffness, T_s = saturation, n = sharpness, sigma = shape; that is T_s = (A / (beta +
+        gamma))^(1/n) and sigma = beta / (beta + gamma), in units that do not depend on n. Exact over any monotone step: solved
+        by its integrals. The elastic energy is T^2 / (2 A); the energy lost grows along every path, because gamma lies in [0,
+        beta]. From saturation it unloads with the slope 2 sigma A at first: shape 1/2 unloads straight, shape 1 twice as
+        steeply.
 
         Sharpness 1 with shape 1 is FadingMemory, a large sharpness one element of MaxwellSlip. Rate-independent. Minor loops do
         not close. Leaves out -beta < gamma < 0, which is passive as well.
@@ -229,7 +229,7 @@ struct BoucWen {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, stiffness, "N.m/rad", "Stiffness A at zero torque", smallest));
         visit(SW_REQUIRED(m, saturation, "N.m", "Torque T_s approached by a long motion", smallest));
-        visit(SW_FIELD(m, sharpness, "1", "Exponent n: how sharply the torque bends towards its saturation", 1));
+        visit(SW_FIELD(m, sharpness, "1", "Exponent n: sharpness of the bend towards the saturation", 1));
         visit(SW_FIELD(m, shape, "1", "Share sigma = beta / (beta + gamma): 1/2 unloads straight, 1 most curved", 0.5, 1));
     }
 

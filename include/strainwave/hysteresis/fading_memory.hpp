@@ -53,17 +53,17 @@ struct FadingMemory {
     static constexpr auto name = "fading_memory";
     static constexpr auto source = "document R, section 4a; Dahl1968 (order 1); erratum E-R10";
     static constexpr auto doc = R"(
-        Hysteresis that forgets exponentially with the twist travelled.
+        Hysteresis with a memory that fades exponentially with the twist travelled.
 
         .. math:: T = \sum_j T_j, \quad dT_j = A_j\, d\delta - \alpha_j T_j |d\delta|
 
-        with delta the twist, A_j = stiffness, alpha_j = forgetting, up to 8 parallel branches; none at all is no hysteresis.
-        The branches sum up to the memory kernel Phi(u) = sum A_j exp(-alpha_j u) of the twist travelled u. Exact over any
-        monotone step: with s the sense of motion, T_j approaches s A_j / alpha_j as exp(-alpha_j |Delta delta|). The elastic
-        energy is sum T_j^2 / (2 A_j); alpha_j T_j^2 / A_j is lost per twist travelled, in either sense.
+        with delta the twist, A_j = stiffness, alpha_j = forgetting, up to 8 parallel branches; without branches there is no
+        hysteresis. The branches sum up to the memory kernel Phi(u) = sum A_j exp(-alpha_j u) of the twist travelled u. Exact
+        over any monotone step: with s the sense of motion, T_j approaches s A_j / alpha_j as exp(-alpha_j |Delta delta|). The
+        elastic energy is sum T_j^2 / (2 A_j); alpha_j T_j^2 / A_j is lost per twist travelled, in either sense.
 
         Rate-independent: document R calls it rate-dependent (E-R10). One branch is Dahl's model of order 1, and BoucWen with
-        sharpness 1 and shape 1. Its minor loops do not close, unlike those of a gear: prefer MaxwellSlip where small reversals
+        sharpness 1 and shape 1. Its minor loops do not close, unlike those of a gear: prefer MaxwellSlip if small reversals
         matter.
 
         >>> from strainwave.hysteresis import FadingMemory

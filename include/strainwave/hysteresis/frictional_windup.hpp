@@ -13,24 +13,24 @@ struct FrictionalWindup {
     static constexpr auto name = "frictional_windup";
     static constexpr auto source = "document R, section 4c, with T_fr; errata E-R13, E-R14; play: Visintin1994";
     static constexpr auto doc = R"(
-        Flexspline and wave generator in series, with dry friction that holds the wind-up of the wave generator.
+        Spring of flexspline and wave generator in series, with dry friction at the wind-up of the wave generator.
 
         .. math:: \delta = \delta_f(T) + x(T_w), \qquad |T - T_w| \le F, \qquad T = T_w + F \; (dx > 0), \quad
                   T = T_w - F \; (dx < 0)
 
-        with delta the twist, delta_f and x the shares that flexspline and wave generator have in it, each a spring of
-        MultiCompliance = springs, T the torque, T_w that of the wave generator's spring, F = friction, all at the output. While
-        the wave generator sticks, the gear is as stiff as its flexspline; once it slips, as both in series. A cycle loses the
-        integral of F |dx|, which is 4 F x(T_m - F) between +-T_m; without torque the twist x(F) is left. Exact over any
-        monotone step; minor loops close. It begins without twist and torque.
+        with delta the twist, delta_f and x the shares of flexspline and wave generator in it, each a spring of MultiCompliance
+        = springs, T the torque, T_w that of the wave generator's spring, F = friction, all at the output. While the wave
+        generator sticks, the stiffness is that of the flexspline. While it slips, the stiffness is that of both in series. A
+        cycle loses the integral of F |dx|, which is 4 F x(T_m - F) between +-T_m; the twist x(F) remains without torque. Exact
+        over any monotone step; minor loops close. It begins without twist and torque.
 
-        Document R has the friction at the input's scale, or divides it by N (E-R13), and lets it follow the speed of the input:
-        then a torsion test, whose input is held, would show no hysteresis (E-R14).
+        Document R has the friction at the input's scale, or divides it by N (E-R13), and makes it a function of the input
+        speed. A torsion test, whose input is held, would then show no hysteresis (E-R14).
 
-        It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
-        negligible stiffness if nothing is). A gear refuses springs whose reduction is not its ratio. Where both springs harden,
-        there is no torque beyond a twist (E-R16); the law is valid as far as MultiCompliance is, and keeps its greatest torque
-        from there on.
+        It is a complete spring: the ``stiffness`` of a gear acts in parallel to it (use Linear with a negligible stiffness if
+        there is no other spring). A gear refuses springs whose reduction is not its ratio. If both springs harden, there is no
+        torque beyond a certain twist (E-R16). The law is valid within the limits of MultiCompliance, and keeps its greatest
+        torque beyond them.
 
         >>> from strainwave.hysteresis import FrictionalWindup
         >>> from strainwave.stiffness import MultiCompliance
@@ -61,7 +61,7 @@ struct FrictionalWindup {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, twist, "rad", "Twist since the springs were virgin"));
+            visit(SW_FIELD(m, twist, "rad", "Twist, from the virgin state"));
             visit(SW_FIELD(m, torque, "N.m", "Torque T"));
             visit(SW_FIELD(m, windup_torque, "N.m", "Torque T_w of the wave generator's spring, at the output"));
         }

@@ -15,15 +15,15 @@ struct MaxwellSlip {
     static constexpr auto name = "maxwell_slip";
     static constexpr auto source = "Iwan1966; LampaertAlBenderSwevers2003, eq. (9); document R, section 4b; erratum E-R11";
     static constexpr auto doc = R"(
-        Parallel springs that each slip at their own torque: hysteresis with non-local memory.
+        Maxwell-slip hysteresis of parallel springs that slip at their own torque: non-local memory.
 
         .. math:: T = \sum_i T_i, \quad T_i \leftarrow \operatorname{clip}(T_i + k_i \Delta\delta, \pm F_i)
 
-        with delta the twist, k_i = stiffness, F_i = breakaway, up to 16 elements; none at all is no hysteresis. The clip is
-        exact for any step over which the twist is monotone, whatever its size. Rate-independent; obeys Masing's rules,
-        wiping-out and congruency; symmetric.
+        with delta the twist, k_i = stiffness, F_i = breakaway, up to 16 elements; without elements there is no hysteresis. The
+        clip is exact for any monotone step of the twist, whatever its size. Rate-independent; obeys Masing's rules, wiping-out
+        and congruency; symmetric.
 
-        The rule printed in review articles, a capture position frozen where the element last stuck, lets the torque jump at a
+        The rule printed in review articles, with a capture position frozen at the last sticking, makes the torque jump at a
         reversal (E-R11).
 
         >>> from strainwave.hysteresis import MaxwellSlip

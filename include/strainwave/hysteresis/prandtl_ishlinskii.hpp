@@ -14,16 +14,16 @@ struct PrandtlIshlinskii {
     static constexpr auto name = "prandtl_ishlinskii";
     static constexpr auto source = "KrejciKuhnen2001 (plays, the inverse of stops)";
     static constexpr auto doc = R"(
-        Twist over torque as a sum of plays: the compliance of a spring with slip, and the exact inverse of Maxwell-slip.
+        Compliance of a spring with slip, as a sum of plays: the exact inverse of Maxwell-slip.
 
         .. math:: \delta = \sum_j w_j p_j, \quad p_j \leftarrow \operatorname{clip}(p_j, T - r_j, T + r_j)
 
         with T the torque, delta the twist, r_j = threshold, w_j = weight, up to 17 plays; a threshold of 0 is a plain spring.
-        The clip is exact for any step over which the torque is monotone, whatever its size. Rate-independent; obeys Masing's
-        rules, wiping-out and congruency; symmetric.
+        The clip is exact for any monotone step of the torque, whatever its size. Rate-independent; obeys Masing's rules,
+        wiping-out and congruency; symmetric.
 
-        Maxwell-slip in parallel with a spring follows its virgin curve in straight pieces; this law follows the same pieces with
-        the axes exchanged. The last slope must be positive: slipping elements without a spring have no inverse.
+        Maxwell-slip in parallel with a spring has a virgin curve of straight pieces; this law has the same pieces with the
+        axes exchanged. The last slope must be positive: slipping elements without a spring have no inverse.
 
         >>> from strainwave.hysteresis import MaxwellSlip
         >>> gear = MaxwellSlip(stiffness=[1000, 600, 300], breakaway=[0.5, 0.9, 0.9])  # with a spring of 500: 3 and -2.2 N.m
@@ -32,7 +32,7 @@ struct PrandtlIshlinskii {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, threshold, "N.m", "Torque r_j by which each play follows late", 0));
+        visit(SW_FIELD(m, threshold, "N.m", "Torque r_j by which each play lags", 0));
         visit(SW_FIELD(m, weight, "rad/(N.m)", "Compliance w_j of each play", 0));
     }
 
@@ -47,7 +47,7 @@ struct PrandtlIshlinskii {
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, torque, "N.m", "Torque T that acts"));
-            visit(SW_FIELD(m, play, "N.m", "Torque p_j that each play follows with"));
+            visit(SW_FIELD(m, play, "N.m", "Torque p_j at the output of each play"));
         }
     };
 

@@ -12,25 +12,25 @@ struct Preisach {
     static constexpr auto name = "preisach";
     static constexpr auto source = "Preisach1935; Everett1955; Mayergoyz1986 (what wiping-out and congruency imply)";
     static constexpr auto doc = R"(
-        Hysteresis by turning points: any law, symmetric or not, whose minor loops close and are equal between equal twists.
+        Preisach hysteresis, symmetric or not: minor loops close and are equal between equal twists.
 
         .. math:: \Delta T = \pm 2 E(a, b), \quad \mu(a, b) = \frac{\partial^2 E}{\partial a \, \partial b} \ge 0
 
-        with E the Everett function of the density mu, and b <= a the ends of the branch: the last turning point that is
-        remembered, and the twist. Passing a turning point wipes it out, together with its partner. Exact for any step over
-        which the twist is monotone. Rate-independent; obeys wiping-out and congruency, Masing's rules where E depends on a - b
-        alone. Virgin is demagnetised: as after ever smaller oscillation around the twist it starts from.
+        with E the Everett function of the density mu, and b <= a the ends of the branch: the last turning point in memory, and
+        the twist. A twist that passes a turning point erases it, together with its partner. Exact for any monotone step of the
+        twist. Rate-independent; obeys wiping-out and congruency, and Masing's rules if E depends on a - b alone. The virgin
+        state is demagnetised, as after an oscillation of decreasing amplitude around the first twist.
 
-        mu is the density of hysterons over the ends of their windows [b, a]: each pushes forward once its window is entered from
-        below, back once it is entered from above; what else E holds is a spring. A loop loses twice the width of every window
-        within it. Preisach's own relays switch late, on leaving their window: right for a magnet, whose field is the input. As
-        torque of a twist they would give out with every loop what these take in; this law is an elastic curve less Preisach's
-        operator of the same density.
+        mu is the density of hysterons over the ends of their windows [b, a]. Each pushes forward from the moment its window is
+        entered from below, back from the moment it is entered from above; the rest of E is a spring. A loop loses twice the
+        width of every window within it. Preisach's own relays switch when they leave their window, which is right for a
+        magnet, whose field is the input. As torque over twist they would create energy in every loop: this law is an elastic
+        curve less Preisach's operator of the same density.
 
-        Sixteen maxima and minima are kept. A twist that turns back more often, ever more closely, moves along the innermost
-        branch without loss.
+        Sixteen maxima and minima are stored. More reversals within them move along the innermost branch without loss.
 
-        Uniform density, from negative saturation; the elastic line, here 2 N.m/rad, less the torque is what Preisach's relays give:
+        Uniform density, from negative saturation. The torque of Preisach's relays is the elastic line, here 2 N.m/rad, less
+        the torque of the law:
 
         >>> import numpy as np
         >>> from strainwave.hysteresis import PowerDensity, Preisach
@@ -55,9 +55,9 @@ struct Preisach {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, maximum, "rad", "Maxima remembered, outermost first, the twist in place of those not there"));
-            visit(SW_FIELD(m, minimum, "rad", "Minima remembered, each after the maximum of its place"));
-            visit(SW_FIELD(m, twist, "rad", "Twist, from where the gear was virgin"));
+            visit(SW_FIELD(m, maximum, "rad", "Maxima in memory, outermost first; unused places contain the twist"));
+            visit(SW_FIELD(m, minimum, "rad", "Minima in memory, each after the maximum of its place"));
+            visit(SW_FIELD(m, twist, "rad", "Twist, from the virgin state"));
         }
 
         constexpr const char* problem() const {

@@ -24,10 +24,10 @@ struct PowerDensity {
         .. math:: E(a, b) = T_s [1 - (1 - u)^p], \quad u = \frac{a - b}{2 L}, \quad
                   \mu = \frac{p (p - 1) T_s}{4 L^2} (1 - u)^{p - 2}
 
-        with L = limit, T_s = saturation, p = exponent, a and b cut at +-L; the initial curve is E(x, -x). Exponent 1 is a spring
-        that gives way at L, without loss; 2 is uniform density, whose branches are the parabolas of Rayleigh's law; the higher,
-        the stiffer after a reversal, p T_s / L, and the sooner it slips; with L in proportion to p it tends to exponential
-        branches. Odd, and obeys Masing's rules, which Preisach's law in general does not.
+        with L = limit, T_s = saturation, p = exponent, a and b cut at +-L; the initial curve is E(x, -x). Exponent 1 is a
+        spring that saturates at L, without loss. Exponent 2 is uniform density, whose branches are the parabolas of Rayleigh's
+        law. A higher exponent is stiffer after a reversal, p T_s / L, and slips sooner; with L in proportion to p it tends to
+        exponential branches. Odd, and obeys Masing's rules, which Preisach's law in general does not.
 
         >>> from strainwave.hysteresis import PowerDensity, Preisach
         >>> gear = Preisach(density=PowerDensity(limit=1.0, saturation=1.0, exponent=2.0))
@@ -114,18 +114,18 @@ struct GridDensity {
     static constexpr auto name = "grid_density";
     static constexpr auto source = "Mayergoyz1986; Everett integrals of uniform cells: own derivation";
     static constexpr auto doc = R"(
-        Preisach density in cells, for measured loops, symmetric or not.
+        Preisach density in uniform cells, for measured loops, symmetric or not.
 
         .. math:: E(a, b) = \sum_{i \ge j} w_{ij} (g_i + g_j - g_i g_j)
 
         with w_ij = weight, and g_i the share of row i that lies between the turning points b and a. [-L, L], L = limit, is cut
-        into n equal rows. Cell (i, j) holds the hysterons whose window ends in row i and begins in row j, evenly spread: each
-        pushes on from entering its window, forward from below, back from above. Weights are listed from the most negative
-        twist on, (0,0), (1,0), (1,1), (2,0), ...: n (n + 1) / 2 of them, n up to 10; none at all is no hysteresis. The torque
-        is linear in them, the change from one saturation to the other is twice their sum.
+        into n equal rows. Cell (i, j) contains the hysterons whose window ends in row i and begins in row j, uniformly
+        distributed. Each pushes from the moment its window is entered, forward from below, back from above. Weights begin at
+        the most negative twist: (0,0), (1,0), (1,1), (2,0), ...: n (n + 1) / 2 of them, n up to 10; without weights there is
+        no hysteresis. The torque is linear in the weights. The change from one saturation to the other is twice their sum.
 
-        Zero torque is that of the virgin gear, as with all hysteresis: where the weights are not symmetric, w_ij and
-        w_(n-1-j)(n-1-i), the two saturations differ.
+        The torque of the virgin gear is zero, as with all hysteresis. If the weights w_ij and w_(n-1-j)(n-1-i) are not equal,
+        the two saturations differ.
 
         >>> from strainwave.hysteresis import GridDensity, Preisach
         >>> gear = Preisach(density=GridDensity(limit=1.0, weight=[0.0, 0.5, 1.0]))

@@ -17,23 +17,23 @@ struct Regimes {
     static constexpr auto source =
         "document T, Table 2, row 0 degrees (at the input); erratum E-T4; generalised play: Visintin1994";
     static constexpr auto doc = R"(
-        A spring with memory that has a stiffness for each of the four regimes of a torsion test.
+        Spring with memory: one stiffness for each of the four regimes of a torsion test.
 
         .. math:: \delta = \varepsilon + s, \quad T = K \varepsilon, \quad -w/2 \le s \le w/2, \qquad
                   T = T_0 + H_+ (s + w/2) \; (ds > 0), \quad T = -T_0 - H_- (w/2 - s) \; (ds < 0)
 
         with delta the twist, epsilon its elastic and s its plastic share, K = positive_unloading for T > 0 and
         negative_unloading for T < 0, T_0 = onset, w = lost_motion, H = K K_l / (K - K_l), so that the slope is K_l =
-        positive_loading or negative_loading while s moves. At its stops s = +-w/2 only the elastic share moves. The closed loop
-        is w wide at zero torque, its widest; all that s takes up is lost. Exact over any monotone step; minor loops close, no
-        cycle creeps. Virgin is s = 0.
+        positive_loading or negative_loading while s moves. At its stops s = +-w/2 only the elastic share moves. The closed
+        loop has its greatest width w at zero torque; the work on s is lost. Exact over any monotone step; minor loops close,
+        no cycle creeps. The virgin state is s = 0.
 
-        The table's stiffnesses read as secants from 0 to +-0.36 N.m do not close (E-T4); they do as slopes between the stops, of
-        a loop 50.5 degrees wide. They hold at the input, where they were measured, and are
-        those of the example. In a gear the law acts on the output: behind a ratio N, torques grow by N, twists shrink by N.
+        The loop does not close if the stiffnesses of the table are secants from 0 to +-0.36 N.m (E-T4). It closes if they are
+        slopes between the stops, of a loop 50.5 degrees wide. They were measured at the input, and are those of the example.
+        In a gear the law acts on the output: with a ratio N, multiply torques by N and divide twists by N.
 
-        It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
-        negligible stiffness if nothing is).
+        It is a complete spring: the ``stiffness`` of a gear acts in parallel to it (use Linear with a negligible stiffness if
+        there is no other spring).
 
         >>> from strainwave.hysteresis import Regimes
         >>> law = Regimes(positive_unloading=4.51, negative_loading=0.31, negative_unloading=4.85, positive_loading=0.30,
@@ -70,7 +70,7 @@ struct Regimes {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, twist, "rad", "Twist since the spring was virgin"));
+            visit(SW_FIELD(m, twist, "rad", "Twist, from the virgin state"));
             visit(SW_FIELD(m, plastic, "rad", "Plastic share s of the twist"));
         }
     };

@@ -19,8 +19,8 @@ struct Fourier {
 
         .. math:: e(\theta) = \sum_h A_h \sin(B_h \theta + \varphi_h)
 
-        with theta the input angle, A_h = amplitude at the output, B_h = order, phi_h = phase; up to 16 harmonics, none at all is
-        a perfect gear. Orders need not be whole: 2 z_c / z_f occurs. Independent of load and speed.
+        with theta the input angle, A_h = amplitude at the output, B_h = order, phi_h = phase; up to 16 harmonics; without
+        harmonics there is no error. Orders need not be whole numbers: 2 z_c / z_f occurs. Independent of load and speed.
 
         >>> from strainwave.kinematic_error import Fourier
         >>> Fourier(order=[2], amplitude=[3e-4], phase=[0.0]).slope(0.0)

@@ -63,7 +63,7 @@ struct Misalignment {
         "document A, section Kinematic error, worked out: the document prints no equation; erratum E-A4; `combine` and the "
         "default values (teeth of module 0.25 mm, 200 and 202) are assumed";
     static constexpr auto doc = R"(
-        Kinematic error of a wave generator that sits eccentric and tilted in the circular spline.
+        Kinematic error of a wave generator that is eccentric and tilted in the circular spline.
 
         .. math:: e(\theta) = -\frac{\tan\alpha_t}{r_g} \operatorname{combine}(\delta_A, \delta_B), \qquad
                   \delta_A = \rho(\theta) - a, \quad \delta_B = \rho(\theta + \pi) - a
@@ -72,34 +72,34 @@ struct Misalignment {
                   u = (\cos\psi, \sin\psi)
 
         with theta the input angle, a = major_radius, b = minor_radius, alpha_t = pressure_angle, r_g = pitch_radius. The wave
-        generator is an elliptic cylinder with half axes a, b. The plane normal to the input shaft at h = offset from the point
-        about which things tilt cuts it in the ellipse of centre c and matrix Q, both turning with theta; rho is the ellipse's
-        polar radius about the axis of the circular spline, delta_A and delta_B are the displacements of the two lobes. The
-        input shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction
-        and leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
+        generator is an elliptic cylinder with half axes a, b. The plane normal to the input shaft at h = offset from the
+        centre of tilt cuts it in the ellipse of centre c and matrix Q, both turning with theta. rho is the polar radius of the
+        ellipse about the axis of the circular spline; delta_A and delta_B are the displacements of the two lobes. The input
+        shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction and
+        leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
         stands on the shaft with e_2 = generator_eccentricity, alpha_1 = generator_direction, alpha_2 = generator_tilt_x,
         alpha_3 = generator_tilt_y, all turning with it. ``combine`` is ``single`` (delta_A: one tooth pair carries), ``mean``
         (two equally stiff lobes) or ``max`` (the lobe further out carries, and the slope jumps where the lobes change).
 
-        What harmonics can tell: with m = ``eccentricity``, close to (e_1 cos beta_1 + h beta_2, e_1 sin beta_1 + h beta_3), and
-        c = (e_2 cos alpha_1 + h alpha_2, e_2 sin alpha_1 + h alpha_3), the displacement that varies is, to the order that
-        ``leading`` keeps,
+        Information in the harmonics: with m = ``eccentricity``, close to (e_1 cos beta_1 + h beta_2, e_1 sin beta_1 + h
+        beta_3), and c = (e_2 cos alpha_1 + h alpha_2, e_2 sin alpha_1 + h alpha_3), the displacement that varies is, to the
+        order that ``leading`` keeps,
 
         .. math:: \text{single: } m \cdot u(\theta), \qquad \text{max: } |c_x + m \cdot u(\theta)|, \qquad
                   \text{mean: } \frac{a c_y}{b^2} (m_x \sin\theta - m_y \cos\theta) + \frac{a}{4}
                   \operatorname{Re}\left[\left(\frac{m^2}{b^2} - \beta^2\right) e^{-2 j \theta}\right]
 
-        with m and beta = beta_2 + j beta_3 in the last bracket read as complex numbers. Of a single lobe only the vector m is
-        identifiable: e_1 is not told from a tilt times h, and a tilt with h = 0 acts in second order only. The misalignment
-        of the generator alone (m = 0, beta = 0) gives a constant and no harmonic at all. Beside that of the housing it acts in
-        products with m or beta, of second order by c_y and of third by its tilts; c_x reaches the harmonics in first order by
-        ``max`` alone, which compares it with m: odd orders appear, and once c_x outgrows m the lobes change no more and what
-        remains is that of ``single``.
+        with m and beta = beta_2 + j beta_3 in the last bracket read as complex numbers. With a single lobe only the vector m
+        is identifiable: e_1 and a tilt times h have the same effect, and a tilt with h = 0 acts in second order only.
+        Misalignment of the generator alone (m = 0, beta = 0) gives a constant and no harmonic. Together with misalignment of
+        the housing it acts in products with m or beta, of second order by c_y and of third by its tilts. c_x acts on the
+        harmonics in first order with ``max`` alone, which compares it with m: odd orders appear. If c_x exceeds m the lobes no
+        longer change, and the error is that of ``single``.
 
         Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. In eq. (2) document A takes e r_g
-        for the radial displacement; but the displacement acts through the flank, with the factor tan(alpha_t) / r_g, and
-        against the output (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
-        In a gear of stages, pitch radius and pressure angle must be those of its structure.
+        for the radial displacement. The displacement acts through the flank, with the factor tan(alpha_t) / r_g, and against
+        the output (E-A4). Document A also leaves out h, without which no tilt acts in first order, and the combination of the
+        two lobes. In a gear of stages, pitch radius and pressure angle must be those of its structure.
 
         >>> from strainwave.kinematic_error import Misalignment
         >>> law = Misalignment(major_radius=25.25e-3, minor_radius=24.75e-3, pitch_radius=25e-3, housing_eccentricity=20e-6,
@@ -122,7 +122,7 @@ struct Misalignment {
         visit(SW_FIELD(m, generator_direction, "rad", "Direction alpha_1 of e_2 from the major axis, turning with the shaft"));
         visit(SW_FIELD(m, generator_tilt_x, "rad", "Tilt alpha_2 of the wave generator towards its major axis", -0.5, 0.5));
         visit(SW_FIELD(m, generator_tilt_y, "rad", "Tilt alpha_3 of the wave generator towards its minor axis", -0.5, 0.5));
-        visit(SW_FIELD(m, combine, "1", "How the two lobes decide on the output"));
+        visit(SW_FIELD(m, combine, "1", "Combination of the displacements of the two lobes"));
     }
 
     constexpr Contradiction<S> problem() const {

@@ -16,17 +16,17 @@ struct Scaled {
         "document R, section 1b, which scales its random part so (E-R4): here the deterministic error, with a reaction that keeps "
         "the energy";
     static constexpr auto doc = R"(
-        A kinematic error that is smaller under load, and where the wave generator is inserted deeper.
+        Kinematic error that decreases with load and with the insertion depth of the wave generator.
 
         .. math:: e(\theta, T) = e_0(\theta)\, \frac{e^{-\kappa_d d}}{1 + \kappa_T |T|}
 
         with theta the input angle, e_0 the error of ``law``, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
         depth_sensitivity, and T the torque that the ``stiffness`` of the gear has at the twist delta. The twist solves delta +
-        e(theta, T(delta)) = theta_in / i - theta_out. Both shafts feel the torque through how the twist follows their angles,
-        so that the change of the error under load neither takes energy nor gives any. No catalogue gives the sensitivities:
-        measure them, or assume them. The product of load_sensitivity, error and stiffness must stay below 0.8, so that one
-        twist belongs to each pair of angles: a run that exceeds it is refused. ``error`` and ``slope`` are those without load,
-        at the insertion depth.
+        e(theta, T(delta)) = theta_in / i - theta_out. The torque acts on both shafts by the derivatives of the twist with
+        respect to their angles, so that the change of the error under load conserves energy. No catalogue gives the
+        sensitivities: measure them, or assume them. The product of load_sensitivity, error and stiffness must stay below 0.8,
+        so that each pair of angles has one twist: a run that exceeds it is refused. ``error`` and ``slope`` are those without
+        load, at the insertion depth.
 
         >>> from strainwave.kinematic_error import Fourier, Scaled
         >>> law = Scaled(law=Fourier(order=[2], amplitude=[3e-4], phase=[0.0]), load_sensitivity=0.01)
@@ -36,9 +36,9 @@ struct Scaled {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, law, "The error without load, at insertion depth 0"));
-        visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "How fast the error falls with the torque transmitted", 0));
+        visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "Relative fall kappa_T of the error with the torque transmitted", 0));
         visit(SW_FIELD(m, insertion_depth, "m", "Depth d to which the wave generator is inserted into the flexspline", 0));
-        visit(SW_FIELD(m, depth_sensitivity, "1/m", "How fast the error falls with the insertion depth", 0));
+        visit(SW_FIELD(m, depth_sensitivity, "1/m", "Relative fall kappa_d of the error with the insertion depth", 0));
     }
 
     template <class Inner>

@@ -22,24 +22,24 @@ struct Stochastic {
         "document R, section on the kinematic error, which states directions only: the laws of load, speed and depth and the "
         "default band are assumed; spectral representation: ShinozukaDeodatis1991; random numbers: WichmannHill1982";
     static constexpr auto doc = R"(
-        Random kinematic error of a given band of orders: smooth, the same for the same seed.
+        Random kinematic error in a band of orders: smooth, and the same for the same seed.
 
         .. math:: n(\theta) = a \sqrt{\frac{2}{N}} \sum_{k=1}^{N} \cos(B_k \theta + \varphi_k), \qquad
                   a = A \, \frac{1 + s_\omega |\omega|}{1 + s_T |T|} \, e^{-s_d d}
 
-        with theta the input angle, omega the input speed, T the elastic torque at the reference temperature, A = amplitude, s_omega = speed_sensitivity,
-        s_T = load_sensitivity, s_d = depth_sensitivity, d = insertion_depth of the wave generator in the flexspline. a is the
-        root mean square over many turns. The band from lowest_order to highest_order has N = 32 equal cells; each holds one
-        order B_k, its place in the cell and its phase phi_k drawn by ``seed``. A function of the angle and of nothing that
-        happened before: reproducible, differentiable, independent of the time step, which must resolve the highest order. If the
-        ends of the band are whole numbers, it repeats itself after 16384 input turns at most, 512 in the default band. Every
-        scalar type draws the same orders and phases.
+        with theta the input angle, omega the input speed, T the elastic torque at the reference temperature, A = amplitude,
+        s_omega = speed_sensitivity, s_T = load_sensitivity, s_d = depth_sensitivity, d = insertion_depth of the wave generator
+        in the flexspline. a is the root mean square over many turns. The band from lowest_order to highest_order has N = 32
+        equal cells. Each cell contains one order B_k; ``seed`` draws its place in the cell and its phase phi_k. The error is a
+        function of the angle alone: reproducible, differentiable, and independent of the time step, which must resolve the
+        highest order. If the ends of the band are whole numbers, the error repeats after 16384 input turns at most, 512 in the
+        default band. Every scalar type draws the same orders and phases.
 
-        The review says that the stochastic part falls with load, rises with speed and falls with the insertion depth, but not
-        how: the forms are assumed, and all three are off by default. What it calls stochastic contains the deterministic
-        resonance of the elastic gear too (E-R4), which is not meant here. Its spectrum is flat, its values are close to Gaussian.
-        ``slope`` is the derivative by theta at constant a. Over few turns the root mean square is another one: a record has
-        to span the inverse of a cell's width, in turns, several times.
+        The review states that the stochastic part falls with load, rises with speed and falls with the insertion depth,
+        without equations: the forms are assumed, and all three are off by default. The stochastic part of the review also
+        contains the deterministic resonance of the elastic gear (E-R4), which is not part of this law. The spectrum is flat,
+        the values are close to Gaussian. ``slope`` is the derivative by theta at constant a. Over few turns the root mean
+        square differs from a: a record must span several times the inverse of a cell's width, in turns.
 
         >>> from strainwave.kinematic_error import Stochastic
         >>> noise = Stochastic(amplitude=2e-5, seed=7, load_sensitivity=0.1)
@@ -51,11 +51,11 @@ struct Stochastic {
         visit(SW_FIELD(m, amplitude, "rad", "Root mean square A at the output, without load and at rest; 0 is no noise", 0, 1));
         visit(SW_FIELD(m, lowest_order, "1", "Lower end of the band: periods per input revolution", 0, 1e4));
         visit(SW_FIELD(m, highest_order, "1", "Upper end of the band: periods per input revolution", smallest, 1e4));
-        visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such errors it is", 0, 16777215, true));
-        visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "How fast the amplitude falls with the torque transmitted", 0));
-        visit(SW_FIELD(m, speed_sensitivity, "s/rad", "How fast the amplitude rises with the input speed", 0));
+        visit(SW_FIELD(m, seed, "1", "Seed of the random numbers, a whole number", 0, 16777215, true));
+        visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "Relative fall s_T of the amplitude with the torque transmitted", 0));
+        visit(SW_FIELD(m, speed_sensitivity, "s/rad", "Relative rise s_omega of the amplitude with the input speed", 0));
         visit(SW_FIELD(m, insertion_depth, "m", "Depth d to which the wave generator is inserted into the flexspline", 0));
-        visit(SW_FIELD(m, depth_sensitivity, "1/m", "How fast the amplitude falls with the insertion depth", 0));
+        visit(SW_FIELD(m, depth_sensitivity, "1/m", "Relative fall s_d of the amplitude with the insertion depth", 0));
     }
 
     constexpr const char* problem() const {

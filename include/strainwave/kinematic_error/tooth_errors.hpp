@@ -32,7 +32,7 @@ struct ToothErrors {
         "derived here from the geometry; terms of ISO2013; random chart: Feller1951, ShinozukaDeodatis1991, "
         "WichmannHill1982; which teeth are engaged, and how stiff they are, is assumed";
     static constexpr auto doc = R"(
-        Kinematic error of teeth that do not stand where they should: pitch deviations of both splines.
+        Kinematic error from pitch deviations of the teeth of both splines.
 
         .. math:: e(\theta) = \frac{\bar F_{output}(\lambda_{output}) - \bar F_{fixed}(\lambda_{fixed})}{r_g}, \qquad
                   F(\varphi) = \sum_{n=1}^{16} A_n \sin(n \varphi + \varphi_n)
@@ -40,26 +40,26 @@ struct ToothErrors {
         .. math:: \bar F(\lambda) = \sum_n s_n \, W\!\left(\frac{\pi n \, \eta \, z_f}{2 z}\right) A_n \sin(n \lambda + \varphi_n),
                   \qquad W(x) = \frac{\sin x}{x \, (1 - x^2 / \pi^2)}
 
-        with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the spline whose mean it
-        is. F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at the angle phi
-        along the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is closed, so its
-        orders n are whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases;
-        ``[0, 4e-6]`` has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
+        with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the averaged spline. F is
+        the cumulative pitch deviation (index deviation) of a spline: the distance of the tooth flank at the angle phi from its
+        nominal place, along the pitch circle, positive in the positive sense of rotation. F is periodic, so its orders n are
+        whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases; ``[0, 4e-6]``
+        has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
 
-        In the frame of each spline the first lobe stands at an angle lambda. Both splines pass the lobe tooth by tooth, so that
-        z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In that of the output it is theta z_c
-        / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole orders, and the
-        output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats n times in a turn of
-        the output.
+        In the frame of each spline the first lobe stands at an angle lambda. Both splines pass the lobe tooth by tooth, so
+        that z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In the frame of the output it
+        is theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). The fixed spline therefore gives
+        whole orders, and the output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats
+        n times in a turn of the output.
 
-        Without torque the output stands where the forces of all engaged teeth balance. Then e is the mean of their deviations,
-        weighted by stiffness. Of the flexspline's teeth the share eta = engaged_share is engaged, half of it under each lobe.
-        The stiffness is taken to fall as 1 + cos from the major axis to zero at the ends of a zone; W is what this mean leaves
-        of order n. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1 for even n, 2 p -
-        1 for odd n. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one
-        (n = 2) gives all of its own. Torque winds up all pairs alike and does not change e.
+        Without torque the forces of all engaged teeth balance, so that e is the mean of their deviations, weighted by
+        stiffness. The share eta = engaged_share of the flexspline's teeth is engaged, half of it under each lobe. The
+        stiffness is assumed to fall as 1 + cos from the major axis to zero at the ends of a zone; W is the share of order n
+        that remains in this mean. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1
+        for even n, 2 p - 1 for odd n. If both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no
+        error, an oval one (n = 2) gives all of its own. Torque winds up all pairs alike and does not change e.
 
-        A Fourier series over the teeth turns a measured chart of index deviations into amplitudes and phases. Where only a
+        A Fourier series over the teeth turns a measured chart of index deviations into amplitudes and phases. If only a
         tolerance class is known, give flexspline_deviation and circular_spline_deviation, the total cumulative pitch deviation
         F_p of a typical part; the class states the largest one allowed. They add a random chart with amplitudes sqrt(2 / pi)
         F_p / (pi n) and phases that ``seed`` draws: the mean spectrum of pitches that are cut independently of each other and
@@ -100,7 +100,7 @@ struct ToothErrors {
         visit(SW_FIELD(m, flexspline_deviation, "m", "Total cumulative pitch deviation F_p of a random flexspline", 0, 1e-3));
         visit(SW_FIELD(m, circular_spline_deviation, "m", "Total cumulative pitch deviation F_p of a random circular spline", 0,
                        1e-3));
-        visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such random gears it is", 0, 16777215, true));
+        visit(SW_FIELD(m, seed, "1", "Seed of the random numbers, a whole number", 0, 16777215, true));
     }
 
     constexpr Contradiction<S> problem() const {

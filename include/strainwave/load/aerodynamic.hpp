@@ -23,15 +23,15 @@ struct Aerodynamic {
         "turning "
         "are ours; density of the standard atmosphere at sea level: ISO1975";
     static constexpr auto doc = R"(
-        A body in an air stream: a control surface, a nacelle that tilts.
+        Body in an air stream: a control surface, a tilting nacelle.
 
         .. math:: T_{load} = \tfrac{1}{2} \rho V^2 S \bar c\,(C_0 + C_1 \sin(\theta_{out} - \theta_0))
                   + \tfrac{1}{2} \rho S C_d r^3 |\omega_{out}| \omega_{out}
 
         with V = airspeed, rho = density, S = area, c = chord, C_0 = moment_coefficient, C_1 = moment_slope, theta_0 =
-        neutral_angle, C_d = drag_coefficient of the surface as it turns, at the radius r = drag_radius. C_1 > 0 drives back to the
-        neutral angle. The sine continues the linear law of small angles to all angles; it is no law of a particular body, whose
-        measured moments a TorqueTable takes. Gusts are the run's input load_torque.
+        neutral_angle, C_d = drag_coefficient of the surface as it turns, at the radius r = drag_radius. C_1 > 0 drives back to
+        the neutral angle. The sine continues the linear law of small angles to all angles. For measured moments of a
+        particular body use TorqueTable. Gusts are the run's input load_torque.
 
         >>> from strainwave.loads import Aerodynamic
         >>> Aerodynamic(area=0.5, chord=0.3, airspeed=40.0).density

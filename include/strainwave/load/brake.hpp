@@ -12,14 +12,14 @@ struct Brake {
     static constexpr auto name = "brake";
     static constexpr auto source = "definition: dry friction of a commanded level, set-valued at rest";
     static constexpr auto doc = R"(
-        A friction brake on the output shaft, as of a load rig: it resists motion, and holds at rest.
+        Friction brake on the output shaft, as of a load rig.
 
         .. math:: T_{load} = B(t) \operatorname{sgn} \omega_{out} \quad (\omega_{out} \ne 0), \qquad
                   |T_{load}| \le \kappa B(t) \quad (\omega_{out} = 0)
 
-        with B(t) the run's input brake_torque [N.m], of which a negative one counts as 0, kappa = breakaway_ratio. It sticks
-        exactly. While the shaft sticks, torque that friction of the gear at the output holds besides cannot be told from the
-        brake's; it is shared in proportion to what each can hold.
+        with B(t) the run's input brake_torque [N.m], kappa = breakaway_ratio. A negative B counts as 0. The brake sticks
+        exactly. While the shaft sticks, the torques of the brake and of friction at the output of the gear are not determined
+        separately: each is reported in proportion to its breakaway torque.
 
         >>> from strainwave.loads import Brake
         >>> Brake(inertia=0.02).breakaway_ratio
@@ -28,7 +28,7 @@ struct Brake {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, inertia, "kg.m2", "Inertia about the output axis", smallest));
-        visit(SW_FIELD(m, breakaway_ratio, "1", "What it holds at rest per what it resists in motion", 1));
+        visit(SW_FIELD(m, breakaway_ratio, "1", "Brake torque at rest over brake torque in motion", 1));
     }
 
     /// The input that this load takes.

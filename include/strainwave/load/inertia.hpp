@@ -10,7 +10,7 @@ struct Inertia {
     static constexpr auto name = "inertia";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A balanced rotating body on the output shaft.
+        Balanced rotating body on the output shaft.
 
         .. math:: T_{load} = 0
 

@@ -8,13 +8,13 @@ struct Prescribed {
     static constexpr auto name = "prescribed";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        An output shaft that is moved, or held, from outside: a rig that locks it, or another simulation that it is part of.
+        Output shaft with a prescribed motion: locked by a rig, or moved by another simulation.
 
         .. math:: \theta_{out} = \theta(t), \qquad T_{load} = T - F_{out}
 
-        with theta(t) the run's input output_angle [rad], given with its speed. The torque of the load is what the shaft exerts
-        on whatever moves it. While it is held, set-valued friction at the output cannot be told from that torque, and is
-        reported as 0.
+        with theta(t) the run's input output_angle [rad], given with its speed. The torque of the load is the torque that the
+        shaft exerts on the outside. At rest, set-valued friction at the output and this torque are not determined separately:
+        the friction is reported as 0.
 
         >>> from strainwave.loads import Prescribed
         >>> Prescribed()

@@ -16,14 +16,13 @@ struct TorqueTable {
     static constexpr auto name = "torque_table";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A torque over the output angle, given as a table.
+        Load torque over the output angle, as a table.
 
         .. math:: T_{load} = T_k + (T_{k+1} - T_k) \frac{\theta_{out} - \theta_k}{\theta_{k+1} - \theta_k}, \qquad
                   \theta_k \le \theta_{out} < \theta_{k+1}
 
-        with theta_k = angle, increasing, T_k = held_torque, up to 32 of each. Before the first and behind the last angle the torque
-        stays what it is there. What changes over time besides is the run's input load_torque, which adds to it: a table of
-        time is a scenario.
+        with theta_k = angle, increasing, T_k = held_torque, up to 32 of each. Before the first and after the last angle the
+        torque is constant. The run's input load_torque adds a torque over time: a table over time is a scenario.
 
         >>> from strainwave.loads import TorqueTable
         >>> TorqueTable(angle=[-1.0, 0.0, 1.0], held_torque=[-3.0, 0.0, 5.0]).held_torque[2]
@@ -33,7 +32,7 @@ struct TorqueTable {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, inertia, "kg.m2", "Inertia about the output axis", smallest));
         visit(SW_FIELD(m, angle, "rad", "Output angles, increasing"));
-        visit(SW_FIELD(m, held_torque, "N.m", "Torque at each that holds the output back"));
+        visit(SW_FIELD(m, held_torque, "N.m", "Torque at each angle that holds the output back"));
     }
 
     constexpr const char* problem() const {

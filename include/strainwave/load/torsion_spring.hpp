@@ -14,7 +14,7 @@ struct TorsionSpring {
     static constexpr auto name = "torsion_spring";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A body that a spring and a damper tie to the housing.
+        Body on a spring and a damper to the housing.
 
         .. math:: T_{load} = k\,(\theta_{out} - \theta_0) + c\,\omega_{out}
 

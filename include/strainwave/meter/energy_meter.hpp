@@ -8,21 +8,21 @@ struct EnergyMeter {
     static constexpr auto name = "energy";
     static constexpr auto source = "definition; the balance is that of GoldsteinPooleSafko2002, section 1.3";
     static constexpr auto doc = R"(
-        Powers and energies of a drive, as outputs of its runs.
+        Meter of powers and energies of a drive, as outputs of its runs.
 
         .. math:: E_{supplied} = \sum_{places} E_{lost} + E_{load} + \Delta E_{stored}
 
-        Each energy is the integral of its power since the start of the run. Lost are those of the motor, of friction at the three
-        places, of damping, and of hysteresis; stored are those of both shafts, of the spring and of the motor, which a run
-        may begin with. Hysteresis and bristles of friction store a part of what they take, and give it back later: over a
-        cycle what they took is lost. A spring that softens as it warms up turns some of its energy to heat. A random
-        kinematic error whose amplitude follows load or speed does work on the shafts, of either sign, as that amplitude changes.
-        What a brake takes counts to the load.
+        Each energy is the integral of its power since the start of the run. E_lost are the losses of the motor, of friction at
+        the three places, of damping, and of hysteresis. E_stored are the energies of both shafts, of the spring and of the
+        motor, which need not be 0 at the start. Hysteresis and bristles of friction store a part of the energy that they take,
+        and give it back later; over a cycle all of it is lost. A spring that softens as it warms up turns some of its energy
+        to heat. A random kinematic error whose amplitude follows load or speed does work on the shafts, of either sign, as
+        that amplitude changes. The energy of a brake counts to the load.
 
-        The balance is as exact as the steps are: they integrate the powers with the motion. What an input does by a jump takes no
-        time, so no power tells it: of the angle at which an output shaft is held, and of the temperature of a spring that softens. With a random kinematic error
-        whose amplitude follows load or speed, the balance of steps of a fixed length is of first order where these cross zero, for
-        the amplitude has a kink there: take simulate_adaptively.
+        The balance is as exact as the steps, which integrate the powers with the motion. The work of a jump of an input takes
+        no time and is not part of any power. This concerns jumps of the angle of a held output shaft and of the temperature of
+        a spring that softens. With a random kinematic error whose amplitude follows load or speed, the balance of fixed steps
+        is of first order where load or speed cross zero, because the amplitude has a kink there: use simulate_adaptively.
 
         >>> import strainwave as sw
         >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01), meter=sw.meter.EnergyMeter())
@@ -61,7 +61,7 @@ struct EnergyMeter {
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_PART(m, power, "Powers"));
             visit(SW_PART(m, energy, "Energies since the start"));
-            visit(SW_PART(m, stored, "Energies held"));
+            visit(SW_PART(m, stored, "Energies stored"));
         }
     };
     static constexpr bool active() { return true; }

@@ -8,7 +8,7 @@ struct NoMeter {
     static constexpr auto name = "none";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        No measurement: powers and energies are not worked out.
+        No meter: powers and energies are not calculated.
 
         .. math:: E(t) = \text{not known}
 

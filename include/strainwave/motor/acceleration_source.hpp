@@ -11,14 +11,15 @@ struct AccelerationSource {
     static constexpr auto actuation = "input_acceleration";
     static constexpr auto source = "definition; its torque is Newton's second law of the input shaft";
     static constexpr auto doc = R"(
-        A motor that prescribes the motion of the input shaft: it accelerates as it is asked to, whatever torque that needs.
+        Motor that prescribes the acceleration of the input shaft, whatever torque it needs.
 
         .. math:: \dot\omega = u, \qquad \tau = J_{in} u + (T + F_{mesh})\,(1/i - e') + F_{in}
 
-        with u what the controller asks for [rad/s2], and omega the input speed. Where the shaft begins, and how fast, is said where a
-        run begins; Motion of strainwave.simulation.motion makes both of a measured angle. Its torque tau is a result: what a motor
-        of that inertia must give. How input and output move does not depend on inertia and friction at the input, nor on
-        friction of the mesh. At the instants at which the shaft is at rest, set-valued friction of both is reported as 0.
+        with u the actuation of the controller [rad/s2], and omega the input speed. Angle and speed at the start are initial
+        values of the run; Motion of strainwave.simulation.motion calculates both from a measured angle. The torque tau is a
+        result: the torque that a motor of that inertia must give. The motion of input and output does not depend on inertia
+        and friction at the input, nor on friction of the mesh. At instants of rest, set-valued friction of both is reported as
+        0.
 
         >>> from strainwave.motor import AccelerationSource
         >>> AccelerationSource(inertia=2e-5).inertia

@@ -22,20 +22,21 @@ struct BrushlessDC {
     static constexpr auto source =
         "document A, section Electric Motor: a brushless DC motor, simplified; the limits of amplifier and supply are ours";
     static constexpr auto doc = R"(
-        Brushless DC motor as the DC motor that equals it, with the limits of its amplifier.
+        Brushless DC motor as an equivalent DC motor, with the limits of its amplifier.
 
         .. math:: L \dot i = u - R i - K \omega, \qquad \tau = K i + \tau_c \sin(n \theta), \qquad
                   |u| \le U, \quad |u - K \omega| \le R I
 
-        with u the voltage between the two phases that conduct, omega the input speed, R = resistance, L = inductance of those two
-        phases in series, K = torque_constant, of torque and back-EMF both, U = supply_voltage, I = current_limit. The amplifier
-        limits the voltage so that the current never exceeds I; what it can give at each instant it hands back to the controller,
-        whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
-        Where a load turns the motor faster than (U + R I) / K the supply cannot hold the current back any more, and it exceeds I.
+        with u the voltage between the two phases that conduct, omega the input speed, R = resistance, L = inductance of those
+        two phases in series, K = torque_constant, of torque and back-EMF both, U = supply_voltage, I = current_limit. The
+        amplifier limits the voltage so that the current does not exceed I. It returns the possible voltage to the controller,
+        whose integrals stop at this limit. R rises with the temperature of the winding by resistance_rise per kelvin above 20
+        degC. If a load turns the motor faster than (U + R I) / K, the voltage of the supply is too small, and the current
+        exceeds I.
 
-        tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
-        Leaves out commutation and its ripple: that of PMSM. Leaves out, too, that an amplifier may first use all of its
-        voltage: here a current that is asked to be I approaches it with the time constant L / R.
+        tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost. Leaves
+        out commutation and its ripple: see PMSM. Also leaves out that an amplifier can use all of its voltage at first: here
+        the current approaches I with the time constant L / R.
 
         >>> from strainwave.motor import BrushlessDC
         >>> BrushlessDC(supply_voltage=24.0, current_limit=5.0).supply_voltage

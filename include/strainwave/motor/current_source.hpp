@@ -13,13 +13,12 @@ struct CurrentSource {
     static constexpr auto actuation = "current";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A motor behind a fast current controller: the current is what it is asked to be, at once and at any speed.
+        Motor with an ideal current controller: the current equals its command, at any speed.
 
         .. math:: i = u, \qquad \tau = K_m i
 
-        with u what the controller asks for [A], K_m = torque_constant. The resistance tells what the current loses as
-        heat, and nothing else. Leaves out that the supply limits the current as the
-        speed grows.
+        with u the actuation of the controller [A], K_m = torque_constant. The resistance has one effect: the heat of the
+        current. Leaves out the limit of the supply, which lowers the current at high speed.
 
         >>> from strainwave.motor import CurrentSource
         >>> CurrentSource(torque_constant=0.1).torque_constant

@@ -26,15 +26,14 @@ struct DC {
         .. math:: L \dot i = u - R i - K_b \omega - V_b \operatorname{sgn} i, \qquad \tau = K_m i + \tau_c \sin(n \theta), \qquad
                   R = R_0\,(1 + \alpha\,(T - 293.15\,\mathrm{K}))
 
-        with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance,
-        K_m = torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
-        inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R, and with a brush drop no
-        current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
-        difference counts as lost, as iron losses do. It does so only while the motor drives: a motor with K_b > K_m that brakes,
-        and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron losses.
-        tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
-        Leaves out limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
-        is a CurrentSource.
+        with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance, K_m =
+        torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
+        inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R. With a brush drop no
+        current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. If K_b exceeds K_m the
+        difference counts as a loss, as iron losses do, but only while the motor drives. A motor with K_b > K_m that brakes,
+        and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron
+        losses. tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost.
+        Leaves out limits of the supply: see BrushlessDC. For a motor whose amplifier controls the current use CurrentSource.
 
         >>> from strainwave.motor import DC
         >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -64,7 +63,7 @@ struct DC {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, current, "A", "Armature current, a state of its own where there is an inductance"));
+            visit(SW_FIELD(m, current, "A", "Armature current, a state if there is an inductance"));
         }
     };
 

@@ -31,40 +31,41 @@ struct PMSM {
         "three "
         "resistances; limits of the inverter and their order of precedence are ours";
     static constexpr auto doc = R"(
-        Permanent-magnet synchronous motor in the frame of its rotor, with an inverter that keeps the field oriented.
+        Permanent-magnet synchronous motor in the frame of its rotor, with a field-oriented inverter.
 
         .. math:: L_d \dot i_d = u_d - R i_d + p \omega L_q i_q, \qquad
                   L_q \dot i_q = u_q - R i_q - p \omega\,(L_d i_d + \psi), \\
                   \tau = \tfrac{3}{2} p\,(\psi i_q + (L_d - L_q) i_d i_q) + \tau_c \sin(n \theta)
 
-        Currents and voltages are amplitudes of a phase. omega is the input speed, theta the input angle, R = resistance, L_d, L_q =
-        direct_ and quadrature_inductance, psi = flux_linkage, p = pole_pairs, tau_c = cogging_torque, n = cogging_order. The
-        controller gives u_q. The inverter gives u_d = R i_d0 - p omega L_q i_q, so that i_d settles at i_d0 = direct_current: 0
-        for most motors, negative to gain reluctance torque where L_q exceeds L_d, or to weaken the field by hand.
+        Currents and voltages are amplitudes of a phase. omega is the input speed, theta the input angle, R = resistance, L_d,
+        L_q = direct_ and quadrature_inductance, psi = flux_linkage, p = pole_pairs, tau_c = cogging_torque, n = cogging_order.
+        The controller gives u_q. The inverter gives u_d = R i_d0 - p omega L_q i_q, so that i_d settles at i_d0 =
+        direct_current: 0 for most motors, negative for reluctance torque (if L_q exceeds L_d) or for a constant field
+        weakening.
 
-        The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
-        is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
-        controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
-        turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit. Where even
-        u_d alone exceeds U, nothing is left for u_q and the currents may oscillate without end: an inverter that keeps the
-        direction of its voltage would not do so. Such a run says that the motor is beyond its range, no more.
+        The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d has precedence, and u_q is limited to
+        the rest. u_q is also limited so that the length of the current does not exceed current_limit. The inverter returns the
+        possible u_q to the controller. Automatic field weakening is left out: at the voltage limit the current falls. If a
+        load turns the motor so fast that the inverter does not reach these voltages, the current exceeds its limit. If u_d
+        alone exceeds U, u_q is 0 and the currents may oscillate without end, which an inverter that keeps the direction of its
+        voltage avoids. Such a run only shows that the motor is beyond its range.
 
-        The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
-        controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
-        ripple of i_d is left out. The energy of cogging is held, not lost. R rises with the temperature of the
-        winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux and the
-        switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
-        the current with the time constant L_q / R.
+        Each sensor of a phase current may have a constant offset. In the frame of the rotor the offset turns: the controller
+        measures i_q + I_o sin(p theta), I_o = current_offset, which causes a ripple of the torque. The same ripple of i_d is
+        left out. The energy of cogging is stored, not lost. R rises with the temperature of the winding by resistance_rise per
+        kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux and the switching of the inverter; and
+        that an inverter can use all of its voltage at first: here i_q approaches the limit of the current with the time
+        constant L_q / R.
 
-        Two faults take voltages v_d, v_q from u_d and u_q. The first phase, which the magnets face at theta = 0, has the
+        Two faults subtract voltages v_d, v_q from u_d and u_q. The first phase, which faces the magnets at theta = 0, has the
         resistance R + DR, DR = phase_resistance_excess. With phi = p theta:
 
         .. math:: v_d = \tfrac{2}{3} \Delta R \cos\varphi \; i_1, \qquad
                   v_q = -\tfrac{2}{3} \Delta R \sin\varphi \; i_1, \qquad i_1 = i_d \cos\varphi - i_q \sin\varphi
 
-        The currents and the torque get a ripple of order 2 p. DR does not depend on the temperature. DR far above R and
-        p omega L_q is an open phase: i_1 tends to 0 as 1 / DR, and two phases are left. An exactly open phase has one current
-        less, and is not a value of DR.
+        The currents and the torque get a ripple of order 2 p. DR does not depend on the temperature. DR far above R and p
+        omega L_q is an open phase: i_1 tends to 0 as 1 / DR, and two phases remain. No value of DR is an exactly open phase,
+        which has one current less.
 
         The inverter waits between its two switches: each phase k loses dead_time_voltage against its current, which is the
         voltage of the supply times the dead time times the switching frequency. The loss is smaller in proportion below
@@ -73,10 +74,10 @@ struct PMSM {
         .. math:: v_d = \tfrac{2}{3} \sum_k w_k \cos\varphi_k, \quad v_q = -\tfrac{2}{3} \sum_k w_k \sin\varphi_k, \quad
                   w_k = V \operatorname{clip}(i_k / i_c, \pm 1), \quad \varphi_k = \varphi - (k - 1) \tfrac{2 \pi}{3}
 
-        V = dead_time_voltage, i_c = dead_time_current. The ripple has the order 6 p. Dead time takes no energy: the inverter gives
-        less. The column voltage is the voltage that the inverter is set to, before these losses. The inverter limits i_q by
-        measuring it, so that its limits include v_q; i_d is not controlled by a measurement, and is no longer i_d0 exactly.
-        Fixed steps must follow the decay by 2/3 DR / L and by V / (i_c L), L being the smaller of L_d and L_q.
+        V = dead_time_voltage, i_c = dead_time_current. The ripple has the order 6 p. Dead time takes no energy: the inverter
+        gives less. The column voltage is the set voltage of the inverter, before these losses. The inverter measures i_q to
+        limit it, so that its limits include v_q. i_d is not controlled by a measurement, and is no longer exactly i_d0. Fixed
+        steps must follow the decay by 2/3 DR / L and by V / (i_c L), L being the smaller of L_d and L_q.
 
         >>> from strainwave.motor import PMSM
         >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)

@@ -11,11 +11,11 @@ struct TorqueSource {
     static constexpr auto actuation = "motor_torque";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A motor that gives the torque it is asked for, at once and at any speed.
+        Motor whose torque equals its command, at any speed.
 
         .. math:: \tau = u
 
-        with u what the controller asks for [N.m]. For studies of the gear alone, and for drives whose motor is not known.
+        with u the actuation of the controller [N.m]. For studies of the gear alone, and for drives with an unknown motor.
 
         >>> from strainwave.motor import TorqueSource
         >>> TorqueSource(inertia=2e-5).inertia

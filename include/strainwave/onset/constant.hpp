@@ -8,7 +8,7 @@ struct Constant {
     static constexpr auto name = "constant";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A fault that is there from the beginning.
+        Fault that is present from the beginning.
 
         .. math:: g(u) = 1
 

@@ -13,13 +13,13 @@ struct Growing {
     static constexpr auto name = "growing";
     static constexpr auto source = "assumed: a power of the use since the beginning; the exponent is the user's";
     static constexpr auto doc = R"(
-        A fault that grows as a power of the use of the drive.
+        Fault that grows as a power of the use of the drive.
 
         .. math:: g(u) = \min\left(1, \left(\frac{\max(u - u_0, 0)}{u_1}\right)^p\right)
 
-        with u the use of the drive, u_0 = begin, u_1 = scale, all counted in ``unit``, p = exponent: 1 is wear in proportion to
-        the use, more than 1 grows faster and faster, as cracks do, less than 1 is running in. The fault has its severity at
-        u_0 + u_1, and keeps it.
+        with u the use of the drive, u_0 = begin, u_1 = scale, all counted in ``unit``, p = exponent: 1 is wear in proportion
+        to the use, above 1 the growth accelerates, as of cracks, below 1 is running in. The fault reaches its severity at u_0
+        + u_1, and keeps it.
 
         >>> from strainwave.onset import Growing
         >>> Growing(begin=100.0, scale=100.0, exponent=2.0).share([50.0, 150.0, 300.0])

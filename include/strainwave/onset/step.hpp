@@ -11,7 +11,7 @@ struct Step {
     static constexpr auto name = "step";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A fault that is there at once, from some use on.
+        Fault that begins at once, at a given use.
 
         .. math:: g(u) = 0 \text{ for } u < u_0, \qquad g(u) = 1 \text{ for } u \ge u_0
 

@@ -17,14 +17,14 @@ struct Delayed {
     static constexpr auto source =
         "Pade approximation of a delay, in four equal sections: FranklinPowellEmamiNaeini2002, chapter 5";
     static constexpr auto doc = R"(
-        A sensor whose value arrives late.
+        Sensor with a delay.
 
         .. math:: y = \left(\frac{1 - s \delta / 8}{1 + s \delta / 8}\right)^4 x \approx x(t - \delta)
 
-        with x what the law shows, delta = delay. What passes keeps its size. The phase lacks 0.52 percent of that of the delay at
-        the frequency 1 / delta [rad/s], 2.01 percent at 2 / delta, and less at lower ones. A jump passes at once, and turns up
-        again smeared over the time around delta: for what jumps, the delay of a sampled controller is exact. At the start of a
-        run it has settled. Steps of a fixed length must not be longer than delta / 8.
+        with x the reading of ``law``, delta = delay. Amplitudes do not change. The phase is 0.52 percent smaller than that of
+        the delay at the frequency 1 / delta [rad/s], 2.01 percent at 2 / delta, and less at lower frequencies. A jump passes
+        at once, and again, spread over the time around delta. Use the exact delay of a sampled controller for signals that
+        jump. At the start of a run the sensor has settled. Steps of a fixed length must not be longer than delta / 8.
 
         >>> from strainwave.sensor import Delayed, Encoder
         >>> Delayed(law=Encoder(counts=8192), delay=2e-3).law.counts
@@ -42,7 +42,7 @@ struct Delayed {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, section, "1", "What is under way, in the unit of what it measures"));
+            visit(SW_FIELD(m, section, "1", "State of each section of the delay, in the unit of the measured quantity"));
             visit(SW_PART(m, law, "State of the sensor without delay"));
         }
     };

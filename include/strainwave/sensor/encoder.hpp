@@ -13,13 +13,13 @@ struct Encoder {
     static constexpr auto name = "encoder";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        An encoder: it counts, from an offset, and its disc sits off centre.
+        Encoder with counts, an offset and an eccentric disc.
 
         .. math:: y = q \operatorname{round}\left(\frac{x + x_0 + a \sin(x + \varphi)}{q}\right), \qquad q = \frac{2 \pi}{N}
 
-        with x the angle, N = counts per revolution, after interpolation, x_0 = offset, a = eccentricity, phi = eccentricity_phase.
-        A controller that is not sampled jumps with each count: steps of a fixed length do not see when; adaptive steps then become
-        very short. Noise around an encoder is added after counting. Derivatives ignore the rounding.
+        with x the angle, N = counts per revolution, after interpolation, x_0 = offset, a = eccentricity, phi =
+        eccentricity_phase. A controller that is not sampled jumps with each count. Fixed steps do not locate these jumps, and
+        adaptive steps become very short. Noise around an encoder is added after counting. Derivatives ignore the rounding.
 
         >>> from strainwave.sensor import Encoder
         >>> Encoder(counts=2**17, eccentricity=1e-5).offset

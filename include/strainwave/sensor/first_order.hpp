@@ -10,11 +10,11 @@ struct FirstOrder {
     static constexpr auto name = "first_order";
     static constexpr auto source = "definition; document A takes speed sensors of first order";
     static constexpr auto doc = R"(
-        A sensor that follows with a lag.
+        Sensor with a lag of first order.
 
         .. math:: \tau \dot y = x - y
 
-        with tau = time_constant. At the start of a run it has settled.
+        with tau = time_constant. At the start of a run the sensor has settled.
 
         >>> from strainwave.sensor import FirstOrder
         >>> FirstOrder(time_constant=2e-3).time_constant
@@ -30,7 +30,7 @@ struct FirstOrder {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, shown, "1", "What it shows, in the unit of what it measures"));
+            visit(SW_FIELD(m, shown, "1", "Reading, in the unit of the measured quantity"));
         }
     };
 

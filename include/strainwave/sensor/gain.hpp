@@ -11,7 +11,7 @@ struct Gain {
     static constexpr auto name = "gain";
     static constexpr auto source = "definition; document A takes current sensors of order zero";
     static constexpr auto doc = R"(
-        A sensor that shows too much or too little, at once.
+        Sensor with a gain and an offset, without lag.
 
         .. math:: y = g x + y_0
 
@@ -24,7 +24,7 @@ struct Gain {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, gain, "1", "Reading per true value"));
-        visit(SW_FIELD(m, offset, "1", "Reading where the true value is 0, in the unit of what it measures"));
+        visit(SW_FIELD(m, offset, "1", "Reading at the true value 0, in the unit of the measured quantity"));
     }
 
     using State = Stateless<S>;

@@ -8,7 +8,7 @@ struct Ideal {
     static constexpr auto name = "ideal";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A sensor that shows what there is.
+        Ideal sensor: the reading is the true value.
 
         .. math:: y = x
 

@@ -18,15 +18,15 @@ struct Noisy {
     static constexpr auto name = "noisy";
     static constexpr auto source = "spectral representation: ShinozukaDeodatis1991; random numbers: WichmannHill1982";
     static constexpr auto doc = R"(
-        A sensor with noise: a flat spectrum up to a bandwidth, the same for the same seed.
+        Sensor with noise of a flat spectrum up to a bandwidth, the same for the same seed.
 
         .. math:: y = x + A \sqrt{\frac{2}{N}} \sum_{k=1}^{N} \cos(2 \pi f_k t + \varphi_k)
 
-        with x what the law shows, t the time since the start of the run, A = amplitude. The band from 0 to bandwidth has N = 32
-        equal cells; each holds one frequency f_k, its place in the cell and its phase phi_k drawn by ``seed``. A smooth function of
-        time: no step length and no method changes it. Its values are close to Gaussian. Samples that are 1 / (2 bandwidth)
-        apart, or a multiple of that, are close to independent. Steps must resolve the bandwidth. Sensors that are to differ need
-        different seeds.
+        with x the reading of ``law``, t the time since the start of the run, A = amplitude. The band from 0 to bandwidth has N
+        = 32 equal cells. Each cell contains one frequency f_k; ``seed`` draws its place in the cell and its phase phi_k. The
+        noise is a smooth function of time, independent of step length and method. Its values are close to Gaussian. Samples
+        that are 1 / (2 bandwidth) apart, or a multiple of that, are close to independent. Steps must resolve the bandwidth.
+        Give each sensor its own seed if their noise must differ.
 
         >>> from strainwave.sensor import FirstOrder, Noisy
         >>> Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.02, bandwidth=500.0, seed=7).amplitude
@@ -35,9 +35,9 @@ struct Noisy {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, law, "The sensor without noise"));
-        visit(SW_REQUIRED(m, amplitude, "1", "Root mean square A, in the unit of what it measures", 0));
+        visit(SW_REQUIRED(m, amplitude, "1", "Root mean square A, in the unit of the measured quantity", 0));
         visit(SW_FIELD(m, bandwidth, "Hz", "Highest frequency of the noise", smallest));
-        visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such noises it is", 0, 16777215, true));
+        visit(SW_FIELD(m, seed, "1", "Seed of the random numbers, a whole number", 0, 16777215, true));
     }
 
     struct State {

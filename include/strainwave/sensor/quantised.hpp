@@ -15,13 +15,13 @@ struct Quantised {
     static constexpr auto name = "quantised";
     static constexpr auto source = "definition: a uniform quantiser, as an analogue-to-digital converter is";
     static constexpr auto doc = R"(
-        A sensor whose reading goes in steps, as behind an analogue-to-digital converter.
+        Sensor with a quantised reading, as of an analogue-to-digital converter.
 
         .. math:: y = q \operatorname{round}\left(\frac{x}{q}\right)
 
-        with x what the law shows, its noise and delay included, q = resolution. A reading that changes much errs by q / sqrt(12)
-        in the root mean square. A controller that is not sampled jumps with each step of the reading, as with the counts of an
-        Encoder, whose steps are those of an angle. Derivatives ignore the rounding.
+        with x the reading of ``law``, its noise and delay included, q = resolution. If the reading changes by many steps, the
+        root mean square of the error is q / sqrt(12). A controller that is not sampled jumps with each step of the reading, as
+        with the counts of an Encoder, whose steps are those of an angle. Derivatives ignore the rounding.
 
         >>> from strainwave.sensor import FirstOrder, Noisy, Quantised
         >>> speed = Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.05)
@@ -31,7 +31,7 @@ struct Quantised {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, law, "The sensor without steps"));
-        visit(SW_REQUIRED(m, resolution, "1", "Step q of the reading, in the unit of what it measures", smallest));
+        visit(SW_REQUIRED(m, resolution, "1", "Step q of the reading, in the unit of the measured quantity", smallest));
     }
 
     struct State {

@@ -11,12 +11,12 @@ struct SecondOrder {
     static constexpr auto name = "second_order";
     static constexpr auto source = "definition; document A takes position sensors of second order";
     static constexpr auto doc = R"(
-        A sensor that follows like a damped oscillator.
+        Sensor with the dynamics of a damped oscillator.
 
         .. math:: \ddot y = \omega_0^2\,(x - y) - 2 \zeta \omega_0 \dot y
 
-        with omega_0 = natural_frequency, zeta = damping_ratio. It lags a steady motion by 2 zeta / omega_0 seconds.
-        At the start of a run it has settled. Steps of a fixed length must not be longer than 1 / omega_0.
+        with omega_0 = natural_frequency, zeta = damping_ratio. It lags a steady motion by 2 zeta / omega_0 seconds. At the
+        start of a run the sensor has settled. Steps of a fixed length must not be longer than 1 / omega_0.
 
         >>> from strainwave.sensor import SecondOrder
         >>> SecondOrder(natural_frequency=1200.0).damping_ratio
@@ -33,7 +33,7 @@ struct SecondOrder {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, shown, "1", "What it shows, in the unit of what it measures"));
+            visit(SW_FIELD(m, shown, "1", "Reading, in the unit of the measured quantity"));
             visit(SW_FIELD(m, rate, "1/s", "Its rate"));
         }
     };

@@ -16,14 +16,14 @@ struct ThermalSoftening {
         "document R, section on temperature, which states the direction only: the exponential form is assumed, its rates are the "
         "user's";
     static constexpr auto doc = R"(
-        A gear whose spring and whose hysteresis give way as it warms up.
+        Stiffness and hysteresis that fall exponentially with the temperature.
 
         .. math:: T = e^{-\kappa_s (T_g - T_0)}\, T_{stiffness} + e^{-\kappa_h (T_g - T_0)}\, T_{hysteresis} + c\,\dot\delta
 
-        with T_g the temperature of the gear, T_0 = reference_temperature, kappa_s = stiffness_fall, kappa_h = hysteresis_fall. The
-        laws of stiffness and hysteresis are those at T_0. No catalogue gives the rates; the elastic modulus of steel falls by
-        some 2e-4 to 3e-4 per kelvin (assumed). Valid over some tens of kelvin. Elastic energy that a spring loses while it
-        warms up turns to heat.
+        with T_g the temperature of the gear, T_0 = reference_temperature, kappa_s = stiffness_fall, kappa_h = hysteresis_fall.
+        The laws of stiffness and hysteresis are those at T_0. No catalogue gives the rates; the elastic modulus of steel falls
+        by some 2e-4 to 3e-4 per kelvin (assumed). Valid over some tens of kelvin. Elastic energy that the spring loses while
+        it warms up turns to heat.
 
         >>> from strainwave.softening import ThermalSoftening
         >>> ThermalSoftening(stiffness_fall=3e-4).stiffness_fall
@@ -33,7 +33,7 @@ struct ThermalSoftening {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, stiffness_fall, "1/K", "Relative fall kappa_s of the stiffness per kelvin"));
         visit(SW_FIELD(m, hysteresis_fall, "1/K", "Relative fall kappa_h of the hysteresis per kelvin"));
-        visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 at which the laws hold", smallest));
+        visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 of the laws of stiffness and hysteresis", smallest));
     }
 
     /// Whether it makes any difference, or could be sought to make one.

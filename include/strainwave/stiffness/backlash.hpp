@@ -17,19 +17,19 @@ struct Backlash {
     static constexpr auto name = "backlash";
     static constexpr auto source = "document A, kinematic error: \"a constant component, related to clearance\"";
     static constexpr auto doc = R"(
-        A spring behind play: within the clearance nothing is transmitted, beyond it the spring is twisted from where the play ends.
+        Spring behind play: no torque within the clearance, the torque of the spring beyond it.
 
         .. math:: T = T_{law}(\delta - p), \qquad p = \min(\max(\delta, -c/2), c/2)
 
         with delta the twist, p the play taken up, c = clearance, ``law`` any spring without play. Torque, stiffness and energy
-        are 0 within the play; the two flanks are c apart at zero torque, which is what a lost-motion test adds to the twist of
-        the spring. The stiffness jumps at the flanks, where it is that of the spring; a torque of exactly 0 has the twist 0.
-        With c = 0 it is the spring itself.
+        are 0 within the play. The two flanks are c apart at zero torque; a lost-motion test measures c in addition to the
+        twist of the spring. The stiffness jumps at the flanks, where it is that of the spring. A torque of exactly 0 has the
+        twist 0. With c = 0 the law is the spring itself.
 
-        No energy is lost: flanks meet elastically. What a blow loses belongs to ``damping`` and friction of the gear, which act
-        within the play, too. Steps must be short against the time in which the spring of a flank swings. Makers call strain
-        wave gears free of backlash, for their teeth are preloaded: this law is for worn ones, for badly fitted ones, and for
-        what else stands between the gear and its load.
+        No energy is lost: flanks meet elastically. Losses of an impact are those of ``damping`` and friction of the gear,
+        which also act within the play. Steps must be short against the period of the spring of a flank. Strain wave gears are
+        sold as free of backlash, because their teeth are preloaded. Use this law for worn gears, for badly fitted ones, and
+        for couplings between the gear and its load.
 
         >>> from strainwave.stiffness import Backlash, Linear
         >>> spring = Backlash(law=Linear(k=1e4), clearance=2e-4)

@@ -12,12 +12,12 @@ struct Cubic {
     static constexpr auto name = "cubic";
     static constexpr auto source = "document R, section 3, cubic polynomial; Tuttle1992";
     static constexpr auto doc = R"(
-        A spring that stiffens smoothly under load.
+        Cubic spring: it stiffens smoothly under load.
 
         .. math:: T = a_1 \delta + a_3 \delta^3
 
         with delta the twist, a_1 = a1 > 0, a_3 = a3 >= 0. Odd and strictly increasing, so every torque has one twist. Valid
-        over the range it was fitted on; beyond, the cubic stiffens faster than any gear.
+        over the fitted range; beyond it the cubic stiffens faster than any gear.
 
         >>> from strainwave.stiffness import Cubic
         >>> spring = Cubic(a1=1.2e4, a3=1e9)

@@ -11,7 +11,7 @@ struct Linear {
     static constexpr auto name = "linear";
     static constexpr auto source = "Hooke's law; document P, K_s";
     static constexpr auto doc = R"(
-        A spring of constant stiffness.
+        Linear spring: constant stiffness.
 
         .. math:: T = k \delta
 

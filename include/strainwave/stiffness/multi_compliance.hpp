@@ -198,7 +198,7 @@ struct MultiCompliance {
     static constexpr auto name = "multi_compliance";
     static constexpr auto source = "document R, section 4c; erratum E-R14";
     static constexpr auto doc = R"(
-        Flexspline and wave generator in series, each a spring that hardens until it gives way no further.
+        Spring of flexspline and wave generator in series, each with a bounded twist.
 
         .. math:: \delta = \frac{\arctan(C_f T)}{C_f K_{f0}}
                   + \operatorname{sgn}(T) \frac{1 - e^{-C_w |T| / N}}{N C_w K_{w0}}, \qquad
@@ -206,13 +206,13 @@ struct MultiCompliance {
 
         with delta the twist, K_f0 = flexspline_stiffness and C_f = flexspline_hardening at the output, K_w0 =
         wave_generator_stiffness and C_w = wave_generator_hardening at the input, where the torque is T / N, N = reduction: the
-        ratio of the gear, without its sign. A hardening of 0 is a linear spring. If neither is 0 the twist has the bound
-        pi / (2 C_f K_f0) + 1 / (N C_w K_w0), beyond which there is no torque: the law is then not valid. Hardens without
-        end, more steeply than any gear well before the bound.
+        ratio of the gear, without its sign. A hardening of 0 is a linear spring. If neither is 0 the twist has the bound pi /
+        (2 C_f K_f0) + 1 / (N C_w K_w0), beyond which there is no torque: the law is then not valid. It hardens without limit,
+        and well before the bound more steeply than any gear.
 
-        In a compiled model torque rises up to max(1e6 / C_f, 40 N / C_w), at most 1e18 N.m, and stays there, from within
-        1e-6 of the bound on. Elastic only: the friction torque that document R puts inside belongs to a law of friction or
-        hysteresis, where it is passive (E-R14). A gear refuses a reduction that is not its own ratio.
+        In a compiled model torque rises up to max(1e6 / C_f, 40 N / C_w), at most 1e18 N.m, and stays there, from within 1e-6
+        of the bound on. The law is elastic: the friction torque that document R includes belongs to a law of friction or
+        hysteresis, which is passive (E-R14). A gear refuses a reduction that is not its own ratio.
 
         >>> from strainwave.stiffness import MultiCompliance
         >>> spring = MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0,

@@ -13,7 +13,7 @@ struct Piecewise {
     static constexpr auto name = "piecewise";
     static constexpr auto source = "document R, section 3, piecewise linear; erratum E-R9";
     static constexpr auto doc = R"(
-        A spring that turns stiffer at one twist: two straight segments, odd in the twist.
+        Piecewise linear spring of two segments, stiffer beyond a twist, odd in the twist.
 
         .. math:: T = k_1 \delta + k_2 \operatorname{sgn}(\delta) \max(|\delta| - \delta_k, 0)
 
@@ -29,7 +29,7 @@ struct Piecewise {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, k1, "N.m/rad", "Stiffness up to the knee", smallest));
-        visit(SW_REQUIRED(m, k2, "N.m/rad", "What the stiffness above the knee exceeds k1 by", 0));
+        visit(SW_REQUIRED(m, k2, "N.m/rad", "Increment k_2 of the stiffness above the knee", 0));
         visit(SW_REQUIRED(m, knee, "rad", "Twist of the knee", 0));
     }
 

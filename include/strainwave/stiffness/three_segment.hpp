@@ -15,13 +15,13 @@ struct ThreeSegment {
     static constexpr auto name = "three_segment";
     static constexpr auto source = "Harmonic Drive AG catalogue, torsional stiffness K1, K2, K3 with torques T1, T2";
     static constexpr auto doc = R"(
-        The catalogue's spring: three straight segments that meet at two torques, odd in the twist.
+        Piecewise linear spring of the catalogue: three segments that meet at two torques, odd in the twist.
 
         .. math:: \delta(T) = T / K_1 \; (T \le T_1), \quad T_1/K_1 + (T - T_1)/K_2 \; (T \le T_2), \quad
                   T_1/K_1 + (T_2 - T_1)/K_2 + (T - T_2)/K_3
 
         with delta the twist, K_i = k1, k2, k3, T_i = t1, t2. The slope jumps at the knees. Individual gears differ from their
-        catalogue by up to 30 %. Without the hysteresis loss, which the catalogue states apart.
+        catalogue by up to 30 %. Leaves out the hysteresis loss, which the catalogue states separately.
 
         The catalogue's worked example, size 32, ratio 100, 60 N.m:
 

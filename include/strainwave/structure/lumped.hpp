@@ -9,14 +9,14 @@ struct Lumped {
     static constexpr auto name = "lumped";
     static constexpr auto source = "document R, sections 1-4";
     static constexpr auto doc = R"(
-        A gear of one spring: nothing within it moves by itself.
+        Lumped gear of one spring, without bodies that have their own motion.
 
         .. math:: T_{out} = T, \qquad T_{in} = T\,(1/i - e'(\theta_{in}))
 
-        with T_out the torque on the output, T_in the one that holds the input back, T the torque of the spring, its hysteresis
-        and damping, i the ratio, e' the derivative of the kinematic error by the input angle. The wave generator turns with the
-        input shaft. The ``stiffness`` of the gear is that of flexspline, mesh and bearings in series. Valid for what is slow
-        against the vibration of the bodies within the gear, some 1e4 rad/s; Staged has these bodies.
+        with T_out the torque on the output, T_in the torque that holds the input back, T the torque of the spring, its
+        hysteresis and damping, i the ratio, e' the derivative of the kinematic error by the input angle. The wave generator
+        turns with the input shaft. The ``stiffness`` of the gear is that of flexspline, mesh and bearings in series. Valid for
+        motions that are slow against the vibration of the bodies within the gear, about 1e4 rad/s; Staged has these bodies.
 
         >>> import strainwave as sw
         >>> sw.Gear(stiffness=sw.stiffness.Linear(k=16e3)).structure

@@ -31,7 +31,7 @@ struct Staged {
         "document A, eq. (1), with the relations that it leaves out, corrected (errata E-A1 to E-A6); the circular "
         "spline fixed, varying springs and the default values are assumed";
     static constexpr auto doc = R"(
-        A gear whose wave generator, flexspline and circular spline move by themselves.
+        Gear of stages: wave generator, flexspline and circular spline have their own motion.
 
         .. math:: T_{WG} = K_{WG}(\theta_{in} - \theta_{WG}) + c_{WG}(\dot\theta_{in} - \dot\theta_{WG}) =
                   F_b \left(r_g \tan\alpha_n + \frac{d\delta}{d\theta_{WG}}\right) + J_{WG}\ddot\theta_{WG}
@@ -48,39 +48,40 @@ struct Staged {
         pressure_angle, x_1 = r_g tan(alpha_n) theta_WG, tan(alpha_n) = 1 / (i tan(alpha_t)), y_2 = r_g theta_CS, and i the
         ratio. K_WG, c_WG = coupling_stiffness, coupling_damping join the motor shaft to the wave generator; K_b, c_b are those
         of its bearing, K_m, c_m those of the mesh, K_CS, c_CS = circular_spline_stiffness, circular_spline_damping join the
-        circular spline to the output shaft and its position sensor. The parts of the gear tell the rest: J_WG is its
+        circular spline to the output shaft and its position sensor. The other parts of the gear contain the rest: J_WG is its
         input_inertia, T_FS the torque of its stiffness, hysteresis and damping, delta = -e r_g / tan(alpha_t) its kinematic
         error as a radial displacement of the wave generator. m_r = radial_mass and J_FS = flexspline_inertia are those of the
         flexspline's toothed ring, J_CS = circular_spline_inertia.
 
-        This is the gear with its flexspline fixed: its ratio is positive. Where the circular spline is fixed the ratio is
-        negative, and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the twist of
-        the flexspline against the output shaft, is the torque on it.
+        These are the equations of a gear with fixed flexspline, whose ratio is positive. If the circular spline is fixed, the
+        ratio is negative and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the
+        twist of the flexspline against the output shaft, is the torque on it.
 
         Each stiffness may vary as the wave generator turns. The torque with which such a spring turns the wave generator is
         part of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
 
-        Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), by which the gear gives more power than it
-        takes (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign of
-        its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
-        freedom (E-A6). Its x_1 is linear in theta_WG: the equations say nothing of the cyclic deformation of the flexspline.
+        Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), with which the gear gives more power than it
+        takes (E-A2). It damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign
+        of its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and counts three degrees of freedom where there
+        are four (E-A6). Its x_1 is linear in theta_WG: the equations leave out the cyclic deformation of the flexspline.
 
-        Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as A has it: a turn
-        of the held ring turns the output as far, where the ratio of the teeth would make it 1 percent more or less (E-A12).
+        Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as in document A:
+        a turn of the held ring turns the output by the same angle, while the ratio of the teeth gives 1 percent more or less
+        (E-A12).
 
         With the circular spline fixed, x_1, x_2 and the forces have the sign of the output's motion, y_1 is the twist of the
         flexspline against the output shaft times r_g, and y_2 counts against the output's sense.
 
-        Output as A has it: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
+        Outputs as in document A: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
         ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
         ``circular_spline_torque`` T_CS, and ``output_torque`` T = torque - friction_output.
 
-        Valid for deformations that are small against r_g. Leaves out clearance of mesh and bearing (stiffness.Backlash has play
-        in the flexspline's spring alone) and every mode of the flexspline beside torsion and the radial one. The wave generator
-        needs an input_inertia. Where the kinematic error has a pitch radius and a pressure angle, too, they must be those of
-        the stages. No catalogue gives these stiffnesses: they are calculated, or assumed. The bodies vibrate at some 1e4 to 1e5
-        rad/s. Where dampers hold every body, fixed steps need not follow that, but what springs vary and bend by: a run with
-        longer ones is refused, and told how long they may be.
+        Valid for deformations that are small against r_g. Leaves out clearance of mesh and bearing (stiffness.Backlash has
+        play in the flexspline's spring alone) and every mode of the flexspline except torsion and the radial one. The wave
+        generator needs an input_inertia. If the kinematic error also has a pitch radius and a pressure angle, they must be
+        those of the stages. No catalogue gives these stiffnesses: calculate or assume them. The bodies vibrate at 1e4 to 1e5
+        rad/s. If every body has a damper, fixed steps need not resolve this vibration, but only the variation and the bend of
+        the springs. A run with longer steps is refused; the message contains the longest step allowed.
 
         >>> import strainwave as sw
         >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
@@ -106,10 +107,10 @@ struct Staged {
         visit(SW_REQUIRED(m, radial_mass, "kg", "Mass m_r of the flexspline's ring that moves radially", smallest));
         visit(SW_REQUIRED(m, flexspline_inertia, "kg.m2", "Inertia J_FS of the flexspline's ring, about its axis", smallest));
         visit(SW_REQUIRED(m, circular_spline_inertia, "kg.m2", "Inertia J_CS of the circular spline", smallest));
-        visit(SW_PART(m, coupling_variation, "How K_WG varies as the wave generator turns"));
-        visit(SW_PART(m, bearing_variation, "How K_b varies"));
-        visit(SW_PART(m, mesh_variation, "How K_m varies"));
-        visit(SW_PART(m, circular_spline_variation, "How K_CS varies"));
+        visit(SW_PART(m, coupling_variation, "Variation of K_WG with the angle of the wave generator"));
+        visit(SW_PART(m, bearing_variation, "Variation of K_b"));
+        visit(SW_PART(m, mesh_variation, "Variation of K_m"));
+        visit(SW_PART(m, circular_spline_variation, "Variation of K_CS"));
     }
 
     /// All but the windup and the speed of the wave generator at the output's scale. The ring that is held is the one joined to
@@ -130,8 +131,8 @@ struct Staged {
             visit(SW_FIELD(m, generator_speed, "rad/s", "Speed of the wave generator"));
             visit(SW_FIELD(m, radial_lag, "rad", "Radial displacement of the flexspline behind that of the wave generator"));
             visit(SW_FIELD(m, radial_speed, "rad/s", "Speed of the radial displacement"));
-            visit(SW_FIELD(m, held_angle, "rad", "How far the ring that is held gives way to the torque"));
-            visit(SW_FIELD(m, held_speed, "rad/s", "Speed of that"));
+            visit(SW_FIELD(m, held_angle, "rad", "Angle by which the held ring yields to the torque"));
+            visit(SW_FIELD(m, held_speed, "rad/s", "Speed of the held ring"));
             visit(SW_FIELD(m, driving_lead, "rad", "Angle of the ring that drives less the output angle"));
             visit(SW_FIELD(m, driving_speed, "rad/s", "Speed of the ring that drives"));
         }
@@ -150,7 +151,7 @@ struct Staged {
             visit(SW_FIELD(m, bearing_force, "N", "Radial force F_b of the bearing"));
             visit(SW_FIELD(m, mesh_force, "N", "Force F_m of the mesh"));
             visit(SW_FIELD(m, wave_generator_torque, "N.m", "Torque T_WG on the wave generator"));
-            visit(SW_FIELD(m, circular_spline_torque, "N.m", "Torque T_CS of the circular spline on what it is joined to"));
+            visit(SW_FIELD(m, circular_spline_torque, "N.m", "Torque T_CS of the circular spline on its joint"));
             visit(SW_FIELD(m, output_torque, "N.m", "Torque T at the output shaft, less the friction there"));
         }
     };

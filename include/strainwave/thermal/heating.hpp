@@ -17,17 +17,19 @@ struct Heating {
     static constexpr auto name = "heating";
     static constexpr auto source = "definition: two bodies of one temperature each; Newton1701 for what they give to the air";
     static constexpr auto doc = R"(
-        Winding and gear, warmed by what motor and gear lose.
+        Two thermal masses, winding and gear, heated by the losses of motor and gear.
 
         .. math:: C_w \dot T_w = P_w - \frac{T_w - T}{R_w} - G\,(T_w - T_g), \qquad
                   C_g \dot T_g = P_g - \frac{T_g - T}{R_g} + G\,(T_w - T_g)
 
-        with T the temperature of the run, which is the ambient one; P_w what the motor loses; P_g what friction at all three places,
-        damping and hysteresis take; C_w, C_g = winding_capacity, gear_capacity, R_w, R_g = winding_resistance, gear_resistance
-        towards the air, G = coupling between both. All begin at initial_temperature. What the hysteresis holds back for a moment
-        counts as heat at once: over a cycle that is the same. Leaves out the little heat that softening makes of elastic energy.
+        with T the temperature of the run, which is the ambient one; P_w the loss of the motor; P_g the loss by friction at all
+        three places, damping and hysteresis; C_w, C_g = winding_capacity, gear_capacity, R_w, R_g = winding_resistance,
+        gear_resistance towards the air, G = coupling between both. All begin at initial_temperature. Energy that the
+        hysteresis stores counts as heat at once, which is the same over a cycle. Leaves out the little heat from elastic
+        energy of a softening spring.
 
-        Data sheets of motors give R_w and the time constant R_w C_w. For a gear the values follow from how its housing warms up.
+        Data sheets of motors give R_w and the time constant R_w C_w. For a gear the values follow from a record of the
+        temperature of its housing.
 
         >>> from strainwave.thermal import Heating
         >>> body = Heating(winding_capacity=120.0, winding_resistance=2.5, gear_capacity=600.0, gear_resistance=0.8)
@@ -41,7 +43,7 @@ struct Heating {
         visit(SW_REQUIRED(m, gear_capacity, "J/K", "Heat capacity C_g of the gear", smallest));
         visit(SW_REQUIRED(m, gear_resistance, "K/W", "Thermal resistance R_g from gear to air", smallest));
         visit(SW_FIELD(m, coupling, "W/K", "Heat flow G from winding to gear per difference of temperature", 0));
-        visit(SW_FIELD(m, initial_temperature, "K", "Temperature of both where a run begins", smallest));
+        visit(SW_FIELD(m, initial_temperature, "K", "Temperature of both at the start of a run", smallest));
     }
 
     struct State {

@@ -9,7 +9,7 @@ struct Isothermal {
     static constexpr auto name = "isothermal";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A drive whose gear and whose winding are as warm as the temperature of the run says.
+        Isothermal drive: gear and winding have the temperature of the run.
 
         .. math:: T_w = T_g = T(t)
 

@@ -8,7 +8,7 @@ struct Constant {
     static constexpr auto name = "constant";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        A stiffness that does not change with the angle.
+        Stiffness that does not depend on the angle of the wave generator.
 
         .. math:: k(\theta) = k_0
 

@@ -18,15 +18,15 @@ struct Periodic {
         "document R, which names the stiffness of the mesh among what varies with time; the form, and the reaction on the wave "
         "generator, follow from the energy of the spring";
     static constexpr auto doc = R"(
-        A stiffness that changes as the wave generator turns: more or fewer teeth carry, the ball bearing rolls under the load.
+        Stiffness that varies with the angle of the wave generator, in harmonics of its turn.
 
         .. math:: k(\theta) = k_0 \left(1 + \sum_h a_h \sin(B_h \theta + \varphi_h)\right)
 
-        with k_0 the stiffness that its law gives, theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h =
-        phase, up to 8 harmonics. Two lobes make order 2. A spring that holds the energy V(x, theta), x its deformation, turns
-        the wave generator with the torque -dV/dtheta. Without this torque energy would come from nowhere. With it, a stiffness
-        that varies shows in the motor current even where the output stands still. The amplitudes must add up to less than 1, so
-        that the stiffness stays positive.
+        with k_0 the stiffness of its law, theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h = phase,
+        up to 8 harmonics. Two lobes make order 2. The cause is the changing number of loaded teeth and of loaded balls of the
+        bearing. A spring of the energy V(x, theta), x its deformation, turns the wave generator with the torque -dV/dtheta.
+        Without this torque energy is not conserved. With it, the variation is visible in the motor current even if the output
+        is at rest. The amplitudes must add up to less than 1, so that the stiffness stays positive.
 
         >>> from strainwave.variation import Periodic
         >>> Periodic(order=[2], amplitude=[0.05], phase=[0.0]).amplitude
