@@ -11,13 +11,13 @@
 namespace strainwave::host {
 
 namespace nb = nanobind;
-/// How Python's type checkers see an array.
+/// An array for Python's type checkers.
 #define SW_ARRAY "numpy.typing.NDArray[numpy.float64]"
 using Values = nb::ndarray<nb::numpy, double, nb::c_contig>;
 using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Room for so many numbers, not yet filled; or a MemoryError that says how many they are.
+/// Memory for so many numbers, not yet filled; or a MemoryError that contains their count.
 template <class T = double>
 std::unique_ptr<T[]> room(std::size_t size) {
     std::unique_ptr<T[]> numbers(new (std::nothrow) T[size + 1]);

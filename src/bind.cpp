@@ -27,7 +27,7 @@ NB_MODULE(_core, core) {
     core.attr("__doc__") = "The physics, compiled.";
     core.attr("families") = nb::dict();
     core.attr("PassivityWarning") = nb::steal(PyErr_NewExceptionWithDoc(
-        "strainwave._core.PassivityWarning", "A set of parameters lets its model create energy.", PyExc_UserWarning, nullptr));
+        "strainwave._core.PassivityWarning", "The parameters of a model allow it to create energy.", PyExc_UserWarning, nullptr));
     strainwave::host::bind_gear_laws(core);
     strainwave::host::bind_gear(core);
     strainwave::host::bind_drive_parts(core);

@@ -90,7 +90,7 @@ nb::tuple state_of_drive(const ParameterDrive& drive) {
     return nb::make_tuple(list, layout.continuous);
 }
 
-/// What a state of a drive belongs to: of each part that has a state, the models chosen and their element counts.
+/// Shape of a state of a drive: for each part with a state, the chosen models and their element counts.
 nb::dict shape_of(const ParameterDrive& drive) {
     nb::dict shapes;
     drive.stateful_parts([&](const char* name, const auto& part) {
@@ -170,7 +170,7 @@ nb::tuple steady_derivatives(const ParameterGear& gear, const Numbers& speed, co
     return nb::make_tuple(out, slopes);
 }
 
-/// What is known of every number of a set: path, value, unit, doc, min, max.
+/// Description of every number of a set: path, value, unit, doc, min, max.
 nb::list parameters_in(nb::handle model) {
     const Description& description = description_of(model);
     nb::list list;
@@ -205,7 +205,7 @@ Values twist_of(const ParameterGear& gear, const Call& call) {
     const std::size_t stuck = general::twist(parts_of(gear).set(), path.data(), path.size(), twist, &let_interrupt);
     if (stuck < path.size()) {
         if (!std::isfinite(twist[stuck]))
-            throw nb::value_error(("no twist gives the torque " + with_unit(path.data()[stuck], "N.m")).c_str());
+            throw nb::value_error(("no twist has the torque " + with_unit(path.data()[stuck], "N.m")).c_str());
         check_spring(gear, twist + stuck, 1);
     }
     return out;
@@ -217,17 +217,17 @@ void bind_gear(nb::module_& core) {
     using Gear = ParameterGear;
     const Bound<Gear> gear{bind<Gear>(core, "Gear", "gear"), description_of<Gear>()};
     verb(gear, "save", {{"path", "str | pathlib.Path"}, {"*", ""}, {"name", "str"}, {"source", "str"}}, "None",
-         "Writes a gear file, as `strainwave.save` does.", [](const Gear& self, const Call& call) {
+         "Write a gear file, as `strainwave.save` does.", [](const Gear& self, const Call& call) {
              nb::module_::import_("strainwave.files.gear_set")
                  .attr("save")(self, call["path"], nb::arg("name") = call["name"], nb::arg("source") = call["source"]);
          });
     verb(gear, "trace", {{"twist", SW_NUMBERS}}, SW_ARRAY,
-         "Torque [N.m], shape (n,), of spring and hysteresis along a slow path of `twist` [rad], shape (n,), from twist 0 and "
-         "without history.",
+         "Return the torque [N.m], shape (n,), of spring and hysteresis along a slow path of `twist` [rad], shape (n,), from twist "
+         "0 and without history.",
          &trace_of);
     verb(gear, "twist", {{"torque", SW_NUMBERS}}, SW_ARRAY,
-         "Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of "
-         "`trace`, to rounding, for every spring and hysteresis.",
+         "Return the twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,): the inverse of `trace`, to "
+         "rounding, for every spring and hysteresis.",
          &twist_of);
 }
 
@@ -238,50 +238,50 @@ void bind_drives(nb::module_& core) {
     const auto as_state = [](const ParameterDrive& self, const Values& numbers) {
         return nb::module_::import_("strainwave.simulation.state").attr("State").attr("of")(self, numbers);
     };
-    verb(drive, "rest", {}, "strainwave.simulation.state.State", "The state at rest, untwisted and without history, input angle 0.",
+    verb(drive, "rest", {}, "strainwave.simulation.state.State",
+         "Return the state at rest, without twist and history, at input angle 0.",
          [as_state](const ParameterDrive& self, const Call&) {
              return as_state(self, array_of(general::rest(parts_of(self).set())));
          });
-    verb(
-        drive, "step",
-        {{"state", "strainwave.simulation.state.State"},
-         {"*", ""},
-         {"command", "float", "0.0"},
-         {"command_rate", "float", "0.0"},
-         {"load_torque", "float", "0.0"},
-         {"brake_torque", "float", "0.0"},
-         {"output_angle", "float", "0.0"},
-         {"output_speed", "float", "0.0"},
-         {"temperature", "float", "293.15"},
-         {"dt", "float"}},
-        "strainwave.simulation.state.State",
-        "The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, "
-        "that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of "
-        "another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; "
-        "`FloatingPointError` if the step diverges.",
-        [as_state](const ParameterDrive& self, const Call& call) {
-            const nb::object given =
-                nb::module_::import_("strainwave.simulation.state").attr("start_of")(self, call["state"], "state").attr("numbers");
-            general::State state = state_from(self, nb::cast<Numbers>(given));
-            const double dt = call.real("dt");
-            const Interval<Input<double>> u = inputs_of_step(self, call, dt);
-            if (const kernel::Outcome outcome = general::step_once(parts_of(self).set(), state, u, dt);
-                outcome.ending != kernel::Ending::done)
-                throw outcome;
-            const Values numbers = array_of(state);
-            if (!std::all_of(numbers.data(), numbers.data() + numbers.size(), [](double x) { return std::isfinite(x); })) {
-                PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
-                throw nb::python_error();
-            }
-            return as_state(self, numbers);
-        });
+    verb(drive, "step",
+         {{"state", "strainwave.simulation.state.State"},
+          {"*", ""},
+          {"command", "float", "0.0"},
+          {"command_rate", "float", "0.0"},
+          {"load_torque", "float", "0.0"},
+          {"brake_torque", "float", "0.0"},
+          {"output_angle", "float", "0.0"},
+          {"output_speed", "float", "0.0"},
+          {"temperature", "float", "293.15"},
+          {"dt", "float"}},
+         "strainwave.simulation.state.State",
+         "Return the state `dt` [s] later. The command changes at `command_rate`; if the load prescribes the motion of the output "
+         "shaft, it moves at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a "
+         "state of another drive, an argument that is not finite, a `dt` or a `temperature` that is not positive, or a part "
+         "outside its range of validity; `FloatingPointError` if the step diverges.",
+         [as_state](const ParameterDrive& self, const Call& call) {
+             const nb::object given =
+                 nb::module_::import_("strainwave.simulation.state").attr("start_of")(self, call["state"], "state").attr("numbers");
+             general::State state = state_from(self, nb::cast<Numbers>(given));
+             const double dt = call.real("dt");
+             const Interval<Input<double>> u = inputs_of_step(self, call, dt);
+             if (const kernel::Outcome outcome = general::step_once(parts_of(self).set(), state, u, dt);
+                 outcome.ending != kernel::Ending::done)
+                 throw outcome;
+             const Values numbers = array_of(state);
+             if (!std::all_of(numbers.data(), numbers.data() + numbers.size(), [](double x) { return std::isfinite(x); })) {
+                 PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
+                 throw nb::python_error();
+             }
+             return as_state(self, numbers);
+         });
 
     core.def("outputs", &outputs_of, nb::arg("drive"), nb::sig("def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]"),
-             "Name, unit, doc, part and channel of each number that a drive shows of itself.");
+             "Name, unit, doc, part and channel of each output of a drive.");
     core.def("load_input", &load_input, nb::arg("drive"), nb::sig("def load_input(drive: Drive) -> tuple[str, str, str]"),
              "Name, unit and doc of the input that the load of a drive takes.");
     core.def("actuation", &actuation_of, nb::arg("drive"), nb::sig("def actuation(drive: Drive) -> tuple[str, str]"),
-             "The output of a drive's motor that is what the controller gives it, and its unit.");
+             "Name and unit of the output of the motor that is its actuation.");
     core.def(
         "command_unit",
         [](const ParameterDrive& drive) { return command_unit(drive.control, nb::cast<const char*>(actuation_of(drive)[1])); },
@@ -294,7 +294,8 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("state"),
         nb::sig("def schedule(drive: Drive, state: " SW_ARRAY ") -> tuple[float, float, float]"),
-        "When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.");
+        "Schedule of a sampled controller: time to its next sample, period and delay [s]. The period is 0 for a continuous "
+        "controller.");
     core.def(
         "natural_frequency",
         [](const ParameterDrive& drive, double twist, double temperature) {
@@ -302,7 +303,8 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
         nb::sig("def natural_frequency(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
-        "Highest angular frequency [rad/s] at which gear and load vibrate, at twists up to `twist` [rad] and the initial `temperature` [K] of a run.");
+        "Highest angular frequency [rad/s] at which gear and load vibrate, at twists up to `twist` [rad] and the initial "
+        "`temperature` [K] of a run.");
     core.def(
         "max_rate",
         [](const ParameterDrive& drive, double twist, double temperature) {
@@ -310,7 +312,8 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
         nb::sig("def max_rate(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
-        "Highest rate that fixed steps must resolve, as an angular frequency [rad/s], at twists up to `twist` [rad] and the initial `temperature` [K] of a run: vibration of gear and load, decay of speeds, sensors and controller.");
+        "Highest rate that fixed steps must resolve, as an angular frequency [rad/s], at twists up to `twist` [rad] and the "
+        "initial `temperature` [K] of a run: vibration of gear and load, decay of speeds, sensors and controller.");
     core.def(
         "bristle_frequency", [](const ParameterDrive& drive) { return general::bristle_frequency(parts_of(drive).set()); },
         nb::arg("drive"), nb::sig("def bristle_frequency(drive: Drive) -> float"),
@@ -325,7 +328,8 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def measured(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
-        "Readings of the sensors: input angle and speed, output angle and speed, current, torque; then the least and the largest actuation that the motor can follow.");
+        "Readings of the sensors: input angle and speed, output angle and speed, current, torque; then the least and the largest "
+        "actuation that the motor can follow.");
     core.def(
         "differentiate_rates", &rate_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def differentiate_rates(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> tuple[" SW_ARRAY ", " SW_ARRAY
@@ -349,7 +353,8 @@ void bind_drives(nb::module_& core) {
         nb::arg("drive"), nb::arg("quantities"), nb::arg("values"), nb::arg("inputs"),
         nb::sig("def started(drive: Drive, quantities: collections.abc.Sequence[int], values: " SW_ARRAY ", inputs: " SW_ARRAY
                 ") -> " SW_ARRAY),
-        "State with the given quantities, and all others in equilibrium. Its transmission error is not finite if there is no such state.");
+        "State with the given quantities, and all others in equilibrium. Its transmission error is not finite if there is no such "
+        "state.");
 
     // Functions from one state to another.
     const auto advanced = [&core](const char* name, const char* more, const char* doc, auto f, const auto&... arguments) {

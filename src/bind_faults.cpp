@@ -24,9 +24,9 @@ struct FaultVerbs {
         c.type.attr("effect") = M::effect;
         c.type.attr("signal") = M::signal;
         verb(c, "changes", {{"facts", python_type<Facts>(false).c_str()}}, SW_CHANGES,
-             "Return the changes that it makes to a drive of these `facts`, the same ones in the same order at every severity: "
-             "place, quantity, kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks what "
-             "the fault needs.",
+             "Return the changes of the fault to a drive of these `facts`, in the same order at every severity: place, quantity, "
+             "kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks a fact that the fault "
+             "needs.",
              [](const M& m, const Call& call) -> nb::object {
                  const auto facts = call.part<Facts>("facts");
                  if constexpr (requires { m.missing(facts); })

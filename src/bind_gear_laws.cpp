@@ -14,9 +14,10 @@ void bind_gear_laws(nb::module_& core) {
     bind_model<NoVerbs, strainwave::hysteresis::PrandtlIshlinskii<double>>(hysteresis, "PrandtlIshlinskii", 0);
     bind_list<NoVerbs>(core, hysteresis, "density", strainwave::hysteresis::Densities{});
     bind_list<HysteresisVerbs>(core, hysteresis, "hysteresis", strainwave::hysteresis::Models{});
-    bind_family<VariationVerbs>(core, "variation", "How a stiffness varies as the wave generator turns.", variation::Models{});
-    bind_family<NoVerbs>(core, "structure", "What moves within a gear by itself.", structure::Models{});
-    bind_family<NoVerbs>(core, "softening", "How a gear gives way as it warms up.", softening::Models{});
+    bind_family<VariationVerbs>(core, "variation", "Variation of a stiffness with the angle of the wave generator.",
+                                variation::Models{});
+    bind_family<NoVerbs>(core, "structure", "Bodies within a gear that have their own motion.", structure::Models{});
+    bind_family<NoVerbs>(core, "softening", "Fall of stiffness and hysteresis with the temperature.", softening::Models{});
 }
 
 }  // namespace strainwave::host

@@ -93,8 +93,7 @@ nb::tuple time_grid_of(const Numbers& steps, const Numbers& samples, const Numbe
 }  // namespace
 
 void bind_inputs(nb::module_& core) {
-    nb::class_<Signal>(core, "Signal",
-                       "A command or another input over time, as the compiled loops know it: a line in pieces, and waves.")
+    nb::class_<Signal>(core, "Signal", "Command or other input over time for the compiled loops: a piecewise line, and waves.")
         .def(
             "__init__",
             [](Signal* self, const Numbers& start, const Numbers& level, const Numbers& slope, const Numbers& waves) {
@@ -117,8 +116,8 @@ void bind_inputs(nb::module_& core) {
     core.def("time_grid", &time_grid_of, nb::arg("steps"), nb::arg("samples"), nb::arg("breaks"), nb::arg("tolerance"),
              nb::sig("def time_grid(steps: " SW_ARRAY ", samples: " SW_ARRAY ", breaks: " SW_ARRAY
                      ", tolerance: float) -> tuple[" SW_ARRAY ", numpy.typing.NDArray[numpy.uint8], float]"),
-             "All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the "
-             "longest step from one to the next.");
+             "All instants in order (those within `tolerance` of each other are one), flags of those that are samples, and the "
+             "longest step.");
 }
 
 }  // namespace strainwave::host

@@ -76,7 +76,7 @@ using Series = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 void check_recorded(const ParameterDrive& drive, const std::vector<int>& recorded) {
     const int count = int(layout_of(drive).outputs.size());
     for (const int channel : recorded)
-        if (channel < 0 || channel >= count) throw nb::value_error("a drive has no such channel");
+        if (channel < 0 || channel >= count) throw nb::value_error("the drive has no channel of this index");
 }
 /// Rows for the outputs recorded, from sample `first` on, `count` of them.
 kernel::Rows rows_in(const ParameterDrive& drive, const Outputs& out, const std::vector<int>& recorded, std::size_t first,
@@ -146,23 +146,23 @@ std::string text_of(const kernel::Outcome& outcome) {
     if (outcome.ending == Ending::out_of_bounds)
         return std::string(outcome.part) + ": " + outside(outcome.domain) + "; first at t = " + with_unit(outcome.from, "s");
     if (outcome.ending == Ending::tolerance_missed)
-        return "no step is short enough to keep the tolerance between t = " + shortest(outcome.from) + " s and " +
-               with_unit(outcome.to, "s") + "; loosen rtol, or check the parameters";
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "all steps that max_steps allows lead to t = %.6g s only; loosen rtol, give simulate_adaptively more steps, or "
-                  "check the parameters: the gear vibrates at %.4g rad/s at rest, a shaft on its bristles at %.4g rad/s",
-                  outcome.from, outcome.natural_frequency, outcome.bristle_frequency);
+        return "the tolerance is not reached with the shortest step between t = " + shortest(outcome.from) + " s and " +
+               with_unit(outcome.to, "s") + "; increase rtol, or check the parameters";
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "the largest count of steps, max_steps, was reached at t = %.6g s; increase rtol or max_steps of simulate_adaptively, or "
+        "check the parameters: the gear vibrates at %.4g rad/s at rest, a shaft on its bristles at %.4g rad/s",
+        outcome.from, outcome.natural_frequency, outcome.bristle_frequency);
     return text;
 }
 
-/// Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.
+/// Error message of a run that cannot begin, from the quantities known at the start or the motion that the load prescribes.
 std::string no_beginning(bool known) {
     if (known)
-        return "there is no state that has the quantities of initial: motor, spring and load do not balance there; give another "
-               "angle, or the torque";
-    return "a run cannot begin with the motion that the load prescribes at t = 0: some number of its state is not finite there; "
-           "let "
+        return "no state has the quantities of initial: motor, spring and load are not in equilibrium there; give another angle, "
+               "or the torque";
+    return "a run cannot begin with the motion that the load prescribes at t = 0: a number of its state is not finite there; let "
            "output_angle begin at a smaller angle and speed";
 }
 
@@ -317,13 +317,13 @@ void bind_runs(nb::module_& core) {
             const bool refused = outcome.ending == kernel::Ending::out_of_bounds;
             PyErr_SetString(refused ? PyExc_ValueError : PyExc_FloatingPointError, text_of(outcome).c_str());
         } catch (const std::bad_alloc&) {
-            PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this; take fewer samples at a time");
+            PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this run; record fewer samples at a time");
         }
     });
     core.attr("max_lanes") = kernel::max_lanes;
     core.attr("slopes") = kernel::slopes;
     core.attr("largest") = kernel::largest;
-    nb::enum_<kernel::Method>(core, "Method", "How steps are taken.")
+    nb::enum_<kernel::Method>(core, "Method", "Method of the steps.")
         .value("exponential", kernel::Method::exponential)
         .value("moreau_jean", kernel::Method::moreau_jean)
         .value("rosenbrock", kernel::Method::rosenbrock);
@@ -337,58 +337,58 @@ void bind_runs(nb::module_& core) {
              nb::sig("def simulate(drive: Drive, start: " SW_ARRAY ", " SW_COURSE ", method: Method, " SW_OUTPUTS SW_PROGRESS
                      ") -> " SW_ARRAY),
              "The state at the end; the outputs go to `out`, shape (recorded, samples), from sample `first` on.");
-    core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("command"), nb::arg("load"),
-             nb::arg("temperature"), nb::arg("ends"), nb::arg("relative"), nb::arg("absolute"), nb::arg("max_steps"),
-             nb::arg("samples"), nb::arg("recorded"), nb::arg("out").noconvert(), nb::arg("first"),
-             nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate_adaptively(drive: Drive, start: " SW_ARRAY ", command: Signal, "
-                     "load: Signal, temperature: Signal, ends: " SW_ARRAY
-                     ", relative: float, absolute: float, max_steps: int, samples: " SW_ARRAY ", " SW_OUTPUTS SW_PROGRESS
-                     ") -> tuple[" SW_ARRAY ", int, int]"),
-             "The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; "
-             "the outputs at `samples` [s] go to `out`, shape (recorded, samples), from sample `first` on.");
     core.def(
-        "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("initial").none(),
-        nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"), nb::arg("recorded"), nb::arg("max_rate"), nb::arg("threads"),
-        nb::arg("out").noconvert(), nb::arg("progress").none() = nb::none(),
-        nb::sig("def simulate_many(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
-                ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, " SW_COURSE
-                ", recorded: collections.abc.Sequence[int], max_rate: float, threads: int, out: " SW_ARRAY SW_PROGRESS
-                ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
-        "Runs members, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no "
-        "output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to "
-        "there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape "
-        "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `max_rate` at "
-        "rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin "
-        "at rest if there is none.");
+        "simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("command"), nb::arg("load"),
+        nb::arg("temperature"), nb::arg("ends"), nb::arg("relative"), nb::arg("absolute"), nb::arg("max_steps"), nb::arg("samples"),
+        nb::arg("recorded"), nb::arg("out").noconvert(), nb::arg("first"), nb::arg("progress").none() = nb::none(),
+        nb::sig("def simulate_adaptively(drive: Drive, start: " SW_ARRAY ", command: Signal, "
+                "load: Signal, temperature: Signal, ends: " SW_ARRAY
+                ", relative: float, absolute: float, max_steps: int, samples: " SW_ARRAY ", " SW_OUTPUTS SW_PROGRESS
+                ") -> tuple[" SW_ARRAY ", int, int]"),
+        "State at the end, counts of accepted and rejected steps. Steps end at all of `ends` [s], between which no signal jumps; "
+        "the outputs at `samples` [s] go to `out`, shape (recorded, samples), from sample `first` on.");
+    core.def("simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("initial").none(),
+             nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"), nb::arg("recorded"), nb::arg("max_rate"), nb::arg("threads"),
+             nb::arg("out").noconvert(), nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate_many(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
+                     ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, " SW_COURSE
+                     ", recorded: collections.abc.Sequence[int], max_rate: float, threads: int, out: " SW_ARRAY SW_PROGRESS
+                     ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
+             "Run members; their outputs go to `out`, shape (recorded, members, 1 + kept). Return for each member: True if it ran "
+             "and no output, recorded or not, is beyond `largest`; its largest twist [rad]; the highest rate up to there that "
+             "steps had to resolve, and the vibration of a shaft on its bristles [rad/s]; and the messages of members that ended "
+             "early. `values`, shape (numbers, members), replaces the numbered parameters. Members with a higher rate than "
+             "`max_rate` at rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, "
+             "members); without it all begin at rest.");
+    core.def("member_starts", &starts_of_members, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"),
+             nb::arg("initial").none(), nb::arg("inputs"), nb::arg("threads"),
+             nb::sig("def member_starts(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
+                     ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, inputs: " SW_ARRAY
+                     ", threads: int) -> tuple[" SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
+             "Parameters and initial state of each member, not-a-number if it cannot begin, and the messages of these members; the "
+             "arguments are those of `simulate_many`.");
     core.def(
-        "member_starts", &starts_of_members, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("initial").none(),
-        nb::arg("inputs"), nb::arg("threads"),
-        nb::sig("def member_starts(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
-                ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, inputs: " SW_ARRAY
-                ", threads: int) -> tuple[" SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
-        "The parameters of each member and the numbers of the state in which it begins, not-a-number where it cannot, and why it "
-        "cannot; the arguments are those of `simulate_many`.");
-    core.def("no_beginning", &no_beginning, nb::arg("known"),
-             "Error message of a run that cannot begin, from the quantities known at the start or the motion that the load prescribes.");
+        "no_beginning", &no_beginning, nb::arg("known"),
+        "Error message of a run that cannot begin, from the quantities known at the start or the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");
     core.def(
         "inverse_dynamics", &needed_torque, nb::arg("drive"), nb::arg("motion"), nb::arg("inputs"), nb::arg("parameters"),
         nb::sig("def inverse_dynamics(drive: Drive, motion: " SW_ARRAY ", inputs: " SW_ARRAY
                 ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
         "Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). "
-        "A motion is angle [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], 0 where friction "
-        "has long been sliding; the gear is as stiff as a rigid one, and what acts is as in `inputs`, shape (n, 6).");
+        "A motion is angle [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], 0 if friction has "
+        "been sliding for long; the gear is rigid, and the inputs are `inputs`, shape (n, 6).");
     core.def("instruction_sets", &instruction_sets, nb::sig("def instruction_sets() -> list[str]"),
-             "Those of this machine that kernels can be compiled for, the widest first.");
+             "Instruction sets of this machine that kernels can be compiled for, the widest first.");
     core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),
              nb::sig("def add_kernel(drive: Drive, address: int) -> None"),
-             "Uses a kernel that is loaded, its table at an address, for all drives of the laws of one.");
+             "Use a loaded kernel, by the address of its table, for all drives with the laws of this drive.");
     core.def(
         "forget_kernels", [](const ParameterDrive& drive) { forget_kernels(parts_of(drive).laws); }, nb::arg("drive"),
-        nb::sig("def forget_kernels(drive: Drive) -> None"), "Lets the general drive run drives of the laws of one again.");
+        nb::sig("def forget_kernels(drive: Drive) -> None"),
+        "Use the general drive again for all drives with the laws of this drive.");
     core.def("loaded_jobs", &loaded_jobs, nb::arg("drive"), nb::sig("def loaded_jobs(drive: Drive) -> list[str]"),
-             "What a kernel is loaded for, for drives of the laws of one.");
+             "Names of the jobs that have a loaded kernel, for drives with the laws of this drive.");
     core.def(
         "differentiate", &run_derivatives, nb::arg("drive"), nb::arg("initial").none(), nb::arg("instants"), nb::arg("inputs"),
         nb::arg("keep"), nb::arg("parameters"), nb::arg("progress").none() = nb::none(),

@@ -7,7 +7,7 @@
 /// Calls of verbs from Python, taken as they come: what does not fit is refused in one line, where nanobind lists every overload.
 namespace strainwave::host {
 
-/// An argument of a verb as its signature tells it: name, type, and the value it has if it is not given, in Python's words. One
+/// An argument of a verb as its signature lists it: name, type, and the value it has if it is not given, in Python's words. One
 /// named "*" is none: those after it are given by name alone.
 struct Accepted {
     const char* name;
@@ -17,7 +17,7 @@ struct Accepted {
 
 void check_finite(double x, const char* name);
 
-/// What a verb was called with.
+/// Arguments of a call of a verb.
 class Call {
     const std::string& verb;
     const std::vector<Accepted>& accepted;
@@ -26,7 +26,7 @@ class Call {
 public:
     Call(const std::string& verb_, const std::vector<Accepted>& accepted_, const nb::args& unnamed, const nb::kwargs& named);
 
-    /// What was given, or the value that stands for it.
+    /// The given value, or the default.
     nb::object operator[](const char* name) const;
     /// A number, finite or not.
     double real(const char* name) const;
@@ -49,7 +49,7 @@ private:
     [[noreturn]] void refuse_type(const char* name, const std::string& wanted, nb::handle value) const;
 };
 
-// What a type can be asked: functions that get the model as a pointer, so that only they are compiled for each.
+// Functions of a type that get the model as a pointer, so that only they are compiled for each type.
 
 /// f(model, call).
 void define_verb(nb::handle type, const Description& description, const char* name, const std::vector<Accepted>& accepted,

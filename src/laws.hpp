@@ -20,7 +20,7 @@ typename M::State follow(const M& m, typename M::State x, const Argument& path, 
     return x;
 }
 
-/// What value(state, increment, i) gives at each point of the path that a verb was called with.
+/// Values of value(state, increment, i) at each point of the path of a call.
 template <class M, class F>
 Values along_path(const M& m, const Call& call, const char* name, const char* unit, F&& value) {
     const auto path = steps_of(call[name], name, unit);
@@ -41,7 +41,8 @@ template <class M>
 void inverse_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.inverse(1.0); })
         verb(c, "inverse", {{"spring", "float"}}, python_type<decltype(std::declval<const M&>().inverse(1.0))>(false),
-             "What undoes this hysteresis beside a linear `spring` [N.m/rad]: twist over torque, exact, its history included.",
+             "Return the exact inverse of this hysteresis in parallel with a linear `spring` [N.m/rad]: twist over torque, history "
+             "included.",
              [](const M& m, const Call& call) {
                  const double spring = call.number("spring");
                  if (!(spring > 0.0))
@@ -54,12 +55,12 @@ void inverse_verbs(const Bound<M>& c) {
         const std::vector<Accepted> path{{"torque", SW_NUMBERS}, {"state", "State", "..."}};
         host::bind<typename M::State>(c.type, "State", std::string(M::name) + ".state");  // not std::bind
         verb(c, "trace", path, SW_ARRAY,
-             "Twist [rad], shape (n,), along a path of `torque` [N.m], shape (n,), from rest at its first point.",
+             "Return the twist [rad], shape (n,), along a path of `torque` [N.m], shape (n,), from rest at its first point.",
              [](const M& m, const Call& call) {
                  return along_path(m, call, "torque", "N.m",
                                    [&](const auto& x, double increment, std::size_t) { return m.twist(x, increment); });
              });
-        verb(c, "advance", path, "State", "The state at the end of a path of `torque` [N.m].",
+        verb(c, "advance", path, "State", "Return the state at the end of a path of `torque` [N.m].",
              [](const M& m, const Call& call) { return end_of_path(m, call, "torque", "N.m"); });
     }
 }
@@ -69,7 +70,8 @@ template <class M>
 void own_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.lobes(strainwave::Angle<double>{}); }) {
         verb(c, "lobes", {{"angle", SW_NUMBER_OR}}, "tuple[" SW_ARRAY ", " SW_ARRAY "]",
-             "Radial displacements delta_A, delta_B [m] of the two lobes at input `angle` [rad], each of the shape of `angle`.",
+             "Return the radial displacements delta_A, delta_B [m] of the two lobes at input `angle` [rad], each of the shape of "
+             "`angle`.",
              [](const M& m, const Call& call) {
                  const auto x = numbers(call["angle"], "angle");
                  const auto law = compiled(m);
@@ -84,17 +86,18 @@ void own_verbs(const Bound<M>& c) {
                  return nb::make_tuple(first, second);
              });
         verb(c, "leading", {}, python_type<kinematic_error::Fourier<double>>(false),
-             "The harmonics to leading order, in closed form: a Fourier law.", [](const M& m, const Call&) { return m.leading(); });
+             "Return the harmonics to leading order, in closed form: a Fourier law.",
+             [](const M& m, const Call&) { return m.leading(); });
         property(c, "eccentricity", "tuple[float, float]", "Vector m that the harmonics determine, x and y [m].",
                  [](const M& m) { return nb::make_tuple(m.eccentricity().x, m.eccentricity().y); });
     }
     if constexpr (requires(const M& m) { m.active(); })
-        property(c, "active", "bool", "Whether it makes any difference.", [](const M& m) { return m.active(); });
+        property(c, "active", "bool", "True if the law has an effect.", [](const M& m) { return m.active(); });
     if constexpr (requires(const M& m) { m.ratio(); })
         property(c, "ratio", "float", "Input angle over output angle, signed.", [](const M& m) { return m.ratio(); });
 }
 
-/// What a law claims of itself beyond its family, for tests and docs to go by.
+/// Properties that a law claims beyond its family, for tests and docs.
 template <class M>
 void claims(const Bound<M>& c) {
 #define SW_CLAIM(claim) \

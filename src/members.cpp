@@ -78,9 +78,9 @@ const char* signature(const std::string& head, const std::string& result, bool m
     return kept(text + ") -> " + result);
 }
 
-/// What is known of each member besides its value: name, unit, doc, limits (None: no limit) and whether the lower one is open, its
-/// kind, and what it may be chosen from; whether it is required, whether a file may leave it out, the member it follows if it is
-/// not given, and its value by default: an order of magnitude where that is not used.
+/// Description of each member: name, unit, doc, limits (None: no limit) and whether the lower one is open, its kind, and what it
+/// may be chosen from; whether it is required, whether a file may leave it out, the member it follows if it is not given, and its
+/// value by default: an order of magnitude where that is not used.
 nb::tuple schema(const Description& description) {
     nb::list list;
     for (const Member& member : description.members) {
@@ -111,7 +111,7 @@ std::string qualified(nb::handle type) {
 
 namespace {
 
-/// Where a member stands in a set of parameters.
+/// Place of a member in a set of parameters.
 struct Path {
     const Path* outer;
     const char* name;
@@ -250,7 +250,7 @@ const Description& description_of(nb::handle object) {
 
 namespace {
 
-/// Where the model of an object is to be made; one that is made never changes.
+/// Memory for the model of an object; a constructed model never changes.
 void* unmade(nb::handle object, const Description& description) {
     const nb::handle type = description.python_type();
     if (!PyObject_TypeCheck(object.ptr(), reinterpret_cast<PyTypeObject*>(type.ptr())) || nb::inst_ready(object))
@@ -274,7 +274,8 @@ void define_value(nb::handle type, const Description& description) {
             void* const model = unmade(self, *of);
             of->copy(model, of->defaults);
             set_members(model, values, *of);
-            if (!missing.empty()) throw nb::type_error((of->name + " needs " + missing + ": no value suits most gears").c_str());
+            if (!missing.empty())
+                throw nb::type_error((of->name + " needs " + missing + ": it has no default that suits most gears").c_str());
             check_relations(model, *of);
             if (of->check_passivity) of->check_passivity(model);
             nb::inst_mark_ready(self);
@@ -297,7 +298,8 @@ void define_value(nb::handle type, const Description& description) {
             return other;
         },
         nb::sig(signature("replace", qualified(type), false, description)),
-        "The same with the named parameters changed. A dictionary names them by their paths: {\"friction_input.viscous\": 1e-4}.");
+        "Return the model with the named parameters changed. A dictionary names them by their paths: {\"friction_input.viscous\": "
+        "1e-4}.");
     const nb::object property = nb::module_::import_("builtins").attr("property");
     for (const Member& member : description.members) {
         const Field& field = member.field;

@@ -4,8 +4,8 @@
 #include "describe.hpp"
 #include "text.hpp"
 
-/// What Python sees of the members of a struct, at run time: a table made from its description, so that the functions that read,
-/// show and compare are compiled once, not once for each struct.
+/// Members of a struct as Python sees them, at run time: a table made from its description, so that the functions that read, show
+/// and compare are compiled once, not once for each struct.
 namespace strainwave::host {
 
 /// True if a value is a T that was made: one from `T.__new__` alone holds nothing.
@@ -29,7 +29,7 @@ constexpr bool is_whole(const Field& field) {
     return std::is_same_v<T, int> || field.whole;
 }
 
-/// Reads a member from Python, or says what is wrong with it.
+/// Reads a member from Python, or raises an error.
 struct Reader {
     std::string owner;
 
@@ -153,7 +153,7 @@ std::string python_type(bool argument) {
     }
 }
 
-/// What a member may be chosen from: models by their names in files, or the names of an enumeration.
+/// Choices of a member: models by their names in files, or the names of an enumeration.
 template <class T>
 nb::object options_of() {
     if constexpr (is_choice<T>) {
@@ -171,7 +171,7 @@ nb::object options_of() {
     }
 }
 
-/// Warns that a model can create energy, if its rule says so.
+/// Warns that a model can create energy, if it violates its rule.
 void check_passivity(const Condition<double>& rule, const char* name);
 
 /// The name of a type with that of its module.
@@ -289,7 +289,7 @@ struct Description {
 
 template <class M>
 inline const Description* bound_description = nullptr;
-/// That of a struct that is bound.
+/// Description of a bound struct.
 template <class M>
 const Description& description_of() {
     return *bound_description<M>;
@@ -321,7 +321,7 @@ const Description& describe(const char* python_name, const std::string& name) {
     return description;
 }
 
-/// That of a bound struct, by an object; refused if it is none.
+/// Description of a bound struct by an object; an error if it is none.
 const Description& description_of(nb::handle object);
 
 /// The model that a Python object holds; refused if it is none of this type.

@@ -20,7 +20,7 @@ struct Layout {
     std::size_t continuous = 0;  ///< numbers of a state that change continuously; they come first
 };
 
-/// That of drives with the laws of one. Needs Python's lock.
+/// Layout of drives with the laws of one drive. Needs Python's lock.
 const Layout& layout_of(const ParameterDrive& drive, const std::vector<int>& laws);
 
 }  // namespace strainwave::host

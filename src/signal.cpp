@@ -39,7 +39,7 @@ Value along(const Signal& signal, std::size_t piece, double instant) {
     return at;
 }
 
-/// As many as a pack holds.
+/// Instants of one pack.
 void evaluate_together(const Signal& signal, const double* instants, Side side, double* values, double* rates) {
     for (int i = 0; i < lanes; ++i) {
         const std::size_t k = piece_at(signal, instants[i], side);
@@ -80,7 +80,7 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
     auto taken = instants;  // the end of the step before it is of the first piece that begins there, if several do but for rounding
     for (auto piece = within; piece != starts.end() && *piece <= *(last - 1); ++piece) {
         const auto end = std::lower_bound(ends, last, *piece);
-        // A jump of another signal just beside this one may have taken the end of the step.
+        // A jump of another signal close to this one may have taken the end of the step.
         if (end == taken || *end - *piece > 1e-6 * (*end - *(end - 1))) continue;
         taken = end;
         evaluate(signal, &*piece, 1, Side::before, value, rate);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-/// What acts on a drive from outside, over time.
+/// Inputs of a drive over time.
 namespace strainwave::host {
 
 /// A sine whose frequency may rise linearly.
@@ -18,13 +18,13 @@ struct Signal {
     std::vector<Wave> waves;
 };
 
-/// Which of two limits is taken where a signal jumps.
+/// Limit of a signal at its jumps.
 enum class Side { before, after };
 
 /// The signal, and its rate, at each of some instants [s], in any order.
 void evaluate(const Signal& signal, const double* instants, std::size_t count, Side side, double* values, double* rates);
 
-/// How many signals act on a drive: the command, the input of its load, the temperature.
+/// Count of the signals of a drive: the command, the input of its load, the temperature.
 inline constexpr int signal_count = 3;
 using Signals = Array<const Signal*, signal_count>;
 

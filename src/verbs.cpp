@@ -36,9 +36,9 @@ Argument steps_of(nb::handle values, const char* name, const char* unit) {
     const auto path = path_of(values, name);
     const auto [low, high] = std::minmax_element(path.data(), path.data() + path.size());
     if (!std::isfinite(16.0 * (*high - *low)))
-        throw nb::value_error(
-            (std::string(name) + " from " + shortest(*low) + " to " + with_unit(*high, unit) + " is wider than numbers reach")
-                .c_str());
+        throw nb::value_error((std::string(name) + " from " + shortest(*low) + " to " + with_unit(*high, unit) +
+                               " is wider than the range of numbers")
+                                  .c_str());
     return path;
 }
 
@@ -119,33 +119,33 @@ void stiffness_verbs(const BoundLaw& of) {
         check_domain(name, law.domain(x));
         return x;
     };
-    function<Part>(of, "torque", "twist", "Torque [N.m] at `twist` [rad].",
+    function<Part>(of, "torque", "twist", "Return the torque [N.m] at `twist` [rad].",
                    [=](const Part& law, double x) { return law.torque(within(law, x)); });
-    function<Part>(of, "twist", "torque", "Twist [rad] at `torque` [N.m], the inverse of `torque`.",
+    function<Part>(of, "twist", "torque", "Return the twist [rad] at `torque` [N.m], the inverse of `torque`.",
                    [](const Part& law, double x) { return law.twist(x); });
-    function<Part>(of, "tangent", "twist", "Stiffness dT/d(twist) [N.m/rad] at `twist` [rad].",
+    function<Part>(of, "tangent", "twist", "Return the stiffness dT/d(twist) [N.m/rad] at `twist` [rad].",
                    [=](const Part& law, double x) { return law.tangent(within(law, x)); });
-    function<Part>(of, "energy", "twist", "Elastic energy [J] at `twist` [rad].",
+    function<Part>(of, "energy", "twist", "Return the elastic energy [J] at `twist` [rad].",
                    [=](const Part& law, double x) { return law.energy(within(law, x)); });
 }
 
 void error_verbs(const BoundLaw& of) {
     using Part = general::KinematicError<double>;
-    function<Part>(of, "error", "angle", "Kinematic error [rad] at input `angle` [rad].",
+    function<Part>(of, "error", "angle", "Return the kinematic error [rad] at input `angle` [rad].",
                    [](const Part& law, double x) { return law.at(turned(x)).value; });
-    function<Part>(of, "slope", "angle", "Its derivative [rad/rad] by the input angle.",
+    function<Part>(of, "slope", "angle", "Return the derivative [rad/rad] of the error by the input angle.",
                    [](const Part& law, double x) { return law.at(turned(x)).slope; });
-    define_verb(of.type, of.description, "harmonics", {{"highest", "int", "8"}},
-                python_type<kinematic_error::Fourier<double>>(false),
-                "Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
-                [of](const void* model, const Call& call) {
-                    return nb::cast(harmonics_of(single_law<Part>(of, model).part, call.whole("highest")));
-                });
+    define_verb(
+        of.type, of.description, "harmonics", {{"highest", "int", "8"}}, python_type<kinematic_error::Fourier<double>>(false),
+        "Return the harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
+        [of](const void* model, const Call& call) {
+            return nb::cast(harmonics_of(single_law<Part>(of, model).part, call.whole("highest")));
+        });
 }
 
 void variation_verbs(const BoundLaw& of) {
     function<general::Variation<double>>(of, "factor", "angle",
-                                         "What the stiffness is multiplied by [1] at an `angle` [rad] of the wave generator.",
+                                         "Return the factor [1] of the stiffness at an `angle` [rad] of the wave generator.",
                                          [](const auto& law, double x) { return law.at(turned(x)).value; });
 }
 
@@ -155,8 +155,8 @@ void feedforward_verbs(const BoundLaw& of) {
         of.type, of.description, "requests",
         {{"angle", SW_NUMBERS}, {"speed", SW_NUMBERS}, {"ratio", "float"}, {"period", "float"}},
         "tuple[" SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY "]",
-        "Return its requests along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), one `period` "
-        "[s] after another, through a gear of this signed `ratio`: the lead of the input over the rigid motion [rad], its "
+        "Return the requests along a motion of the output, `angle` [rad] and `speed` [rad/s], each of shape (n,), sampled with "
+        "`period` [s], through a gear of this signed `ratio`: the lead of the input over the rigid motion [rad], its "
         "rate [rad/s], the torque of the motor [N.m], and the share of it that overcomes friction [N.m], each of shape "
         "(n,). `ValueError` if the two differ in length, if `period` lies outside of [1e-9, 1e6], or `ratio` without its sign "
         "outside of [1e-6, 1e6].",
@@ -187,7 +187,7 @@ void feedforward_verbs(const BoundLaw& of) {
 
 namespace {
 
-/// What is taken of a random error, for an angle or an array of any shape.
+/// Evaluations of a random error, for an angle or an array of any shape.
 template <class F>
 void noise_verb(const BoundLaw& of, const char* name, const char* doc, F what) {
     using Part = general::KinematicNoise<double>;
@@ -213,10 +213,11 @@ void noise_verb(const BoundLaw& of, const char* name, const char* doc, F what) {
 }  // namespace
 
 void noise_verbs(const BoundLaw& of) {
-    noise_verb(of, "error",
-               "Random kinematic error [rad] at input `angle` [rad], under `torque` [N.m] at `speed` [rad/s] of the input.",
-               [](const auto& error) { return error.value; });
-    noise_verb(of, "slope", "Its derivative [rad/rad] by the input angle, at constant amplitude.",
+    noise_verb(
+        of, "error",
+        "Return the random kinematic error [rad] at input `angle` [rad], under `torque` [N.m] at `speed` [rad/s] of the input.",
+        [](const auto& error) { return error.value; });
+    noise_verb(of, "slope", "Return the derivative [rad/rad] of the error by the input angle, at constant amplitude.",
                [](const auto& error) { return error.slope; });
 }
 
@@ -246,7 +247,7 @@ nb::object state_out(const BoundLaw& of, const State& slots) {
 
 using Hysteresis = general::Hysteresis<double>;
 
-/// What value(law, state, increment, i) gives at each point of a path of twist, the state brought up to date after each.
+/// Values of value(law, state, increment, i) at each point of a path of twist, the state brought up to date after each.
 template <class F>
 Values along_path(const BoundLaw& of, const void* model, const Call& call, F&& value) {
     const auto law = single_law<Hysteresis>(of, model);
@@ -272,24 +273,26 @@ void hysteresis_verbs(const BoundLaw& of) {
                     [of, f](const void* model, const Call& call) -> nb::object { return nb::cast(f(of, model, call)); });
     };
     define("trace", SW_ARRAY,
-           "Torque [N.m], shape (n,), along a path of `twist` [rad], shape (n,), monotone between its points.\n\n"
-           "The history starts with `state`, which stands at the first point; without it the model is virgin.",
+           "Return the torque [N.m], shape (n,), along a path of `twist` [rad], shape (n,), monotone between its points.\n\n"
+           "The history starts with `state` at the first point; without it the model is virgin.",
            [](const BoundLaw& law, const void* model, const Call& call) {
                return along_path(law, model, call, [](const Hysteresis& m, const State& x, double increment, std::size_t) {
                    return m.torque(x, increment);
                });
            });
-    define("work", SW_ARRAY, "Work [J] put in so far, shape (n,), along a path of `twist` [rad]; exact, as `trace` is.",
-           [](const BoundLaw& law, const void* model, const Call& call) {
-               double sum = 0.0;
-               return along_path(law, model, call, [&](const Hysteresis& m, const State& x, double increment, std::size_t i) {
-                   sum += m.work(x, increment);
-                   if (!std::isfinite(sum))
-                       throw nb::value_error(("twist[" + std::to_string(i) + "] leads to more work than numbers reach").c_str());
-                   return sum;
-               });
-           });
-    define("advance", "State", "The state at the end of a path of `twist` [rad].",
+    define(
+        "work", SW_ARRAY,
+        "Return the work [J] done on the model so far, shape (n,), along a path of `twist` [rad]; exact, as `trace` is.",
+        [](const BoundLaw& law, const void* model, const Call& call) {
+            double sum = 0.0;
+            return along_path(law, model, call, [&](const Hysteresis& m, const State& x, double increment, std::size_t i) {
+                sum += m.work(x, increment);
+                if (!std::isfinite(sum))
+                    throw nb::value_error(("twist[" + std::to_string(i) + "] leads to work beyond the range of numbers").c_str());
+                return sum;
+            });
+        });
+    define("advance", "State", "Return the state at the end of a path of `twist` [rad].",
            [](const BoundLaw& of_law, const void* model, const Call& call) {
                const auto law = single_law<Hysteresis>(of_law, model);
                const auto twist = steps_of(call["twist"], "twist", "rad");
@@ -302,7 +305,7 @@ void hysteresis_verbs(const BoundLaw& of) {
            });
     if (of.stores)
         define("stored", SW_ARRAY,
-               "Elastic energy [J] held, shape (n,), along a path of `twist` [rad]; work less stored is dissipated.",
+               "Return the elastic energy [J], shape (n,), along a path of `twist` [rad]; work less stored energy is dissipated.",
                [](const BoundLaw& law, const void* model, const Call& call) {
                    return along_path(law, model, call, [](const Hysteresis& m, const State& x, double increment, std::size_t) {
                        return m.stored(m.advance(x, increment));
@@ -328,7 +331,7 @@ using Contact = friction::Contact<double>;
 
 #define SW_CONTACT_DOC                                                                                                        \
     "under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and " \
-    "`temperature` [K]. The law looks at what it depends on."
+    "`temperature` [K]. A law ignores the arguments that it does not depend on."
 
 /// An argument and what a contact depends on, each of the same type.
 std::vector<Accepted> contacted(const Accepted& first) {
@@ -393,7 +396,7 @@ Values friction_trace(const BoundLaw& of, const void* model, const Call& call) {
             angle += mean * dt;
             if (!std::isfinite(angle))
                 throw nb::value_error(("speed[" + std::to_string(i) + "] = " + with_unit(v.data()[i], "rad/s") +
-                                       " leads to a larger angle than numbers reach")
+                                       " leads to an angle beyond the range of numbers")
                                           .c_str());
         }
         torque[i] = friction::torque(law, state, contact(i, v.data()[i]));
@@ -401,8 +404,8 @@ Values friction_trace(const BoundLaw& of, const void* model, const Call& call) {
     return out;
 }
 
-/// A speed [rad/s] so slow that no rate shows beside a torque and every time [s] has passed that a law relaxes in. A power of two:
-/// a displacement over it, times it, is the displacement again.
+/// A speed [rad/s] so slow that no rate is visible in a torque and every time [s] has passed that a law relaxes in. A power of
+/// two: a displacement over it, times it, is the displacement again.
 constexpr double quasistatic_speed = 0x1p-500;
 
 Values friction_quasistatic(const BoundLaw& of, const void* model, const Call& call) {
@@ -431,37 +434,36 @@ Values friction_quasistatic(const BoundLaw& of, const void* model, const Call& c
 }  // namespace
 
 void friction_verbs(const BoundLaw& of) {
-    over_contacts(of, "steady", "speed", "", "Torque [N.m] that opposes steady sliding at `speed` [rad/s], " SW_CONTACT_DOC,
+    over_contacts(of, "steady", "speed", "", "Return the torque [N.m] against steady sliding at `speed` [rad/s], " SW_CONTACT_DOC,
                   [](const Friction& law, const Contact& at, double v) { return friction::steady(law, at.moving(v)); });
     over_contacts(of, "hold", "sense", "1.0",
-                  "The largest torque [N.m] it balances at rest, pushed towards `sense`, " SW_CONTACT_DOC
+                  "Return the breakaway torque [N.m] at rest in the direction `sense`, " SW_CONTACT_DOC
                   "\n\nZero for a law that does not stick.",
                   [](const Friction& law, const Contact& at, double s) { return friction::hold(law, at.pushed(sign(s))); });
-    define_property(of.type, of.description, "set_valued", "bool", "Whether it can hold at rest.",
+    define_property(of.type, of.description, "set_valued", "bool", "True if the law is set-valued at rest.",
                     [of](const void* model) { return nb::cast(single_law<Friction>(of, model).part.set_valued()); });
     const Accepted angle{"angle", "float", "0.0"}, load{"load", SW_NUMBER_OR, "0.0"},
         temperature{"temperature", SW_NUMBER_OR, "293.15"};
     std::vector<Accepted> traced{{"time", SW_NUMBERS}, {"speed", SW_NUMBERS}, angle, load, temperature};
     if (of.state) traced.push_back({"state", "State", "..."});
-    define_verb(
-        of.type, of.description, "trace", traced, SW_ARRAY,
-        "Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).\n\n"
-        "`angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for "
-        "a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A "
-        "law that sticks shows no torque at rest: what it holds depends on what drives it.",
-        [of](const void* model, const Call& call) { return nb::cast(friction_trace(of, model, call)); });
+    define_verb(of.type, of.description, "trace", traced, SW_ARRAY,
+                "Return the torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).\n\n"
+                "`angle` [rad] is the angle at the start; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact "
+                "for a speed that is constant between samples, whatever the step; otherwise each step has the mean speed of its "
+                "two samples. The torque of a set-valued law is 0 at rest, because it depends on the driving torque.",
+                [of](const void* model, const Call& call) { return nb::cast(friction_trace(of, model, call)); });
     define_verb(
         of.type, of.description, "quasistatic", {{"displacement", SW_NUMBERS}, angle, load, temperature}, SW_ARRAY,
-        "Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit "
-        "of infinite slowness.\n\n"
-        "No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of "
-        "the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact "
-        "over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] "
-        "are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.",
+        "Return the torque [N.m], shape (n,), along a slow path of `displacement` [rad], shape (n,), monotone between its "
+        "points.\n\n"
+        "In the limit of speed 0, without torques that depend on speed or rate. The torque of a set-valued law is its breakaway "
+        "torque, in the sense of the last motion, and 0 before the first. A law with memory starts virgin, keeps its torque at "
+        "rest, and is exact over each step, whatever its length. `angle` [rad] is the angle at displacement 0; `load` [N.m] and "
+        "`temperature` [K] are numbers or of shape (n,). Each step has the angle, load and temperature at its end.",
         [of](const void* model, const Call& call) { return nb::cast(friction_quasistatic(of, model, call)); });
     if (of.description.check_passivity)
         define_verb(of.type, of.description, "check", {}, "None",
-                    "Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.",
+                    "Warn with PassivityWarning, with both sides of the condition, if the model can create energy.",
                     [check = of.description.check_passivity](const void* model, const Call&) -> nb::object {
                         check(model);
                         return nb::none();

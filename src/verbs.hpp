@@ -20,7 +20,7 @@ std::pair<Values, double*> like(const Argument& model);
 #define SW_NUMBERS "collections.abc.Sequence[float] | " SW_ARRAY
 
 /// An angle in turns and rest. One too large to resolve its turn stands where it would if turns were of 2 pi as rounded; beyond
-/// 1e300 turns none is told from another.
+/// 1e300 turns no two are distinct.
 Angle<double> turned(double angle);
 
 /// Refuses an argument outside of where a law is valid.

@@ -24,7 +24,7 @@ struct Sequence {
     constexpr int size() const { return count; }
 };
 
-/// As many elements as a model chosen at run time has, of at most `capacity`: neither made nor copied beyond those.
+/// Elements of a model chosen at run time, at most `capacity`: no more are constructed or copied.
 template <class T, int capacity_>
 struct Counted {
     static constexpr int capacity = capacity_;

@@ -13,7 +13,7 @@ struct Condition {
     const char* unit;
 };
 
-/// How the numbers of a set contradict each other; nothing does where there is no text. Each {} in it stands for a number.
+/// Contradiction between numbers of a set; none if there is no text. Each {} in the text is a number.
 template <class S>
 struct Contradiction {
     const char* text{nullptr};
@@ -21,7 +21,7 @@ struct Contradiction {
     S second{};
 };
 
-/// Where a law is valid: `value` within [low, high].
+/// Range in which a law is valid: `value` within [low, high].
 template <class S>
 struct Domain {
     const char* name;
@@ -29,7 +29,7 @@ struct Domain {
     S low{-unbounded};
     S high{unbounded};
     const char* unit;
-    const char* remedy;  ///< What the user can do: a sentence, or nothing
+    const char* remedy;  ///< Advice to the user: a sentence, or nothing
 
     constexpr auto holds() const { return (value >= low) & !(value > high); }
 };
@@ -38,7 +38,7 @@ struct Domain {
 template <class Law, class Where>
 concept Bounded = requires(const Law& law, const Where& where) { law.domain(where); };
 
-/// Whether a law has bounds; asked of a choice, whether the law chosen has.
+/// True if a law has bounds; for a choice, if the chosen law has.
 template <class Where, class Law>
 constexpr bool bounded(const Law& law) {
     if constexpr (requires { law.modulated(Where{}); })
@@ -49,7 +49,7 @@ constexpr bool bounded(const Law& law) {
         return Bounded<Law, Where>;
 }
 
-/// Where a law is valid, for the twist or the contact it is asked at; everywhere, if it does not say.
+/// Range in which a law is valid, at a twist or a contact; unbounded if the law has none.
 template <class S, class Law, class Where>
 constexpr Domain<S> domain(const Law& law, const Where& where) {
     if constexpr (requires { law.modulated(where); })

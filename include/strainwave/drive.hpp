@@ -63,8 +63,8 @@ struct Drive {
     constexpr Contradiction<S> problem() const {
         if (!all(input_inertia() > S(0.0)))
             return {gear.structure.rigid()
-                        ? "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input"
-                        : "motor.inertia must exceed 0 with this structure of the gear: the input shaft turns by itself"};
+                        ? "motor.inertia and gear.input_inertia cannot both be 0: the input needs an inertia"
+                        : "motor.inertia must exceed 0 with this structure of the gear: the input shaft is a body of its own"};
         const char* given = control::given_by(control);
         if (*given != 0 && !same(given, motor::taken_by(motor)))
             return {
@@ -296,7 +296,7 @@ struct Drive {
     constexpr structure::Generator<S> generator(const State& x) const {
         return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous));
     }
-    /// What vibrates in the gear where its spring has a stiffness [N.m/rad].
+    /// Bodies of the vibration of a gear whose spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {
         return {prescribed_motion::movable<S>(*this, input_inertia()),
                 gear.input_inertia,
@@ -307,7 +307,7 @@ struct Drive {
                 load_stiffness<S>(load)};
     }
 
-    /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
+    /// The state with the memory of friction after `dt` [s] at constant speeds; angles do not change.
     constexpr State relaxed(State x, const Input& u, const S& dt) const {
         const Contacts at = contacts::at<S>(*this, x, x.continuous, mesh(x, x.continuous, u), u);
         x.continuous.friction_input = friction::advance(gear.friction_input, x.continuous.friction_input, at.input, dt);
@@ -370,7 +370,7 @@ struct Drive {
 
     constexpr bool has_events() const { return input_sticks() || output_sticks(); }
 
-    /// Whether a shaft sticks, in any lane.
+    /// True if a shaft sticks, in any lane.
     constexpr bool sticks(const State& x) const {
         return (input_sticks() && any(x.input_slip_direction == S(0.0))) ||
                (output_sticks() && any(x.output_slip_direction == S(0.0)));
@@ -458,7 +458,7 @@ struct Drive {
         return at;
     }
 
-    /// What sensors can measure, under this torque of the gear.
+    /// Quantities that sensors measure, under this torque of the gear.
     constexpr Measurement measurable(const State& x, const Continuous& y, const Input& u, const S& torque) const {
         return measurable(x, y, u, torque, control::held<S>(control, x.discrete.control));
     }
@@ -473,7 +473,7 @@ struct Drive {
                 torque,
                 motor::limits(motor, y.motor, rotor)};
     }
-    /// What a controller from outside sees, which has set the actuation that there is.
+    /// Measurement for an external controller, which has set the present actuation.
     constexpr Measurement seen(const Evaluation& at, const Input& u) const {
         const Continuous& y = at.state.continuous;
         return sensors.shown(y.sensors, measurable(at.state, y, u, at.derivatives.mesh.torque, at.derivatives.actuation));
@@ -509,7 +509,7 @@ private:
     /// A shaft that sticks does not accelerate.
     static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
-    /// What warms up and what is measured, of an instant at which all else is known.
+    /// Temperatures and meter of an instant at which all else is known.
     constexpr void measure(const State& x, const Continuous& y, const Input& u, Derivatives& now) const {
         if constexpr (size_of<S, typename ThermalModel::State> > 0 || size_of<S, typename Meter::State> > 0) {
             if (!thermal.active() && !meter.active()) return;

@@ -2,10 +2,10 @@
 #include <strainwave/kinematics.hpp>
 #include <strainwave/math.hpp>
 
-/// Facts of a gear that more than one of its parts is told, so that each can be used alone.
+/// Facts of a gear that more than one of its parts contains, so that each can be used alone.
 namespace strainwave::facts {
 
-/// What `known` reads of a part, or else of the law or the springs that it holds; asked of a choice, of the part chosen.
+/// Value that `known` reads of a part, or else of its inner law or springs; for a choice, of the chosen part.
 template <class Fact, class Part, class Known>
 constexpr Fact of(const Part& part, const Known& known) {
     if constexpr (requires { known(part); })
@@ -20,7 +20,7 @@ constexpr Fact of(const Part& part, const Known& known) {
         return Fact{};
 }
 
-/// The ratio without its sign, of which a spring tells the reduction; 0 where it tells none.
+/// The reduction of a spring, which is the ratio without its sign; 0 if it has none.
 template <class S, class Spring>
 constexpr S reduction(const Spring& spring) {
     return of<S>(
@@ -56,7 +56,7 @@ struct Teeth {
     int circular_spline{0};
     kinematics::Fixed fixed{kinematics::Fixed::circular_spline};
 
-    /// As a ratio without its sign.
+    /// The ratio without its sign.
     constexpr double ratio() const {
         return double(fixed == kinematics::Fixed::flexspline ? circular_spline : flexspline) / double(circular_spline - flexspline);
     }
@@ -71,7 +71,7 @@ constexpr Teeth teeth(const Part& part) {
         { return {law.flexspline_teeth, law.circular_spline_teeth, law.fixed}; });
 }
 
-/// Whether one of two numbers is not told, or both are the same but for rounding.
+/// True if one of two numbers is not given, or both are the same within rounding.
 template <class S>
 constexpr bool agree(const S& first, const S& second) {
     const S rounding(1e-9);

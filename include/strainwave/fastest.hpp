@@ -3,7 +3,7 @@
 
 namespace strainwave {
 
-/// How fast a part is by itself, which steps of a fixed length must follow [rad/s]; 0 if any step is stable.
+/// Highest rate of a part that fixed steps must resolve [rad/s]; 0 if any step is stable.
 template <class S, class Part>
 constexpr S fastest(const Part& part) {
     if constexpr (requires { part.fastest(); })

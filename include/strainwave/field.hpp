@@ -10,7 +10,7 @@ inline constexpr double unbounded = 1.7976931348623157e308;
 /// A bound that excludes zero: the smallest normal number of every scalar, float included.
 inline constexpr double smallest = 1.1754943508222875e-38;
 
-/// Whether two texts are the same.
+/// True if two texts are the same.
 constexpr bool same(const char* one, const char* other) {
     while (*one != 0 && *one == *other) {
         ++one;
@@ -19,7 +19,7 @@ constexpr bool same(const char* one, const char* other) {
     return *one == *other;
 }
 
-/// What is known of a member besides its value. The default value stands in the struct.
+/// Description of a member. Its default value is in the struct.
 struct Field {
     const char* name;
     const char* unit;  ///< FMI/Modelica spelling: "N.m", "rad/s", "1"; empty for a part
@@ -226,11 +226,11 @@ consteval bool alike() {
 
 }  // namespace detail
 
-/// Whether two structs list members of the same names in the same order.
+/// True if two structs list members of the same names in the same order.
 template <Described One, Described Other>
 inline constexpr bool members_alike = detail::alike<One, Other>();
 
-/// How many scalars a described state holds, at most.
+/// Largest count of scalars in a described state.
 template <class S, Described X>
 inline constexpr int size_of = detail::counter_of<S, X>.count;
 
@@ -269,7 +269,7 @@ constexpr X shaped(const Array<S, size_of<S, X>>& scalars) {
     return state;
 }
 
-/// Of two states, in each lane the first where the mask holds.
+/// The first of two states in each lane in which the mask is true, else the second.
 template <class S, Described X, class Mask>
 constexpr X chosen(const Mask& mask, const X& first, const X& second) {
     auto scalars = flattened<S>(second);

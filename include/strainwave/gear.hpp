@@ -78,7 +78,7 @@ struct Gear {
         visit(SW_PART(m, structure, "Bodies within the gear that have their own motion"));
     }
 
-    /// What its parts are told twice must agree.
+    /// Parameters that two parts have in common must agree.
     constexpr Contradiction<S> problem() const {
         const S ratio = abs(kinematics.ratio());
         const S of_stiffness = facts::reduction<S>(stiffness), of_hysteresis = facts::reduction<S>(hysteresis);
@@ -99,9 +99,8 @@ struct Gear {
         const Contradiction<S> of_teeth = problem_of_teeth(ratio);
         if (of_teeth.text) return of_teeth;
         if (!structure.rigid() && !all(input_inertia > S(0.0)))
-            return {
-                "input_inertia = {} kg.m2 must exceed 0 with stages, where the wave generator turns by itself; give its inertia",
-                input_inertia};
+            return {"input_inertia = {} kg.m2 must exceed 0 with stages: the wave generator is a body of its own; give its inertia",
+                    input_inertia};
         return {};
     }
 
@@ -148,8 +147,8 @@ struct Gear {
         }
         return mesh;
     }
-    /// How fast the random error changes [rad/s] because its amplitude does so, where the input shaft accelerates at
-    /// `acceleration` [rad/s2]; what the angle does is in the rate of the deformation.
+    /// Rate of the random error [rad/s] from the change of its amplitude, where the input shaft accelerates at `acceleration`
+    /// [rad/s2]; what the angle does is in the rate of the deformation.
     constexpr S noise_rate(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& acceleration) const {
         if (!kinematic_noise.active()) return S(0.0);
         const auto generator = structure.generator(inner, at);
@@ -192,12 +191,12 @@ struct Gear {
         return structure.even_reaction(inner, at, mesh, load(mesh, S(0.0)));
     }
     constexpr S even_stiffness() const { return stiffness.tangent(S(0.0)); }
-    /// What the mean stiffness of the spring is multiplied by, and its slope over the angle of the wave generator.
+    /// Factor of the mean stiffness of the spring, and its slope over the angle of the wave generator.
     constexpr variation::Factor<S> stiffness_factor(const Inner& inner, const Shafts& at) const {
         if (!stiffness_variation.active()) return {};
         return stiffness_variation.at(structure.generator(inner, at).angle);
     }
-    /// What spring and hysteresis hold at a twist [rad], `moved` [rad] from where the hysteresis was last brought up to date, N.m;
+    /// Torque of spring and hysteresis at a twist [rad], `moved` [rad] from where the hysteresis was last brought up to date, N.m;
     /// the stiffness is `factor` times its mean.
     constexpr S held_torque(const S& twist, const typename Hysteresis::State& held, const S& moved, const S& temperature,
                             const S& factor = S(1.0)) const {
@@ -205,7 +204,7 @@ struct Gear {
         if (!softening.active()) return elastic + remembered;
         return softening.of_stiffness(temperature) * elastic + softening.of_hysteresis(temperature) * remembered;
     }
-    /// What the spring alone holds, N.m.
+    /// Torque of the spring alone, N.m.
     constexpr S spring_torque(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& temperature) const {
         return stiffness_factor(inner, at).value * softness(temperature) * stiffness.torque(mesh.twist);
     }
@@ -213,7 +212,7 @@ struct Gear {
     constexpr S spring_energy(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& temperature) const {
         return stiffness_factor(inner, at).value * softness(temperature) * stiffness.energy(mesh.twist);
     }
-    /// Of the bodies within the gear.
+    /// Energies of the bodies within the gear.
     constexpr auto energies(const Inner& inner, const Shafts& at, const Mesh& mesh) const {
         return structure.energies(inner, at, mesh, load(mesh, S(0.0)));
     }
@@ -221,26 +220,25 @@ struct Gear {
         return structure.output(inner, at, mesh, friction);
     }
 
-    /// How the gear rests where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
+    /// State of the gear at rest at a twist of its spring [rad], under this torque of spring and hysteresis [N.m].
     constexpr auto steady_state(const Inner& inner, const Shafts& at, Mesh mesh, const S& twist, const S& torque,
                                 const S& temperature) const {
         mesh.twist = twist;
         mesh.spring = torque;
         return structure.steady_state(inner, at, mesh, load(mesh, turning(stiffness_factor(inner, at), twist, temperature)));
     }
-    /// What the spring must hold so that this torque [N.m] reaches the output at rest: not the same where the error follows the
-    /// load.
+    /// Torque of the spring so that this torque [N.m] reaches the output at rest: not the same if the error follows the load.
     constexpr S spring_torque_for(const Mesh& mesh, const S& torque) const { return torque * unrelieved(mesh); }
-    /// How much of the twist is not what the error gives way by: 1 where the error does not follow the load.
+    /// Share of the twist that is not relief of the error: 1 if the error does not follow the load.
     constexpr S unrelieved(const Mesh& mesh) const {
         if constexpr (!always_rigid)
             if (!structure.rigid()) return S(1.0) + mesh.apart.per_twist;
         return S(1.0) / mesh.per_output;
     }
-    /// Of the gear beside its spring, rad/(N.m).
+    /// Compliance of the gear without its spring, rad/(N.m).
     constexpr S compliance(const Shafts& at, const Mesh& mesh) const { return structure.compliance(at, mesh); }
 
-    /// What of the wave generator turns with the input shaft, kg.m2.
+    /// Inertia of the wave generator that turns with the input shaft, kg.m2.
     constexpr S shaft_inertia() const { return structure.rigid() ? input_inertia : S(0.0); }
 
     /// The largest stiffness [N.m/rad] at twists up to `twist` [rad], of either sign, and at a temperature [K]: that of the spring,
@@ -254,7 +252,7 @@ struct Gear {
         return softening.of_stiffness(temperature) * largest + softening.of_hysteresis(temperature) * remembered;
     }
 
-    /// What the even reaction leaves out at such twists and temperature, over a turn of the wave generator.
+    /// Largest part that the even reaction leaves out at these twists and this temperature, over a turn of the wave generator.
     constexpr structure::Unevenness<S> unevenness(const S& twist, const S& temperature) const {
         constexpr int parts = 512;
         const S even = even_stiffness();
@@ -273,7 +271,7 @@ struct Gear {
         const structure::Unevenness<S> random = random_unevenness(stiffest);
         return {found.stiffness, found.slope + random.slope, found.per_twist + random.per_twist, random.per_speed};
     }
-    /// What of it is the random error's, at rest, where the spring has a stiffness [N.m/rad].
+    /// The share of the random error in it, at rest, for a stiffness of the spring [N.m/rad].
     constexpr structure::Unevenness<S> random_unevenness(const S& spring) const {
         if (!kinematic_noise.active()) return {S(0.0), S(0.0), S(0.0), S(0.0)};
         const auto change = kinematic_noise.max_change();
@@ -304,7 +302,7 @@ private:
         const S rest = S(1.0 / parts) * part;  // of the way, for a stiffness that rises steeply
         return max(largest, (before - hysteresis.torque(virgin, S(parts) * part - rest)) / rest);
     }
-    /// Teeth that the kinematic error is told are those of the kinematics, or have its ratio where it is told no teeth.
+    /// Teeth of the kinematic error must be those of the kinematics, or have its ratio if the kinematics has no teeth.
     constexpr Contradiction<S> problem_of_teeth(const S& ratio) const {
         const facts::Teeth error_teeth = facts::teeth(kinematic_error), gear_teeth = facts::teeth(kinematics);
         if (error_teeth.flexspline == 0) return {};
@@ -329,7 +327,7 @@ private:
     struct Engaged {
         kinematic_error::Error<S> error;
         S deformation;
-        S twist;  ///< at which the amplitude of the noise is told
+        S twist;  ///< at which the amplitude of the noise is evaluated
         S per_output{1.0}, per_twist{0.0};
     };
 

@@ -70,14 +70,14 @@ private:
         place(input, error);
         return drive.geometry(x, y).twist;
     }
-    /// The twist of the spring where the shafts stand so far from each other [rad]: what the other joints take is told by the last
-    /// round, and beyond it by their mean stiffness.
+    /// The twist of the spring at this difference of the shaft angles [rad]. The share of the other joints is that of the last
+    /// round, and follows their mean stiffness beyond it.
     constexpr S twist_between(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& between) {
         if (drive.gear.structure.rigid()) return between - mesh.error;
         const S compliance = drive.gear.compliance(drive.gear_shafts(x, x.continuous), mesh), before = mesh.twist;
         settle_gear(mesh, before);
-        const S beside = x.continuous.transmission_error - before - compliance * spring.torque(before);
-        return spring.twist_within(between - beside, compliance);
+        const S others = x.continuous.transmission_error - before - compliance * spring.torque(before);
+        return spring.twist_within(between - others, compliance);
     }
     constexpr void settle_gear(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& twist) {
         const S temperature = drive.temperatures(x.continuous, u).gear;
@@ -88,7 +88,7 @@ private:
         x.continuous.input_angle = input - x.turns * S(2.0 * pi);
         x.continuous.transmission_error = transmission_error;
     }
-    /// Of speeds one gives the other as if the twist stayed as it is.
+    /// Each speed follows from the other at constant twist.
     constexpr void move(const S& per_input, const S& per_output) {
         auto& y = x.continuous;
         y.input_speed = known.knows(input_speed)    ? known[input_speed]
@@ -105,7 +105,7 @@ private:
         const S rate = mesh.per_input * x.continuous.input_speed - mesh.per_output * x.continuous.output_speed;
         return spring.twist(wanted - drive.gear.damping * rate);
     }
-    /// What the gear must transmit so that load and friction do not accelerate the output.
+    /// Torque of the gear that balances load and friction at the output.
     constexpr S balancing_torque() {
         settle_friction();
         const auto now = drive.derivatives(x, x.continuous, u);
@@ -159,13 +159,13 @@ private:
     /// By how much each number of the motor changes so that, by the slopes there, no rate is left of those that relax. Gauss's
     /// elimination without exchange of rows, for the resistance stands on the diagonal.
     constexpr MotorNumbers newton_step(const MotorNumbers& at, const MotorNumbers& relaxation, const S& gear_torque) const {
-        const S beside(1e-3);  // A, so that no limit hides it
+        const S increment(1e-3);  // A, so that no limit hides it
         const int n = at.size();
         MotorNumbers right = motor_rate(at, relaxation, gear_torque);
         Array<MotorNumbers, count> slope{};  // slope[j][i]: of rate i by number j
         for (int j = 0; j < n; ++j) {
             MotorNumbers moved = at;
-            moved[j] = moved[j] + beside;
+            moved[j] = moved[j] + increment;
             const MotorNumbers then = motor_rate(moved, relaxation, gear_torque);
             slope[j] = then;
             for (int i = 0; i < n; ++i) slope[j][i] = (then[i] - right[i]) / (moved[j] - at[j]);

@@ -29,7 +29,7 @@ using library::log;
 using library::sqrt;
 constexpr double abs(double x) { return !__builtin_is_constant_evaluated() ? fabs(x) : x > 0.0 ? x : 0.0 - x; }
 constexpr float abs(float x) { return !__builtin_is_constant_evaluated() ? fabs(x) : x > 0.0f ? x : 0.0f - x; }
-// What a compiler works out beforehand, such as the numbers of firmware, is worked out by `elementary` in every scalar.
+// Constants that the compiler evaluates, such as the numbers of firmware, use `elementary` in every scalar.
 constexpr double rint(double x) {
     if (!__builtin_is_constant_evaluated()) return library::rint(x);
     return abs(x) < 0x1p51 ? (x + elementary::rounder) - elementary::rounder : x;
@@ -46,7 +46,7 @@ constexpr double exp(double x) { return elementary::exp(x); }
 constexpr double sin(double x) { return abs(x) < elementary::farthest ? elementary::sincos(x).sine : library::sin(x); }
 constexpr double cos(double x) { return abs(x) < elementary::farthest ? elementary::sincos(x).cosine : library::cos(x); }
 inline constexpr double pi = 3.14159265358979323846;
-/// exp(-80) vanishes beside 1 in every scalar; further out exp only underflows, slowly.
+/// exp(-80) is below the rounding of 1 in every scalar; further out exp only underflows, slowly.
 inline constexpr double beyond_digits = 80.0;
 
 constexpr double select(bool mask, double a, double b) { return mask ? a : b; }
@@ -54,14 +54,14 @@ constexpr float select(bool mask, float a, float b) { return mask ? a : b; }
 constexpr bool any(bool mask) { return mask; }
 constexpr bool all(bool mask) { return mask; }
 
-/// Whether a scalar carries derivatives; `value_only` drops them.
+/// True if a scalar has derivatives; `value_only` drops them.
 template <class S>
 inline constexpr bool differentiates = false;
 template <class S>
 constexpr S value_only(const S& x) {
     return x;
 }
-/// Whether derivatives with respect to `x` are asked for.
+/// True if a derivative of `x` is not zero.
 template <class S>
 constexpr bool is_differentiated(const S&) {
     return false;

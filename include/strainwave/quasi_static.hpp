@@ -35,7 +35,7 @@ public:
     }
 
 private:
-    /// Where a function that rises with the twist reaches what is wanted, so that a bracket closes.
+    /// Root of a function that rises with the twist, by a bracket.
     template <class F>
     constexpr S reached(const F& f, const S& wanted) const {
         const S away = wanted < f(at) ? S(-1.0) : S(1.0);

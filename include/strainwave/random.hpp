@@ -50,7 +50,7 @@ private:
         const S rest = number - S(divisor) * rint(number / S(divisor));
         return select(rest < S(0.0), rest + S(divisor), rest);
     }
-    /// Which 256th of [0, divisor) the number lies in.
+    /// Index of the 256th of [0, divisor) that contains the number.
     static constexpr S part(const S& number, double divisor) {
         const S scaled = S(256.0) * number;
         return (scaled - modulo(scaled, divisor)) / S(divisor);

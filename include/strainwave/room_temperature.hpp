@@ -2,7 +2,7 @@
 
 namespace strainwave {
 
-/// What a temperature is where none is given, K.
+/// Default temperature, K.
 inline constexpr double room_temperature = 293.15;
 
 }  // namespace strainwave

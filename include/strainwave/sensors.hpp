@@ -74,7 +74,7 @@ struct Sensors {
     constexpr State initial_state() const {
         return each([](const auto& sensor, const S&) { return strainwave::initial_state(sensor); }, Measurement{});
     }
-    /// What the sensors show of what there is.
+    /// Readings of the sensors at the true quantities.
     constexpr Measurement shown(const State& x, const Measurement& actual) const {
         if constexpr (stateless)
             return shown_by(States{}, actual);

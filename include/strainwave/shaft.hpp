@@ -12,7 +12,7 @@ inline constexpr double negligible_hold = 1e-12;
 /// one way or the other, or sticks.
 template <class S>
 struct Shaft {
-    bool can_stick;         ///< Whether set-valued friction acts on it; without, it always slips
+    bool can_stick;         ///< True if set-valued friction acts on it; without, it always slips
     S inertia;              ///< kg.m2
     S speed;                ///< rad/s
     S slip_direction;       ///< -1 or 1; 0 while it sticks
@@ -49,7 +49,7 @@ struct Shaft {
         return clip(driving_torque / max(holding_torque, S(smallest)), S(-1.0), S(1.0));
     }
 
-    /// How a shaft slips after an impulse.
+    /// Slip of a shaft after an impulse.
     struct Impelled {
         S speed, slip_direction;
     };

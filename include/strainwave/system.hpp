@@ -3,17 +3,17 @@
 #include <strainwave/math.hpp>
 #include <strainwave/shaft.hpp>
 
-/// What the integrators know of whatever they step through time: differential equations with memory and events.
+/// Interface of a system for the integrators: differential equations with memory and events.
 ///
 /// A system over scalars S has these described structs,
 ///
-///     Input         what acts on it from outside at one instant; Input::between tells how it runs through a step
-///     Continuous    what changes continuously: the stages of a step work on these numbers
-///     State         `continuous`, and what changes at the end of a step, at an event or at instants of sampling only
+///     Input         inputs at one instant; Input::between interpolates them within a step
+///     Continuous    continuous numbers, on which the stages of a step work
+///     State         `continuous`, and numbers that change at the end of a step, at an event or at instants of sampling only
 ///
 /// these two, which are not described,
 ///
-///     Derivatives   `rate` of Continuous, and what it was worked out from
+///     Derivatives   `rate` of Continuous, and the quantities that it follows from
 ///     Evaluation    `state`, its memory brought up to date, and the `derivatives` there: where steps begin and end
 ///
 /// and two functions,
@@ -21,7 +21,7 @@
 ///     evaluate(state, input)                  -> Evaluation
 ///     derivatives(state, continuous, input)   -> Derivatives; the memory is that of the state
 ///
-/// Everything else is optional. A system that leaves it out does without, as the functions below tell.
+/// Everything else is optional, with the defaults of the functions below.
 namespace strainwave::system {
 
 /// The relaxation rate of each number [1/s]. Numbers that have one are stepped exactly, however fast they decay. Default: zero.
@@ -34,14 +34,14 @@ constexpr typename System::Continuous relaxation_rate(const System& system, cons
         return zeroed<S>(y);
 }
 
-/// How many of the numbers a matrix couples that is constant until a mode changes: a block z of them, whose rates are A z and what
-/// the system adds to that. Steps take A as it is, however stiff it is. Such a system has
+/// Numbers that are coupled by a matrix, constant until a mode changes: a block z, whose rates are A z and a rest. Steps are exact
+/// in A, however stiff it is. Such a system has
 ///
-///     coupled_count                        how many there are at the most
-///     couples()                            whether its models have them
+///     coupled_count                        largest count of them
+///     couples()                            true if its models have them
 ///     coupled(continuous)                  -> Array<S, coupled_count>, in order; of rates, too
 ///     set_coupled(continuous, numbers)     in place
-///     coupled_mode(state)                  -> Array<S, any>: what A depends on beside the system
+///     coupled_mode(state)                  -> Array<S, any>: further numbers that A depends on
 ///     coupled_rate(mode, numbers)          -> Array<S, coupled_count>: A z
 ///     side(state)                          turns its sign where the rates jump as the numbers change
 ///     side(state, after, dt, fraction)     on the way from one state to another, `dt` [s] later
@@ -75,9 +75,9 @@ constexpr typename System::Continuous update_mode(const System& system, const ty
         return y;
 }
 
-// What changes at instants only. Steps end at each, so that it changes where a step begins.
+// Changes at instants. Steps end at each, so that the change is at the begin of a step.
 
-/// Whether something changes at this instant, in any lane: as the output of a controller that samples. Rounding is forgiven as far
+/// True if a number changes at this instant, in any lane: as the output of a controller that samples. Rounding is forgiven as far
 /// as `within` [s], less than the coming step.
 template <class System, class S>
 constexpr bool due(const System& system, const typename System::State& x, const S& within) {
@@ -97,7 +97,7 @@ constexpr typename System::Evaluation sampled(const System& system, const typena
         return at;
 }
 
-/// What is due at the beginning of a step is done.
+/// The state after all changes that are due at the beginning of a step.
 template <class System, class S>
 constexpr typename System::Evaluation up_to_date(const System& system, const typename System::Evaluation& at,
                                                  const typename System::Input& u, const S& within) {
@@ -116,7 +116,7 @@ constexpr void finish_step(const System& system, typename System::State& x, cons
 ///
 ///     shafts(state, derivatives)                      -> Array<Shaft<S>, n>
 ///     set_shaft(state, i, speed, slip_direction)      in place
-///     slip_friction(i, state, derivatives, direction) -> N.m, what set-valued friction opposes to slip in this direction
+///     slip_friction(i, state, derivatives, direction) -> N.m, torque of set-valued friction against slip in this direction
 ///     move_positions(state, before, dt)               in place: the positions after `dt` [s], from the speeds at both ends
 ///
 /// and perhaps sticks(state), which spares the work where no shaft sticks.
@@ -125,7 +125,7 @@ concept HasShafts = requires(const System& system, const typename System::State&
     system.shafts(x, now);
 };
 
-/// Whether these models have events.
+/// True if these models have events.
 template <class System>
 constexpr bool has_events(const System& system) {
     if constexpr (requires { system.has_events(); })
@@ -134,7 +134,7 @@ constexpr bool has_events(const System& system) {
         return HasShafts<System>;
 }
 
-/// Whether a shaft may stick, in any lane.
+/// True if a shaft may stick, in any lane.
 template <class System>
 constexpr bool sticks(const System& system, const typename System::State& x) {
     if constexpr (requires { system.sticks(x); })
@@ -193,8 +193,8 @@ constexpr typename System::State apply_event(const System& system, const typenam
     }
 }
 
-/// The event that led to the state `after`, applied where it was located, close by: there the event itself may not tell which it
-/// is.
+/// The event that led to the state `after`, applied where it was located, close by: there the event function may not determine
+/// which event it is.
 template <class System>
 constexpr typename System::Evaluation with_event_applied(const System& system, const typename System::Evaluation& at,
                                                          const typename System::State& after, const typename System::Input& u) {
@@ -211,7 +211,7 @@ constexpr typename System::Evaluation with_event_applied(const System& system, c
     }
 }
 
-/// Whether a shaft that sticks is no longer held, as after a jump of an input.
+/// True if a shaft that sticks is no longer held, as after a jump of an input.
 template <class System>
 constexpr bool breaks_away(const System& system, const typename System::Evaluation& at) {
     if constexpr (HasShafts<System>) {
@@ -272,8 +272,8 @@ constexpr typename System::State aligned(const System& system, const typename Sy
         return x;
 }
 
-/// A number that is held to the tolerance beside the continuous ones, because it shows what the memory holds; and that turns its
-/// sign where an event of a shaft that sticks may be hidden between two evaluations. Without: 0.
+/// A number that must keep the tolerance as the continuous ones do, because it depends on the memory. It turns its sign where an
+/// event of a shaft that sticks may be hidden between two evaluations. Without: 0.
 template <class S, class System>
 constexpr S watched(const System& system, const typename System::Evaluation& at) {
     if constexpr (requires { system.watched(at); })

@@ -29,7 +29,7 @@ struct Hysteresis : Part {
     State advance(const State& x, const S& increment) const;
     S torque(const State& x, const S& increment) const;
     S work(const State& x, const S& increment) const;
-    S stored(const State& x) const;  ///< 0 by a law that does not tell what it stores
+    S stored(const State& x) const;  ///< 0 for a law without `stored`
     bool is_bounded() const;
     Domain<S> domain(const S& twist) const;
 

@@ -9,8 +9,8 @@
 #include "../kernel/places.hpp"
 #include "../kernel/table.hpp"
 
-/// The parts of the general drive: each is a law chosen at run time, and is a law itself. What its verbs do is compiled once,
-/// beside the laws of its family; a drive only calls them. So a law costs the build what its own code costs.
+/// The parts of the general drive: each is a law chosen at run time, and is a law itself. What its verbs do is compiled once, next
+/// to the laws of its family; a drive only calls them. So a law costs the build what its own code costs.
 namespace strainwave::general {
 
 using kernel::Places;

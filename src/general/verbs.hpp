@@ -26,7 +26,7 @@ State rest(const Set& drive);
 State started(const Set& drive, const initial::Known<double>& known, const Input& u);
 /// With the slip direction of each shaft as its speed and its friction have it.
 State consistent(const Set& drive, const State& x);
-/// Where a run begins: consistent, and sampled by a controller that samples.
+/// Initial state of a run: consistent, and sampled by a controller that samples.
 State begin(const Set& drive, const State& x, const Input& u);
 /// When its controller acts.
 control::Schedule<double> schedule(const Set& drive, const State& x);
@@ -41,17 +41,16 @@ Outcome step_once(const Set& drive, State& x, const Interval<Input>& u, double d
 
 /// The outputs of a drive in state `x`.
 std::vector<double> observe(const Set& drive, const State& x, const Input& u);
-/// What its controller sees, in the order in which `control::Measurement` lists it.
+/// Measurement of its controller, in the order of `control::Measurement`.
 std::vector<double> measure(const Set& drive, const State& x, const Input& u);
 
-// How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one [rad], where a run of a temperature [K]
-// begins.
+// Rates of a drive, as angular frequencies [rad/s], at twists up to one [rad], where a run of a temperature [K] begins.
 
-/// Of gear and load on their springs.
+/// Highest frequency of gear and load on their springs.
 double natural_frequency(const Set& drive, double twist, double temperature);
-/// That, or the decay of speeds: what fixed steps must follow.
+/// The higher of that and the decay of speeds: fixed steps must resolve it.
 double max_rate(const Set& drive, double twist, double temperature);
-/// Of a shaft on its bristles.
+/// Highest frequency of a shaft on its bristles.
 double bristle_frequency(const Set& drive);
 
 // Spring and hysteresis of a gear, without history at the first point of a path.

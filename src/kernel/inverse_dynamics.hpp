@@ -21,9 +21,9 @@ typename Law::State under(const Law& law, const typename Law::State& before, con
     return friction::clamped(law, friction::advance(law, before, on_the_way, S(step)), on_the_way);
 }
 
-/// What the motor of a drive must give at an instant [N.m] so that the input shaft moves as it does, the output shaft with it: the
-/// gear is as stiff as a rigid one, its kinematic error included but for its curvature, and friction has the state that the motion
-/// up to there leaves in `x`. Friction that grows with the torque transmitted is found in rounds.
+/// Torque of the motor of a drive at an instant [N.m] so that the input shaft moves as it does, the output shaft with it: the gear
+/// is as stiff as a rigid one, its kinematic error included but for its curvature, and friction has the state that the motion up
+/// to there leaves in `x`. Friction that grows with the torque transmitted is found in rounds.
 template <class S, class Drive>
 S needed_torque(const Drive& drive, typename Drive::State& x, const Motion& now, const Input<S>& u) {
     constexpr int rounds = 4;  // each leaves the share of the last that friction takes of what is transmitted

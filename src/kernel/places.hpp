@@ -80,7 +80,7 @@ S* write(const Drive& drive, const typename Drive::State& state, S* numbers) {
     return numbers;
 }
 
-/// Where, among all outputs that a drive of this type can have, those of its laws are.
+/// Places of the outputs of its laws among all outputs that a drive of this type can have.
 template <class Drive>
 Places outputs_of(const Drive& drive) {
     using Output = typename Drive::Output;

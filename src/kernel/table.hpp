@@ -52,8 +52,8 @@ struct Progress {
 
 enum class Ending { done, stopped, out_of_bounds, tolerance_missed, steps_spent };
 
-/// How a run ended, and why before its end: the part that is not valid where the drive stands; the instants [s] between which no
-/// step keeps the tolerance; where all steps are spent [s], and the vibrations that they followed [rad/s].
+/// End of a run, and the reason if it is early: the part that is not valid at this state; the instants [s] between which no step
+/// keeps the tolerance; where all steps are spent [s], and the vibrations that they followed [rad/s].
 struct Outcome {
     Ending ending = Ending::done;
     const char* part = "";

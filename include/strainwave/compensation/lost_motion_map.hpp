@@ -40,7 +40,7 @@ struct LostMotionMap {
         if (angle.count != forward.count || angle.count != backward.count)
             return "angle, forward and backward must have equally many elements";
         for (int k = 1; k < angle.count; ++k)
-            if (!all(angle[k] > angle[k - 1])) return "angle must rise";
+            if (!all(angle[k] > angle[k - 1])) return "angle must increase";
         return nullptr;
     }
 

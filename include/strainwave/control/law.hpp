@@ -1,30 +1,30 @@
 #pragma once
 #include <strainwave/limits.hpp>
 
-/// What every controller is given and asked. A law of control turns a command and a measurement into the motor's actuation: its
-/// voltage, current or torque, whatever the motor takes. It has
+/// Interface of a controller. A law of control turns a command and a measurement into the actuation of the motor: its voltage,
+/// current or torque. It has
 ///
-///     State                                 what changes continuously; Stateless if nothing does
+///     State                                 continuous numbers; Stateless if there are none
 ///     act(state, command, measurement)      -> actuation
 ///     rate(state, command, measurement)     -> State
-///     relaxation_rate()                     -> State, 1/s: how fast each number goes to what is given to it; 0 of an integral
+///     relaxation_rate()                     -> State, 1/s: relaxation rate of each number to its input; 0 of an integral
 ///
-/// and, where it does not act on every motor,
+/// and, if it does not act on every motor,
 ///
 ///     gives                                 the actuation that a motor must take, by name
-///     needs_current()                       whether it acts by the current that it measures, without delay
+///     needs_current()                       true if it acts by the measured current, without delay
 ///
-/// A law that acts at instants only has besides
+/// A law that acts at instants only also has
 ///
-///     Discrete                              what changes at its instants only
+///     Discrete                              numbers that change at its instants only
 ///     held(discrete)                        -> actuation, in place of act
-///     due(discrete, within)                 -> whether this is an instant, in any lane, or one is within so many seconds
+///     due(discrete, within)                 -> true if this is an instant, in any lane, or one is within so many seconds
 ///     sampled(discrete, within, command, measurement) -> Discrete, where it is due
 ///     elapsed(discrete, dt)                 -> Discrete, `dt` [s] later
 ///     schedule(discrete)                    -> Schedule
 namespace strainwave::control {
 
-/// What is asked of a drive at one instant.
+/// Command of a drive at one instant.
 template <class S>
 struct Command {
     S value{0.0};            ///< As the scenario gives it
@@ -38,7 +38,7 @@ struct Command {
     constexpr S input_speed() const { return ratio * rate + input_lead_rate; }
 };
 
-/// What a controller knows of its drive: each number through its sensor, and what its motor can follow.
+/// Measurement of a controller: each number through its sensor, and the limits of its motor.
 template <class S>
 struct Measurement {
     S input_angle{0.0}, input_speed{0.0}, output_angle{0.0}, output_speed{0.0}, current{0.0}, torque{0.0};
@@ -90,11 +90,11 @@ struct DiscreteOf<S, Law> {
     using type = typename Law::Discrete;
 };
 }  // namespace detail
-/// What changes at the instants of a law only; nothing, for a law that acts all the time.
+/// Numbers that change at the instants of a law only; none for a continuous law.
 template <class S, class Law>
 using DiscreteOf = typename detail::DiscreteOf<S, Law>::type;
 
-/// What a law's motor must take, by name; nothing, if any will do.
+/// Actuation that the motor of a law must take, by name; nothing if any is possible.
 template <class Law>
 constexpr const char* given_by(const Law& law) {
     if constexpr (requires { law.gives(); })
@@ -138,7 +138,7 @@ constexpr S max_period(const Law& law) {
         return S(unbounded);
 }
 
-/// Whether a law acts at once by the current it measures: then the current must not follow the actuation at once.
+/// True if a law acts at once by the measured current: then the current must not follow the actuation at once.
 template <class Law>
 constexpr bool needs_current(const Law& law) {
     if constexpr (requires { law.needs_current(); })
@@ -184,7 +184,7 @@ constexpr Discrete elapsed(const Law& law, const Discrete& x, const S& dt) {
         return x;
 }
 
-/// Whether a law changes something at this instant, in any lane.
+/// True if a law changes a number at this instant, in any lane.
 template <class S, class Law, class Discrete>
 constexpr bool due(const Law& law, const Discrete& x, const S& within) {
     if constexpr (requires { law.due(x, within); })

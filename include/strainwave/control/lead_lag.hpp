@@ -65,7 +65,7 @@ struct LeadLag {
         return {(error(command, measured) - x.lead) / lead_denominator, (lead(x, command, measured) - x.lag) / lag_denominator};
     }
     constexpr State relaxation_rate() const { return {S(1.0) / lead_denominator, S(1.0) / lag_denominator}; }
-    /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
+    /// A Runge-Kutta step of fourth order is stable up to 2.78 times the time of a decay.
     constexpr S fastest() const { return S(1.0 / 2.5) / min(lead_denominator, lag_denominator); }
 
 private:

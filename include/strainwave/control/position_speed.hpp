@@ -70,7 +70,7 @@ struct PositionSpeed {
     }
     constexpr State relaxation_rate() const { return {}; }
 
-    /// What is asked of the motor before any limit.
+    /// Actuation before any limit.
     constexpr S asked(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const S commanded = command.input_speed();
         return speed_proportional * speed_error(command, measured) + speed_integral * x.speed_integral +

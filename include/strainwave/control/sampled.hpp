@@ -124,7 +124,7 @@ struct Sampled {
     constexpr Schedule<S> schedule(const Discrete& x) const { return {x.until_sample, period, delay}; }
 
 private:
-    /// How far a number goes in a period, per rate at its begin [s].
+    /// Change of a number over a period, per rate at its begin [s].
     constexpr S reach(const S& relaxation) const {
         const auto relaxes = relaxation > S(0.0);
         if (!any(relaxes)) return period;

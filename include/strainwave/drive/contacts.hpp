@@ -12,7 +12,7 @@ struct Contacts {
 
 namespace contacts {
 
-/// How each place moves and what it bears. The output's angle is split into whole turns before it is multiplied out.
+/// Speed, angle and load of each place. The output's angle is split into whole turns before it is multiplied out.
 template <class S, class Drive>
 constexpr Contacts<S> at(const Drive& drive, const typename Drive::State& x, const typename Drive::Continuous& y,
                          const typename Drive::Mesh& mesh, const typename Drive::Input& u) {

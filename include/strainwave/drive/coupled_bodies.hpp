@@ -9,7 +9,7 @@
 /// structure.
 namespace strainwave::coupled_bodies {
 
-/// How many numbers there are.
+/// Count of the numbers.
 template <class S, class Gear, class Structure>
 inline constexpr int count = Gear::always_rigid ? 0 : 3 + size_of<S, typename Structure::State>;
 

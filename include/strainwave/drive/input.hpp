@@ -5,7 +5,7 @@
 
 namespace strainwave {
 
-/// What acts on a drive from outside, at one instant: one signal for each part that takes one, and its rate.
+/// Inputs of a drive at one instant: one signal for each part that takes one, and its rate.
 template <class S>
 struct Input {
     S command{0.0};

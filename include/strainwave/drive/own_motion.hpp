@@ -7,13 +7,13 @@
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/structure/structure.hpp>
 
-/// How fast a drive moves by itself: what steps of a fixed length must follow. The gear is as stiff as it becomes at twists up to
-/// `twist` [rad], and as warm as it begins in a run of `temperature` [K].
+/// Rates of a drive that fixed steps must resolve. The gear is as stiff as it becomes at twists up to `twist` [rad], and as warm
+/// as it begins in a run of `temperature` [K].
 namespace strainwave::own_motion {
 
 namespace detail {
 
-/// Of the gear, where a run of a temperature begins [K].
+/// Initial temperature of the gear [K] in a run of a given temperature.
 template <class S, class Drive>
 constexpr S temperature(const Drive& drive, const S& temperature) {
     return drive.thermal.at(strainwave::initial_state(drive.thermal), temperature).gear;
@@ -36,7 +36,7 @@ constexpr S of_two_masses(const Drive& drive, const S& stiffness, const S& slope
     return sqrt(mean * (S(1.0) + sqrt(max(S(1.0) - share * (of_load / max(mean, S(smallest))), S(0.0)))));
 }
 
-/// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
+/// Highest decay rate of speeds [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
 /// back-EMF and control, but for what steps take exactly. The larger eigenvalue of what two speeds do to their rates.
 template <class S, class Drive>
 constexpr S damping(const Drive& drive) {
@@ -62,7 +62,7 @@ constexpr S damping(const Drive& drive) {
     return select(square < S(0.0), sqrt(max(product, S(0.0))), max(mean + sqrt(max(square, S(0.0))), S(0.0)));
 }
 
-/// How fast the controller lets the current decay [1/s], beyond what the winding does by itself, which steps take exactly.
+/// Decay rate of the current by the controller [1/s], in excess of that of the winding, which steps take exactly.
 template <class S, class Drive>
 constexpr S current_damping(const Drive& drive) {
     if constexpr (size_of<S, typename decltype(Drive{}.motor)::State> == 0) {

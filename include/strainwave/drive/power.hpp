@@ -2,7 +2,7 @@
 #include <strainwave/load/load.hpp>
 #include <strainwave/meter/meter.hpp>
 
-/// Where the power goes that a drive takes, and what it holds: from a state `x`, its continuous numbers `y`, the input `u`, and the
+/// Powers of a drive by their destination, and its energies: from a state `x`, its continuous numbers `y`, the input `u`, and the
 /// derivatives there, `now`.
 namespace strainwave {
 

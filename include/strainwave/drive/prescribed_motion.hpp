@@ -36,7 +36,7 @@ constexpr S movable(const Drive& drive, const S& inertia) {
     return motor::prescribes(drive.motor) ? S(load::immovable) : inertia;
 }
 
-/// What all but set-valued friction must come to at the input, N.m, so that this accelerates as prescribed [rad/s2].
+/// Torque [N.m] of all but set-valued friction at the input that gives the prescribed acceleration [rad/s2].
 template <class S, class Drive>
 constexpr S driving_torque(const Drive& drive, const S& acceleration, const typename Drive::Mesh& mesh,
                            const friction::Resistance<S>& of_mesh, const friction::Resistance<S>& of_input) {

@@ -4,7 +4,7 @@
 
 namespace strainwave {
 
-/// What changes continuously. The transmission error theta_in / i - theta_out replaces the output angle.
+/// Continuous part of the state of a drive. The transmission error theta_in / i - theta_out replaces the output angle.
 template <class S, class MotorState, class ControlState, class SensorsState, class FrictionInputState, class FrictionMeshState,
           class FrictionOutputState, class StructureState, class ThermalState, class MeterState>
 struct Continuous {
@@ -40,7 +40,7 @@ struct Continuous {
     }
 };
 
-/// What changes at instants only.
+/// Discrete part of the state of a drive: it changes at instants only.
 template <class S, class ControlDiscrete>
 struct Discrete {
     ControlDiscrete control{};

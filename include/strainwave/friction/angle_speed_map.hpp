@@ -75,7 +75,7 @@ private:
         return max(sum, S(0.0));
     }
 
-    /// Of the angle at `place` of n: 1 there, and falling to 0 at its neighbours.
+    /// Weight of the angle at `place` of n: 1 there, falling to 0 at its neighbours.
     static constexpr S weight(const S& angle, const S& place, const S& n) {
         const S apart = angle * S(0.5 / pi) * n - place, turns = rint(apart / n);
         return max(S(1.0) - abs(apart - n * turns), S(0.0));

@@ -49,8 +49,8 @@ struct Asymmetric {
 
     using State = typename Law::State;
 
-    /// What friction is multiplied by in its direction: that of slip where the law can stick, so that a step past the end of the
-    /// motion stays smooth; else that of the speed.
+    /// Factors of friction in its direction: that of slip if the law can stick, so that a step past the end of the motion stays
+    /// smooth; else that of the speed.
     struct Modulator {
         S dry_asymmetry, viscous_asymmetry;
         bool sticks;

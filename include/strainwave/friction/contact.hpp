@@ -7,18 +7,18 @@
 /// Friction torque opposes the motion of the place it acts on: the input shaft, the mesh or the output shaft.
 namespace strainwave::friction {
 
-/// What a modulation multiplies friction by.
+/// Factors of a modulation.
 template <class S>
 struct Factors {
     S dry{1.0}, dry_most{1.0}, viscous{1.0};  ///< of dry friction, of the largest that can become, and of viscous friction
 };
 
-/// How the two surfaces of a place move against each other, and under what.
+/// Motion of the two surfaces of a place against each other, their load and temperature.
 template <class S>
 struct Contact {
     S speed{0.0};                     ///< rad/s
     S sliding{1.0};                   ///< Sense of sliding of a set-valued law: -1, 1, or 0 while it sticks
-    Angle<S> angle{};                 ///< Where the place stands
+    Angle<S> angle{};                 ///< Angle of the place
     S load{0.0};                      ///< Torque it transmits [N.m]: load * speed is the power that flows to the output
     S temperature{room_temperature};  ///< K
     S dry{1.0};                       ///< Factor on the torque levels of dry friction
@@ -81,7 +81,7 @@ constexpr S torque(const Law& law, const typename Law::State& x, const Contact<S
         return law.torque(x, contact);
 }
 
-/// What a law answers to a contact: torque that opposes the motion, and the rate of its state.
+/// Response of a law to a contact: torque that opposes the motion, and the rate of its state.
 template <class S, class State>
 struct Response {
     S torque;
@@ -137,7 +137,7 @@ constexpr typename Law::State rate(const Law& law, const typename Law::State& x,
         return {};
 }
 
-/// How fast each member of the state forgets itself [1/s].
+/// Relaxation rate of each member of the state [1/s].
 template <class Law, class S>
 constexpr typename Law::State relaxation_rate(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)

@@ -50,7 +50,7 @@ struct Cyclic {
 
     using State = typename Law::State;
 
-    /// What friction is multiplied by at its angle.
+    /// Factors of friction at its angle.
     struct Modulator {
         Harmonics<S, capacity> sum;
         S most;

@@ -52,7 +52,7 @@ struct LuGre {
     }
 
     constexpr const char* problem() const {
-        return all((breakaway > S(0.0)) | !(coulomb > S(0.0))) ? nullptr : "breakaway must be positive where coulomb is";
+        return all((breakaway > S(0.0)) | !(coulomb > S(0.0))) ? nullptr : "breakaway must be positive if coulomb is positive";
     }
 
     struct State {
@@ -80,7 +80,7 @@ struct LuGre {
         return {contact.speed - abs(contact.speed) * (x.deflection / reach(contact))};
     }
 
-    /// How fast the bristle forgets [1/s].
+    /// Forgetting rate of the bristle [1/s].
     constexpr State relaxation_rate(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / reach(contact)}; }
 
     /// No motion bends the bristle beyond max(F_s, F_c) / sigma_0, whatever the history: an exact invariant.
@@ -111,7 +111,7 @@ private:
         return bristle_damping * exp(-min(faded * faded, S(beyond_digits)));
     }
 
-    /// How far steady sliding bends the bristle [rad]. Without any dry friction it still bends a little, so that it forgets
+    /// Deflection of the bristle in steady sliding [rad]. Without any dry friction it still bends a little, so that it forgets
     /// within 2^-100 s: slower than never, and finite in every scalar; as is its bend over that of any other speed.
     constexpr S reach(const Contact<S>& contact) const {
         const S torque = contact.dry * stribeck_curve(coulomb, breakaway, stribeck_speed, contact.speed);

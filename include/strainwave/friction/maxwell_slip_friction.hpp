@@ -90,7 +90,7 @@ struct MaxwellSlipFriction {
     }
 
     /// Rate of the elements [N.m/s], each as it sticks or slips. One that slips sticks as soon as the motion turns round, also
-    /// before `renewed` says so: else a step in which it does would seem as exact as any other.
+    /// before `renewed` does: otherwise a step in which it does would seem as exact as any other.
     constexpr State rate(const State& x, const Contact<S>& contact) const {
         const S level = this->level(contact), relaxation = this->relaxation(contact);
         State rates{};
@@ -103,7 +103,7 @@ struct MaxwellSlipFriction {
         return rates;
     }
 
-    /// How fast the elements forget [1/s]: not at all while they stick.
+    /// Forgetting rate of the elements [1/s]: zero while they stick.
     constexpr State relaxation_rate(const State& x, const Contact<S>& contact) const {
         const S relaxation = this->relaxation(contact);
         State rates{};
@@ -128,7 +128,7 @@ struct MaxwellSlipFriction {
         return within;
     }
 
-    /// Which elements stick and which slip from here on; for a solver that keeps this fixed over a step.
+    /// Elements that slip from here on; for a solver that keeps this fixed over a step.
     constexpr State update_mode(const State& x, const Contact<S>& contact) const {
         const S sense = sign(contact.speed), level = this->level(contact);
         State next = x;
@@ -174,10 +174,10 @@ private:
         return max(sum, S(smallest));
     }
 
-    /// What a share of one carries in steady sliding [N.m].
+    /// Torque of a share of one in steady sliding [N.m].
     constexpr S level(const Contact<S>& contact) const { return contact.dry * sliding_torque(contact.speed) / total(); }
 
-    /// How fast a slipping element is drawn to its limit [1/s].
+    /// Rate at which a slipping element approaches its limit [1/s].
     constexpr S relaxation(const Contact<S>& contact) const {
         constexpr double fastest = 1e30;  // 1/s: finite in every scalar, if there is no friction at all
         return attraction / max(sliding_torque(contact.speed), max(attraction / S(fastest), S(smallest)));
@@ -186,7 +186,7 @@ private:
     static constexpr double about_to_slip = 0.5;
     static constexpr auto slipping(const State& x, int i) { return x.slipping[i] > S(about_to_slip); }
 
-    /// Whether an element slips in a motion of this sense: it carries its limit, or has reached it this way before.
+    /// True if an element slips in a motion of this sense: it carries its limit, or has reached it this way before.
     static constexpr auto slips(const State& x, int i, const S& sense, const S& level) {
         const S carried = sense * x.torque[i];
         const auto goes_on = (x.slipping[i] > S(0.0)) & !(carried < S(0.0));

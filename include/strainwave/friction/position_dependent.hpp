@@ -4,7 +4,7 @@
 
 namespace strainwave::friction {
 
-/// What a law does beyond the angles it was measured at.
+/// Behaviour of a law beyond the measured angles.
 enum class Outside { clamp, periodic, refuse };
 constexpr Array<const char*, 3> choices(Outside) { return {{"clamp", "periodic", "refuse"}}; }
 
@@ -48,8 +48,8 @@ struct PositionDependent {
         ``"refuse"`` is an error. f_peri is periodic in any case.
 
         Document P prints the sliding branch with the wrong sign and for v > 0 only (E-P3); its factor 0.0004 needs the unit
-        s/rad (E-P4), and its v_c is the reference speed, not a threshold (E-P5). A constant a_0 / 2 is not identifiable beside
-        s_3 and is left out (E-P9).
+        s/rad (E-P4), and its v_c is the reference speed, not a threshold (E-P5). A constant a_0 / 2 is not identifiable
+        together with s_3 and is left out (E-P9).
 
         >>> from strainwave.friction import PositionDependent
         >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, static_ratio=1.0388,
@@ -89,7 +89,7 @@ struct PositionDependent {
         return max(static_ratio * level(contact, S(0.0)), level(contact, -reference_speed));
     }
 
-    /// Where it is valid.
+    /// Range of angles in which the law is valid.
     constexpr Domain<S> domain(const Contact<S>& contact) const {
         if (outside != Outside::refuse) return {"angle", angle(contact), S(-unbounded), S(unbounded), "rad", ""};
         return {"angle",    angle(contact), domain_start,

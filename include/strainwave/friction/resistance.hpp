@@ -1,10 +1,10 @@
 #pragma once
 #include <strainwave/friction/contact.hpp>
 
-/// What a law of friction does to the shaft that it acts on, whether it is set-valued or not.
+/// Action of a law of friction on its shaft, set-valued or not.
 namespace strainwave::friction {
 
-/// What a friction opposes: the part that acts at rest too, and the part that can stick.
+/// Torque of a friction: the part that acts at rest too, and the part that can stick.
 template <class S>
 struct Resistance {
     S always, sliding;
@@ -25,7 +25,7 @@ constexpr S sliding_torque(const Law& law, const typename Law::State& x, const C
     return set_valued(law) ? torque(law, x, contact) : S(0.0);
 }
 
-/// What to report: a place that sticks balances its share of what drives its side.
+/// Friction torque in outputs: a place that sticks balances its share of the driving torque of its side.
 template <class S, class Law>
 constexpr S reported(const Law& law, const Contact<S>& contact, const S& sliding, const S& share) {
     if (!set_valued(law)) return sliding;

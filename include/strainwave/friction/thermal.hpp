@@ -40,7 +40,7 @@ struct Thermal {
 
     using State = typename Law::State;
 
-    /// What friction is multiplied by at its temperature.
+    /// Factors of friction at its temperature.
     struct Modulator {
         S dry_fall, viscous_fall, reference_temperature;
 

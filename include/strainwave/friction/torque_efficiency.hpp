@@ -36,13 +36,14 @@ struct TorqueEfficiency {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, average_loss, "1", "Loss per torque transmitted, mean of driving and back-driving", 0));
-        visit(SW_FIELD(m, difference_loss, "1", "Half the difference of the losses when driving and when back-driven, per torque transmitted"));
+        visit(SW_FIELD(m, difference_loss, "1",
+                       "Half the difference of the losses when driving and when back-driven, per torque transmitted"));
         visit(SW_REQUIRED(m, presliding, "rad", "Angle h over which the loss turns round after a reversal", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 
     constexpr const char* problem() const {
-        return all(average_loss >= abs(difference_loss)) ? nullptr : "average_loss must not lie below the size of difference_loss";
+        return all(average_loss >= abs(difference_loss)) ? nullptr : "average_loss must be at least the size of difference_loss";
     }
 
     struct State {
@@ -68,7 +69,7 @@ struct TorqueEfficiency {
         return {(contact.speed - abs(contact.speed) * x.engagement) / angle(contact)};
     }
 
-    /// How fast the engagement forgets [1/s].
+    /// Forgetting rate of the engagement [1/s].
     constexpr State relaxation_rate(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / angle(contact)}; }
 
     /// No motion engages more than fully: an exact invariant.
@@ -86,7 +87,7 @@ struct TorqueEfficiency {
     }
 
 private:
-    /// `presliding`, unless the engagement followed faster than numbers can tell.
+    /// `presliding`, unless the engagement follows faster than numbers resolve.
     constexpr S angle(const Contact<S>& contact) const {
         constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s: 2^100, finite in every scalar
         return max(presliding, abs(contact.speed) / S(fastest));

@@ -183,7 +183,7 @@ private:
         for (int k = 1; k < terms.size(); ++k) slopes[k] = S(k) * terms[k];
         return (polynomial(terms, start) - polynomial(terms, depth) - y - fall) / (S(1.0) + polynomial(slopes, depth));
     }
-    /// What a last step of Newton's adds: derivatives, and to the value nothing, as in scalars without.
+    /// Derivatives from a last step of Newton's method; the value does not change, as in scalars without derivatives.
     static constexpr S slope_of(const S& step) { return step - value_only(step); }
     static constexpr Depths detached_all(Depths terms) {
         if constexpr (differentiates<S>)

@@ -141,7 +141,7 @@ private:
         return level;
     }
 
-    /// That torque, nearly: Halley's method, held between what has proved too little and too much.
+    /// Approximation of that torque: Halley's method, bracketed by torques that are too small and too large.
     static constexpr S searched(const Springs& both, const S& twist, const S& held, const S& friction, const S& farthest) {
         const S softest = both.flexspline.softness + both.wave_generator.softness;
         auto given = under(both, held, held + friction);

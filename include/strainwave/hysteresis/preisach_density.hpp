@@ -194,7 +194,7 @@ private:
     constexpr S width() const { return S(2.0) * limit / S(rows()); }
     constexpr S edge(int i) const { return limit * S(2 * i - rows()) / S(rows()); }
 
-    /// How many rows lie below a twist.
+    /// Count of rows below a twist.
     constexpr S place(const S& twist) const { return (clip(twist / limit, S(-1.0), S(1.0)) + S(1.0)) * S(0.5) * S(rows()); }
     /// The share of row i below a place.
     static constexpr S filled(const S& place, int i) { return clip(place - S(i), S(0.0), S(1.0)); }

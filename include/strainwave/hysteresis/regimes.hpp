@@ -61,7 +61,7 @@ struct Regimes {
     constexpr const char* problem() const {
         return all(positive_unloading > positive_loading) && all(negative_unloading > negative_loading)
                    ? nullptr
-                   : "the loading stiffness of each sign must lie below its unloading stiffness";
+                   : "the loading stiffness of each sign must be below its unloading stiffness";
     }
 
     struct State {
@@ -108,7 +108,7 @@ struct Regimes {
     }
 
 private:
-    /// What the plastic share has grown to, if it has, at `twist`: the elastic torque meets the torque at which it grows.
+    /// Plastic share at `twist` if it grows: the elastic torque equals the torque at which it grows.
     constexpr S yielded(const S& twist, const S& unloading, const S& loading) const {
         const S soft = loading / unloading;
         return max(S(1.0) - soft, S(0.0)) * (twist - onset / unloading) - S(0.5) * soft * lost_motion;

@@ -5,9 +5,9 @@
 namespace strainwave::integrate {
 
 /// Steps as long as a tolerance allows, taken by `smooth`, which knows no events and is of fourth order; by Moreau and Jean's
-/// scheme where events chatter. The error of two steps is told by one of twice their length. A step ends at an event. Between its
-/// ends a step is known as exactly as there: by a step of part of its length. `Inputs` tells the inputs at a fraction of an
-/// interval, and over a part of it, as an Interval does. For scalars that are plain numbers.
+/// scheme where events chatter. The error of two steps is their difference to one step of twice their length. A step ends at an
+/// event. Between its ends a step is known as exactly as there: by a step of part of its length. `Inputs` gives the inputs at a
+/// fraction of an interval, and over a part of it, as an Interval does. For scalars that are plain numbers.
 template <class S, class System, class Smooth, class Inputs = Interval<typename System::Input>>
 class Adaptive {
     using Evaluation = typename System::Evaluation;
@@ -28,7 +28,7 @@ class Adaptive {
 public:
     long accepted = 0, rejected = 0;
 
-    /// Whether one of the shortest steps after the other missed the tolerance, where `through` ended.
+    /// True if consecutive steps of the shortest length missed the tolerance, so that `through` ended.
     constexpr bool gave_up() const { return failed_shortest > max_failed_shortest; }
 
     /// `like` is a state of the system, `first` the length of the first step [s].
@@ -48,7 +48,7 @@ public:
         S done{0.0};
         while (done < S(1.0)) {
             if (system::breaks_away(system, from)) from = system::break_away(system, from, u.at(done, dt));
-            // What is left is not cut so that a sliver remains.
+            // The rest is not cut, so that no sliver remains.
             const S left = (S(1.0) - done) * dt, steps = left / next;
             const S length = steps <= S(1.0) ? left : steps < S(2.0) ? S(0.5) * left : next;
             const Trial planned = trial(from, u, dt, done, length < left ? done + length / dt : S(1.0));
@@ -88,11 +88,11 @@ private:
     static constexpr double forgetting = 0.1;
     int events = 0;  ///< each within a brief time of the other
 
-    /// Whether events follow so fast that the next step is one of Moreau and Jean's.
+    /// True if events follow so fast that the next step is one of Moreau and Jean's.
     constexpr bool chatters() const { return events >= max_events; }
 
-    /// Whether a step of some `length` [s] that misses so much may stand, be it as one of the shortest; and how long the next one
-    /// is. What an event has `cut` says nothing of longer ones, nor does what the end of the interval has made much shorter.
+    /// True if a step of this `length` [s] and error is accepted, also as one of the shortest; sets the length of the next one. A
+    /// step that an event has `cut`, or that the end of the interval has shortened, does not limit longer ones.
     constexpr bool stands(const S& error, const S& length, bool cut) {
         const S max_growth(4.0);
         // An error of what is not a number is larger than any; a step must not become nothing.
@@ -126,7 +126,7 @@ private:
         return smooth(system, from, part, length);
     }
 
-    /// Where a step must end, as a fraction of the interval, be it at an event; and where it is seen that one was met.
+    /// End of a step, as a fraction of the interval, also at an event; and the fraction at which the event is detected.
     struct Stop {
         S at;
         bool event = false;
@@ -151,8 +151,8 @@ private:
     struct Look {
         S at, left;
     };
-    /// Where between two fractions an event is first seen to be met, if at all: where the watched number turns its sign, for there
-    /// friction that grows with it holds nothing, be it for a moment; or at the end.
+    /// First fraction between two at which an event is detected, if any: the watched number changes its sign, for there friction
+    /// that grows with it holds nothing, be it for a moment; or at the end.
     constexpr Look closest(const Evaluation& start, const Evaluation& end, const Inputs& u, const S& dt, const S& from,
                            const S& to) const {
         const S before = system::watched<S>(system, start), after = system::watched<S>(system, end);

@@ -5,9 +5,9 @@
 
 namespace strainwave::integrate {
 
-/// What Krogstad's method (2005, eq. (51)) takes of a block of numbers that obey y' = A y + n(y, rest) over a step: A, and what its
-/// functions phi_1, phi_2, phi_3 of half the step and of all of it weigh rates with. Written for the changes of n since the start
-/// of the step, so that A y + n, the rate, is all that the first stage needs.
+/// Coefficients of Krogstad's method (2005, eq. (51)) for a block of numbers that obey y' = A y + n(y, rest) over a step: A, and
+/// what its functions phi_1, phi_2, phi_3 of half the step and of all of it weigh rates with. Written for the changes of n since
+/// the start of the step, so that A y + n, the rate, is all that the first stage needs.
 template <class S, int n>
 class Coupling {
     Square<S, n> linear, half_first, half_second;
@@ -15,7 +15,7 @@ class Coupling {
     S h;
 
 public:
-    /// Those of A, over a step of `dt`.
+    /// Coefficients of A, over a step of `dt`.
     constexpr void set(const Square<S, n>& a, const S& dt) {
         linear = a;
         h = dt;
@@ -31,13 +31,13 @@ public:
 
     using Numbers = Array<S, n>;
 
-    /// How much n has changed since the start of the step, where the rate was `at_start`, and the numbers are `moved` from there.
+    /// Change of n since the start of the step, where the rate was `at_start`, and the numbers are `moved` from there.
     constexpr Numbers change(const Numbers& rate, const Numbers& at_start, const Numbers& moved) const {
         Numbers d = times(linear, moved);
         for (int i = 0; i < n; ++i) d[i] = (rate[i] - at_start[i]) - d[i];
         return d;
     }
-    // How far the numbers move, to the stages in the middle of the step, and to its end.
+    // Change of the numbers to the stages in the middle of the step, and to its end.
     constexpr Numbers to_second(const Numbers& at_start) const { return moved(S(0.5), half_first, at_start); }
     constexpr Numbers to_third(const Numbers& second_moved, const Numbers& d2) const {
         return sum(second_moved, moved(S(1.0), half_second, d2));
@@ -157,7 +157,7 @@ public:
 
 private:
     static constexpr double rounding = 1e-8;  // relative
-    /// Of a step: more than what the moment of a jump is missed by.
+    /// Fraction of a step, larger than the error of the moment of a jump.
     static constexpr double brief = 1e-3;
 
     static constexpr auto close(const S& dt, const S& to) { return abs(dt - to) < S(rounding) * to; }

@@ -5,7 +5,7 @@ namespace strainwave::integrate {
 
 /// The moment within (from, 1] at which the margin first falls below zero, in lanes where it does by the end; 1 in the others.
 /// Anderson and Bjorck's variant of regula falsi, which closes a bracket around it; and of that the end, for before a margin jumps
-/// nothing tells which side's it is.
+/// the side is not determined.
 template <class S, class Margin>
 constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
     // Less than a state so close by differs from its rounding, and some units in the last place of the moment: a float resolves no
@@ -18,7 +18,7 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
         if (!any(searching)) break;
         const S secant = b - fb * (b - a) / select(searching, fb - fa, S(-1.0)), middle = S(0.5) * (a + b);
         const auto serves = (secant > a) & (secant < b) & (S(i) < S(20.0));  // it finds no jump
-        // So far from the ends that one beside the moment closes the bracket.
+        // Away from the ends, so that a guess next to the moment closes the bracket.
         const S guess = clip(select(serves, secant, middle), a + S(0.5) * within, b - S(0.5) * within);
         const S f = value_only(margin(select(searching, guess, b)));
         const auto before = f > S(0.0);

@@ -4,7 +4,7 @@
 
 namespace strainwave::integrate {
 
-/// How many events a step may hold before they count as chattering.
+/// Largest count of events in a step; more are chattering.
 inline constexpr int max_events = 16;
 
 /// Repeats a step that ended `there`, behind an event, as stretches that end at events. At each, the event is applied and the next

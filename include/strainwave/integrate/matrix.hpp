@@ -66,8 +66,8 @@ template <class S, int n>
 struct PhiFunctions {
     Square<S, n> exponential, first, second, third;
 
-    /// Those of `z`: by their series where Z is small, and by doubling from there (Skaflestad and Wright 2009). How often is told
-    /// for each lane by itself, so that each has the bits that it has alone. What `z` and `room` hold is lost.
+    /// The functions of `z`: by their series if Z is small, and by doubling from there (Skaflestad and Wright 2009). The count of
+    /// doublings follows for each lane by itself, so that each has the bits that it has alone. What `z` and `room` hold is lost.
     constexpr void set(Square<S, n>& z, Square<S, n>& room) {
         constexpr double small = 0.5;
         constexpr int most = 64;

@@ -42,8 +42,8 @@ class Factored {
     using S = typename detail::RowsOf<Vector>::Scalar;
 
 public:
-    /// Gauss's elimination; in each column the largest pivot left, but a row that holds nothing else comes first: what it says is
-    /// then solved to the last bit, as a shaft that sticks does not move.
+    /// Gauss's elimination with the largest pivot left in each column. A row with one number only comes first, so that its
+    /// solution is exact to the last bit: a shaft that sticks does not move.
     constexpr explicit Factored(const Matrix<Vector>& matrix) : rows(matrix), order{} {
         const int n = rows.size();
         for (int i = 0; i < n; ++i) order[i] = i;
@@ -64,7 +64,7 @@ public:
             }
         }
     }
-    /// Whether a row holds one number only, at place k.
+    /// True if a row has one number only, at place k.
     static constexpr bool alone(const Vector& row, int k) {
         for (int j = 0; j < row.size(); ++j)
             if ((row[j] == S(0.0)) == (j == k)) return false;
@@ -99,7 +99,7 @@ struct Ros34pw2 {
                                                         {0.24212380706095346, -1.2232505839045147, 0.54526025533510214}};
     static constexpr double weight[stages] = {0.24212380706095346, -1.2232505839045147, 1.5452602553351020, 0.43586652150845900};
 
-    /// Where in the step a stage stands.
+    /// Fraction of the step of a stage.
     static constexpr double abscissa(int stage) {
         double sum = 0.0;
         for (int j = 0; j < stage; ++j) sum += argument[stage][j];
@@ -107,18 +107,18 @@ struct Ros34pw2 {
     }
 };
 
-/// What `rate` answers to each member of `y` by itself: the Jacobian, by differences towards zero, within what `clamped` allows.
+/// The Jacobian of `rate` by `y`, by differences towards zero, within the limits of `clamped`.
 template <class S, class Vector, class Rate, class Clamped>
 constexpr Matrix<Vector> jacobian(const Rate& rate, const Clamped& clamped, const Vector& y, const Vector& now, const S& dt) {
     Matrix<Vector> matrix = zero_matrix(y);
     for (int j = 0; j < y.size(); ++j) {
         const S moved = S(1e-7) * (abs(y[j]) + dt * abs(now[j])) + S(1e-10);
-        Vector beside = y;
-        beside[j] = y[j] - along(y[j], moved);
-        beside[j] = clamped(beside)[j];
-        const S difference = beside[j] - y[j];
+        Vector perturbed = y;
+        perturbed[j] = y[j] - along(y[j], moved);
+        perturbed[j] = clamped(perturbed)[j];
+        const S difference = perturbed[j] - y[j];
         if (difference == S(0.0)) continue;
-        const Vector then = rate(beside);
+        const Vector then = rate(perturbed);
         for (int i = 0; i < y.size(); ++i) matrix[i][j] = (then[i] - now[i]) / difference;
     }
     return matrix;
@@ -141,8 +141,8 @@ constexpr typename System::State rosenbrock_step(const System& system, const typ
     const Vector y = flattened<S>(start);
     const int n = y.size();
     const auto matrix = detail::jacobian<S>(
-        [&](const Vector& beside) { return flattened<S>(system.derivatives(x, refilled(start, beside), u.start).rate); },
-        [&](const Vector& beside) { return flattened<S>(clamped(beside)); }, y, flattened<S>(now.rate), dt);
+        [&](const Vector& perturbed) { return flattened<S>(system.derivatives(x, refilled(start, perturbed), u.start).rate); },
+        [&](const Vector& perturbed) { return flattened<S>(clamped(perturbed)); }, y, flattened<S>(now.rate), dt);
     Matrix<Vector> left = zero_matrix(y);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) left[i][j] = S(i == j ? 1.0 : 0.0) - dt * S(Table::gamma) * matrix[i][j];

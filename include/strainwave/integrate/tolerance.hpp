@@ -2,8 +2,8 @@
 
 namespace strainwave::integrate {
 
-/// What a continuous number, and the watched one, may err by: `absolute`, in its own unit, plus `relative` times the largest it has
-/// been.
+/// Error allowed of a continuous number, and of the watched one: `absolute`, in its own unit, plus `relative` times the largest it
+/// has been.
 struct Tolerance {
     double relative = 1e-6;
     double absolute = 1e-12;

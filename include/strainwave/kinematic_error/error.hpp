@@ -10,14 +10,14 @@ struct Error {
     S slope{0.0};  ///< rad/rad
 };
 
-/// What is left of an error under load, as a factor, and how that changes with the torque [1/(N.m)].
+/// Factor of an error under load, and its slope over the torque [1/(N.m)].
 template <class S>
 struct Relief {
     S factor{1.0};
     S slope{0.0};
 };
 
-/// Whether an error shrinks or grows with the torque that the gear transmits.
+/// True if an error depends on the torque that the gear transmits.
 template <class Law>
 constexpr bool follows_load(const Law& law) {
     if constexpr (requires { law.follows_load(); })

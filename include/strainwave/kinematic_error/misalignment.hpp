@@ -4,8 +4,8 @@
 
 namespace strainwave::kinematic_error {
 
-/// How the two lobes of the wave generator decide on the output: one tooth pair carries; two equally stiff ones share; the
-/// one that is pushed further out carries.
+/// Combination of the displacements of the two lobes: one tooth pair carries; two equally stiff ones share; the one that is pushed
+/// further out carries.
 enum class Combine { single, mean, max };
 constexpr Array<const char*, 3> choices(Combine) { return {{"single", "mean", "max"}}; }
 
@@ -157,7 +157,7 @@ struct Misalignment {
             return {scale * select(behind, second.value, first.value), scale * select(behind, second.slope, first.slope)};
         }
 
-        /// Which lobe decides, where one does: by how much it is further out [m].
+        /// Lobe that determines the output, if one does: its lead over the other [m].
         constexpr S side(const Angle<S>& angle) const {
             if (combine != Combine::max) return S(1.0);
             const auto [first, second] = lobes(angle);
@@ -214,8 +214,8 @@ struct Misalignment {
     /// Radial displacements delta_A and delta_B.
     constexpr Lobes<S> lobes(const Angle<S>& angle) const { return compile().lobes(angle); }
 
-    /// Where the input shaft pierces the section, seen from the axis of the circular spline [m], at rest in the housing: all
-    /// that harmonics tell of the misalignment, in first order.
+    /// Point at which the input shaft pierces the section, seen from the axis of the circular spline [m], at rest in the housing:
+    /// all that harmonics determine of the misalignment, in first order.
     constexpr Planar<S> eccentricity() const {
         const SinCos<S> direction = sincos(housing_direction), x = sincos(housing_tilt_x), y = sincos(housing_tilt_y);
         const Planar<S> e{housing_eccentricity * direction.cos, housing_eccentricity * direction.sin};
@@ -243,7 +243,7 @@ private:
     }
     constexpr S scale() const { return -tangent(sincos(pressure_angle)) / pitch_radius; }
 
-    /// Where the generator's axis pierces the section, seen from the input shaft [m], turning with it.
+    /// Point at which the generator's axis pierces the section, seen from the input shaft [m], turning with it.
     constexpr Planar<S> centre() const {
         const SinCos<S> direction = sincos(generator_direction), x = sincos(generator_tilt_x), y = sincos(generator_tilt_y);
         return {generator_eccentricity * direction.cos + offset * tangent(x),

@@ -62,7 +62,7 @@ struct Stochastic {
         return all(highest_order > lowest_order) ? nullptr : "highest_order must exceed lowest_order";
     }
 
-    /// How it changes at the most, at rest and without load.
+    /// Largest slopes of the error, at rest and without load.
     struct MaxChange {
         S slope;       ///< over the input angle, rad/rad
         S per_torque;  ///< over the torque transmitted, rad/(N.m)
@@ -81,8 +81,8 @@ struct Stochastic {
             const S rise = min(speed_sensitivity * abs(speed), S(1e30)), fall = min(load_sensitivity * abs(torque), S(1e30));
             return amplitude * (S(1.0) + rise) / (S(1.0) + fall);
         }
-        /// How fast that grows, per itself [1/s], where the torque does so at `torque_rate` [N.m/s], the speed at `acceleration`
-        /// [rad/s2].
+        /// Relative growth rate of the amplitude [1/s], where the torque changes at `torque_rate` [N.m/s], the speed at
+        /// `acceleration` [rad/s2].
         constexpr S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const {
             const S rise = speed_sensitivity * abs(speed), fall = load_sensitivity * abs(torque);
             return speed_sensitivity * sign(speed) * acceleration / (S(1.0) + rise) -
@@ -111,7 +111,7 @@ struct Stochastic {
         }
     };
 
-    /// Whether it makes any difference, or could be sought to make one.
+    /// True if the law has an effect, or a derivative by its parameters.
     constexpr bool active() const { return is_differentiated(amplitude) || any(amplitude > S(0.0)); }
 
     constexpr S rms(const S& torque, const S& speed) const { return scaled().rms(torque, speed); }

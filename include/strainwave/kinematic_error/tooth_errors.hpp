@@ -149,7 +149,7 @@ struct ToothErrors {
     }
 
 private:
-    /// What the engaged teeth of a spline make of its deviation, times `scale`.
+    /// Mean deviation of the engaged teeth of a spline, times `scale`.
     constexpr Harmonics<S, 1, highest> averaged(int teeth, const Chart& amplitude, const Chart& phase, const S& total,
                                                 const Array<S, highest>& drawn, const S& scale) const {
         Sequence<S, 2 * highest> order{}, size{}, start{};

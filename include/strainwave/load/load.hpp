@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/field.hpp>
 
-/// What every load is asked. It has
+/// Interface of a load. It has
 ///
 ///     inertia                       kg.m2
 ///     torque(angle, speed)          -> N.m, holding the output back
@@ -14,17 +14,17 @@
 ///
 /// and one whose torque follows the angle
 ///
-///     steepest()                    -> N.m/rad, how fast the torque changes with the angle at most, without sign
+///     steepest()                    -> N.m/rad, steepest slope of the torque over the angle, without sign
 namespace strainwave::load {
 
 /// The input of a load that names no other.
 inline constexpr Field torque_input{"load_torque", "N.m", "Torque that holds the output back, besides the load's own"};
 
-/// Whether a load takes the output shaft where its input says; of a choice, whether one of its loads does.
+/// True for a load that prescribes the motion of the output shaft; of a choice, if one of its loads does.
 template <class Load>
 inline constexpr bool can_prescribe = requires { Load::prescribes; };
 
-/// Whether a load brakes the output shaft; of a choice, whether one of its loads does.
+/// True for a load that brakes the output shaft; of a choice, if one of its loads does.
 template <class Load>
 inline constexpr bool can_brake = requires(const Load& load) { load.hold(0.0); };
 
@@ -45,7 +45,7 @@ constexpr bool brakes(const Load&) {
     return load::can_brake<Load>;
 }
 
-/// What a load resists slip by, and the most that it balances at rest, N.m.
+/// Torque of a load against slip, and the largest torque that it balances at rest, N.m.
 template <class S>
 struct Braking {
     S slip{0.0}, hold{0.0};
@@ -71,7 +71,7 @@ constexpr S load_torque(const Load& load, const S& angle, const S& speed, const 
         return load.torque(angle, speed) + input;
 }
 
-/// How fast the torque of a load changes with the output angle at most [N.m/rad].
+/// Steepest slope of the torque of a load over the output angle [N.m/rad].
 template <class S, class Load>
 constexpr S load_stiffness(const Load& load) {
     if constexpr (requires { load.steepest(); })

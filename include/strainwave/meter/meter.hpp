@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/field.hpp>
 
-/// What every meter of a drive's energy is asked. It has
+/// Interface of a meter of the energy of a drive. It has
 ///
 ///     State, Output                        what changes continuously, and what it shows in recordings
 ///     active()                             whether it measures: else nobody works out any power
@@ -9,7 +9,7 @@
 ///     output(state, powers, stored)        -> Output
 namespace strainwave::meter {
 
-/// Where the power goes that a drive takes, at one instant. What is supplied is lost, goes to the load, or is stored.
+/// Powers of a drive at one instant. Supplied power is lost, goes to the load, or is stored.
 template <class S>
 struct Powers {
     S supplied{0.0}, motor{0.0}, friction_input{0.0}, friction_mesh{0.0}, friction_output{0.0}, damping{0.0}, hysteresis{0.0},
@@ -30,7 +30,7 @@ struct Powers {
     }
 };
 
-/// What a drive holds by its motion and its position, J.
+/// Kinetic and potential energies of a drive, J.
 template <class S>
 struct Stored {
     S input{0.0}, output{0.0}, spring{0.0}, gear{0.0}, motor{0.0};

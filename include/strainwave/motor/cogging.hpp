@@ -17,7 +17,7 @@ struct CoggingTorque {
     constexpr S added_to(const S& electric, const Angle<S>& angle) const {
         return acts ? electric + amplitude * sin(order * angle.within) : electric;
     }
-    /// The energy [J] of a motor that stores this beside it.
+    /// The energy [J] of a motor, that of cogging included.
     constexpr S stored_with(const S& magnetic, const Angle<S>& angle) const {
         return acts ? magnetic + amplitude / order * cos(order * angle.within) : magnetic;
     }

@@ -106,7 +106,7 @@ struct DC {
         constexpr State rate(const State& x, const S& voltage, const Rotor<S>& rotor) const {
             return {(voltage - winding.resistance_at(rotor.temperature) * x.current - back_emf * rotor.speed) * per_inductance};
         }
-        /// How fast the current relaxes [1/s].
+        /// Relaxation rate of the current [1/s].
         constexpr State relaxation_rate() const { return {winding.resistance * per_inductance}; }
     };
 

@@ -2,10 +2,10 @@
 #include <strainwave/angle.hpp>
 #include <strainwave/limits.hpp>
 
-/// What every motor is asked. A motor turns what its controller asks for, its actuation, into a torque. It has
+/// Interface of a motor. A motor turns the actuation of its controller into a torque. It has
 ///
-///     State, Output                        what changes continuously, and what it shows of itself in recordings
-///     actuation                            the name of the output that is what the controller gives it
+///     State, Output                        continuous numbers, and channels in recordings
+///     actuation                            the name of the output that is the actuation
 ///     inertia                              kg.m2
 ///     torque(state, actuation, rotor)      -> N.m
 ///     current(state, actuation, rotor)     -> A, as its sensor finds it
@@ -14,20 +14,20 @@
 ///     rate(state, actuation, rotor)        -> State
 ///     relaxation_rate()                    -> State, 1/s
 ///
-/// and, where it cannot give all that it may be asked for,
+/// and, if it cannot follow every actuation,
 ///
 ///     limits(state, rotor)                 -> Limits
 ///
-/// and, where its currents change faster by themselves than the relaxation rate says,
+/// and, if its currents change faster by themselves than by the relaxation rate,
 ///
 ///     fastest()                            -> rad/s, which fixed steps must follow
 ///
-/// and, where it prescribes the motion of the input shaft, its torque being a result,
+/// and, if it prescribes the motion of the input shaft, so that its torque is a result,
 ///
 ///     acceleration(actuation)              -> rad/s2
 namespace strainwave::motor {
 
-/// How the shaft of a motor stands, and how warm its winding is.
+/// Angle, speed and torque of the shaft of a motor, and temperature of its winding.
 template <class S>
 struct Rotor {
     Angle<S> angle{};
@@ -36,7 +36,7 @@ struct Rotor {
     S torque{0.0};       ///< N.m, that a prescribed motion needs; 0 until that is known, and of every other motor
 };
 
-/// Whether a motor prescribes the motion of the input shaft; of a choice, whether one of its motors does.
+/// True for a motor that prescribes the motion of the input shaft; of a choice, if one of its motors does.
 template <class Motor>
 inline constexpr bool can_prescribe = requires(const Motor& motor) { motor.acceleration(0.0); };
 
@@ -57,7 +57,7 @@ constexpr S acceleration(const Motor& motor, const S& actuation) {
         return S(0.0);
 }
 
-/// Where the power goes that a motor takes and does not give to its shaft.
+/// Electrical power of a motor: supplied, lost and stored.
 template <class S>
 struct Power {
     S supplied;  ///< W, taken from outside
@@ -73,7 +73,7 @@ constexpr Limits<S> limits(const Motor& motor, const State& x, const Rotor<S>& r
         return {};
 }
 
-/// The name of what a motor is given by its controller.
+/// The name of the actuation of a motor.
 template <class Motor>
 constexpr const char* taken_by(const Motor& motor) {
     if constexpr (requires { motor.actuation(); })
@@ -82,7 +82,7 @@ constexpr const char* taken_by(const Motor& motor) {
         return Motor::actuation;
 }
 
-/// Whether the current of a motor is a state: it does not follow the actuation at once.
+/// True if the current of a motor is a state: it does not follow the actuation at once.
 template <class S, class Motor>
 constexpr bool has_current(const Motor& motor) {
     if constexpr (requires { motor.has_current(); }) {

@@ -17,7 +17,7 @@ struct Slope {
 /// The derivatives are the lanes of a vector.
 template <int n>
 struct Dual {
-    /// Whether a comparison holds. Not a bool, for which `&` looks like a slip of the pen to a compiler.
+    /// Result of a comparison. Not a bool, for which `&` looks like a slip of the pen to a compiler.
     struct Mask {
         bool holds;
         constexpr operator bool() const { return holds; }
@@ -91,10 +91,10 @@ struct Dual {
         constexpr double steep = 0x1p100, flat = 1e-30;
         Dual steeper = root;
         steeper.slope += steep;
-        const Dual at_root = f(root), beside = f(steeper);
+        const Dual at_root = f(root), perturbed = f(steeper);
         Dual moving = root;
         for (int i = 0; i < n; ++i) {
-            const double by_argument = (beside.slope[i] - at_root.slope[i]) * (1.0 / steep);
+            const double by_argument = (perturbed.slope[i] - at_root.slope[i]) * (1.0 / steep);
             if (strainwave::abs(by_argument) > flat) moving.slope[i] -= at_root.slope[i] / by_argument;
         }
         return moving;
@@ -121,7 +121,7 @@ struct Dual {
             if (x.slope[i] != 0.0) return true;
         return false;
     }
-    /// A number that a derivative is sought for is treated as any other, whole or not.
+    /// A number with a derivative never counts as whole.
     friend constexpr int whole(const Dual& x, int highest) {
         return is_differentiated(x) ? 0 : strainwave::whole(x.value, highest);
     }

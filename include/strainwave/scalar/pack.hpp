@@ -12,7 +12,7 @@ struct Pack {
     using Lanes = typename detail::Vector<double, width * sizeof(double)>::type;
     using Bits = elementary::WordOf<Lanes>;
 
-    /// Which lanes a comparison holds in: all bits of a lane, or none.
+    /// Lanes in which a comparison is true: all bits of a lane, or none.
     struct Mask {
         Bits part[count];
         friend constexpr Mask operator&(const Mask& a, const Mask& b) {

@@ -36,14 +36,14 @@ struct ThermalSoftening {
         visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 of the laws of stiffness and hysteresis", smallest));
     }
 
-    /// Whether it makes any difference, or could be sought to make one.
+    /// True if the law has an effect, or a derivative by its parameters.
     constexpr bool active() const {
         return is_differentiated(stiffness_fall) || is_differentiated(hysteresis_fall) || any(!(stiffness_fall == S(0.0))) ||
                any(!(hysteresis_fall == S(0.0)));
     }
     /// The share of the elastic energy that turns to heat each second [1/s], where the gear warms up at `warming` [K/s].
     constexpr S dissipation_rate(const S& warming) const { return stiffness_fall * warming; }
-    /// What the torque of the spring and that of the hysteresis are multiplied by.
+    /// Factors of the torque of the spring and of that of the hysteresis.
     constexpr S of_stiffness(const S& temperature) const { return fallen(stiffness_fall * (temperature - reference_temperature)); }
     constexpr S of_hysteresis(const S& temperature) const {
         return fallen(hysteresis_fall * (temperature - reference_temperature));

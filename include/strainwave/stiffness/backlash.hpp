@@ -53,7 +53,7 @@ struct Backlash {
     constexpr bool bounded() const {
         return strainwave::bounded<Where>(law);
     }
-    /// Where its spring is valid, as twists of the gear.
+    /// Range in which its spring is valid, as twists of the gear.
     constexpr Domain<S> domain(const S& twist) const {
         Domain<S> valid = strainwave::domain<S>(law, sprung(twist));
         if (!strainwave::bounded<S>(law)) return valid;
@@ -62,7 +62,7 @@ struct Backlash {
 
 private:
     constexpr S half() const { return S(0.5) * clearance; }
-    /// What of a twist is the spring's.
+    /// Share of the spring in a twist.
     constexpr S sprung(const S& twist) const { return twist - clip(twist, -half(), half()); }
 };
 

@@ -26,12 +26,12 @@ struct Given {
     }
 };
 
-/// What can be divided by, where the quotient serves only hardenings above zero.
+/// A divisor that is never zero; the quotient is used for hardenings above zero only.
 template <class S>
 constexpr S or_one(const S& hardening) {
     return select(hardening > S(0.0), hardening, S(1.0));
 }
-/// How far a spring of this softness can give way, if `share` over its hardening limits it.
+/// Largest twist of a spring of this softness, if `share` over its hardening limits it.
 template <class S>
 constexpr S reach(const S& softness, const S& hardening, const S& share) {
     return select(hardening > S(0.0), share * softness / or_one(hardening), S(unbounded));
@@ -44,7 +44,7 @@ struct ArctanSpring {
 
     constexpr Given<S> at(const S& torque) const {
         const S x = hardening * torque, square = x * x, inverse = S(1.0) / max(x, S(smallest));
-        // Of an angle and its complement to a right angle, the smaller is exact to its own last digits.
+        // The smaller of an angle and its complement to a right angle is exact to its own last digits.
         const S acute = atan(min(x, inverse)), angle = select(inverse < x, S(0.5 * pi) - acute, acute);
         const S rest = select(inverse < x, acute, S(0.5 * pi) - acute), scale = softness / or_one(hardening);
         const S compliance = softness / (S(1.0) + square);
@@ -88,14 +88,14 @@ struct ExponentialSpring {
     constexpr S bound() const { return reach(softness, hardening, S(1.0)); }
 
 private:
-    /// Beyond, the exponential is nothing beside 1, and only underflows.
+    /// Beyond, the exponential is below the rounding of 1, and only underflows.
     constexpr S exponent(const S& torque) const { return min(hardening * torque, S(160.0)); }
     static constexpr S sinh_quotient(const S& square) {
         return reciprocals<1, 6, 120, 5040, 362880, 39916800, 6227020800, 1307674368000>(square);
     }
 };
 
-/// The two under one torque, which is sought to a twist d >= 0.
+/// Both springs under one torque, which is solved for a twist d >= 0.
 template <class S>
 struct InSeries {
     ArctanSpring<S> flexspline;
@@ -105,7 +105,7 @@ struct InSeries {
     constexpr S energy(const S& torque) const { return flexspline.energy(torque) + wave_generator.energy(torque); }
     constexpr S bound() const { return min(flexspline.bound() + wave_generator.bound(), S(unbounded)); }
 
-    /// Where less than 1e-6 of the bound is left; and what T^2 of every scalar can hold.
+    /// Torque at which less than 1e-6 of the bound is left, and whose square every scalar can hold.
     constexpr S largest() const {
         const S flexed = S(1e6) / max(flexspline.hardening, S(1e-30)), waved = S(40.0) / max(wave_generator.hardening, S(1e-30));
         return min(max(flexed, waved), S(1e18));

@@ -38,7 +38,7 @@ struct ThreeSegment {
         visit(SW_REQUIRED(m, t2, "N.m", "Torque of the second knee", smallest));
     }
 
-    constexpr const char* problem() const { return all(t2 >= t1) ? nullptr : "t2 must not lie below t1"; }
+    constexpr const char* problem() const { return all(t2 >= t1) ? nullptr : "t2 must be at least t1"; }
 
     constexpr S torque(const S& twist) const {
         const S x = abs(twist), x1 = first_knee(), x2 = second_knee();

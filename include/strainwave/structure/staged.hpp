@@ -169,7 +169,7 @@ struct Staged {
         constexpr S max_stiffness() const { return stiffness * variation.largest(); }
         constexpr S varying_part() const { return max_stiffness() - stiffness; }
     };
-    /// A joint that is deformed, and what it holds.
+    /// A deformed joint, and its torque.
     struct Strained {
         S deformation, rate;  ///< rad, rad/s
         S elastic, torque;    ///< N.m, with damping
@@ -278,17 +278,17 @@ struct Staged {
                    abs(stance.per_input * at.inverse_ratio) / coupling.stiffness;
         }
 
-        /// Of the fastest mode without damping.
+        /// Upper bound of the highest undamped natural frequency [rad/s].
         constexpr S natural_frequency(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.stiffness, spline.max_stiffness());
             return sqrt(largest_eigenvalue(bodies, {coupling.max_stiffness(), bearing.max_stiffness(), mesh.max_stiffness(),
                                                     ends.held, ends.driving, bodies.load_stiffness}));
         }
-        /// Of springs as stiff as they vary by, twice: at resonances of step and vibration a step of one radian of these could
-        /// still set off what nothing damps. In shorter ones it still grows a little, which dampers must outdo. And of a bearing
-        /// that a sloped error moves, too: what its force on the generator and on the spring differs by, as the largest eigenvalue
-        /// of b d' + d b' + d d', with b how the bearing deforms by each position, and d how the error does, both over the roots of
-        /// the inertias.
+        /// Highest frequency [rad/s] of springs with the varying part of their stiffness, twice. At a resonance of step and
+        /// vibration, a step of one radian of this frequency can excite an undamped mode. In shorter steps the mode still grows a
+        /// little, which the damping must exceed. A bearing that a sloped error moves adds the largest eigenvalue of b d' + d b' +
+        /// d d': the difference of its force on the generator and on the spring. b is the deformation of the bearing by each
+        /// position, d that by the error, both over the roots of the inertias.
         constexpr S uneven_frequency(const Bodies<S>& bodies, const Unevenness<S>& of) const {
             const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.varying_part());
             const S springs = largest_eigenvalue(
@@ -314,13 +314,13 @@ struct Staged {
         struct Ends {
             S held, driving;
         };
-        /// Of the joints one after the other, from the input to the load.
+        /// Largest eigenvalue of the joints in series, from the input to the load.
         struct Line {
             S coupling, bearing, mesh, held, driving, load;
         };
 
         static constexpr auto flexspline_held(const Shafts<S>& at) { return at.inverse_ratio > S(0.0); }
-        /// What belongs to the flexspline, and what to the circular spline, by which of them is held.
+        /// Values of the flexspline and of the circular spline, by which of them is held.
         static constexpr Ends at_ends(const S& inverse_ratio, const S& of_flexspline, const S& of_spline) {
             const auto held_flexspline = inverse_ratio > S(0.0);
             return {select(held_flexspline, of_flexspline, of_spline), select(held_flexspline, of_spline, of_flexspline)};
@@ -376,11 +376,11 @@ struct Staged {
                     strained(spline, factor(spline), on_spline, on_spline_rate)};
         }
 
-        /// What a vibration grows by in a step, as a share of the square of the radians of `uneven_frequency`: five times what was
-        /// found.
+        /// Growth of a vibration in a step, as a share of the square of the radians of `uneven_frequency`: five times the measured
+        /// one.
         static constexpr double growth = 0.01;
 
-        /// How fast a body within decays [1/s] where the others stand still: the one that dampers hold least.
+        /// Lowest decay rate [1/s] of a body within the gear while the others are at rest.
         constexpr S slowest_decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
             const Ends ring = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);

@@ -1,16 +1,17 @@
 #pragma once
 #include <strainwave/angle.hpp>
 
-/// What stands between the two shafts of a gear beside its spring `stiffness`. At the output's scale such a structure has
+/// Bodies and springs between the two shafts of a gear, in addition to its spring `stiffness`. At the output's scale such a
+/// structure has
 ///
-///     State, Output                          of the bodies within the gear, and what they show in recordings
-///     rigid()                                whether no body within the gear moves by itself
+///     State, Output                          of the bodies within the gear, and their channels in recordings
+///     rigid()                                true if no body within the gear moves by itself
 ///     generator(inner, shafts)               -> Generator
 ///     generator_acceleration(rate, input)    rad/s2, by the rate of its state and the acceleration of the input
-///     gap(inner, shafts)                     rad: what deforms, before the kinematic error is taken from it
+///     gap(inner, shafts)                     rad: deformation, before the kinematic error is subtracted
 ///     spring_twist(inner, shafts, deformation)     rad: that deformation, or a state of its own
 ///     spring_twist_rate(inner, shafts, mesh)       rad/s
-///     deformation_rate(inner, mesh)          rad/s, of what the error leaves of the gap
+///     deformation_rate(inner, mesh)          rad/s, of the gap less the error
 ///     reaction(inner, shafts, mesh, load)    -> Reaction
 ///     even_reaction(inner, shafts, mesh, load)   -> Reaction, if no spring of its own varied: linear
 ///     energies(inner, shafts, mesh, load)    -> Energies
@@ -18,12 +19,12 @@
 ///     steady_state(inner, shafts, mesh, load)     -> SteadyState: at rest under the torque of the spring
 ///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
 ///     natural_frequency(bodies)              rad/s, of the fastest mode
-///     uneven_frequency(bodies, unevenness)   rad/s, that what the even reaction leaves out would have by itself
+///     uneven_frequency(bodies, unevenness)   rad/s, of the part that the even reaction leaves out
 ///     uneven_decay(bodies, unevenness)       1/s, of the speed of the wave generator, by an error that follows it
 ///     decay(bodies)                          1/s, by damping alone
 namespace strainwave::structure {
 
-/// How the two shafts of a gear stand and move.
+/// Angles and speeds of the two shafts of a gear.
 template <class S>
 struct Shafts {
     Angle<S> input_angle;
@@ -33,7 +34,7 @@ struct Shafts {
     S inverse_ratio;       ///< 1 / i
 };
 
-/// How the wave generator stands and turns.
+/// Angle and speed of the wave generator.
 template <class S>
 struct Generator {
     Angle<S> angle;
@@ -43,9 +44,9 @@ struct Generator {
 /// Deformation of the bearing, where a structure puts bodies between wave generator and spring.
 template <class S>
 struct Between {
-    S deformation;       ///< What the error leaves of the gap, rad
+    S deformation;       ///< Gap less the error, rad
     S deformation_rate;  ///< rad/s
-    S per_twist;         ///< How the error follows the twist of the spring, rad/rad
+    S per_twist;         ///< Slope of the error over the twist of the spring, rad/rad
 };
 
 /// Deformation and torques of a gear between its two shafts; `Inner` is the state of the bodies within it.
@@ -65,7 +66,7 @@ struct Mesh {
     Inner rate;  ///< of the bodies within the gear
 };
 
-/// What the rest of the gear does to the bodies within it.
+/// Load of the rest of the gear on the bodies within it.
 template <class S>
 struct Load {
     S spring;             ///< of the spring, its hysteresis and damping, N.m
@@ -80,7 +81,7 @@ struct Reaction {
     State rate;      ///< of the bodies within the gear
 };
 
-/// Of the bodies within a gear.
+/// Energies and losses of the bodies within a gear.
 template <class S>
 struct Energies {
     S elastic{0.0};      ///< J
@@ -95,17 +96,17 @@ struct SteadyState {
     S transmission_error;  ///< rad
 };
 
-/// What vibrates: the inertias [kg.m2] of the shafts and of the wave generator, stiffness [N.m/rad] and damping [N.m.s/rad] of
-/// the spring, stiffness of the load.
+/// Parts of the vibration: the inertias [kg.m2] of the shafts and of the wave generator, stiffness [N.m/rad] and damping
+/// [N.m.s/rad] of the spring, stiffness of the load.
 template <class S>
 struct Bodies {
     S input_inertia, generator_inertia, output_inertia, inverse_ratio, stiffness, damping, load_stiffness;
 };
 
-/// What of a gear the even reaction leaves out, at the most.
+/// Largest part of a gear that the even reaction leaves out.
 template <class S>
 struct Unevenness {
-    S stiffness;  ///< of the spring, beside what it has at rest, N.m/rad
+    S stiffness;  ///< of the spring, in excess of its value at rest, N.m/rad
     S slope;      ///< of the kinematic error over the angle of the wave generator, rad/rad
     S per_twist;  ///< over the twist of the spring, rad/rad
     S per_speed;  ///< and over the speed of the wave generator, rad.s/rad

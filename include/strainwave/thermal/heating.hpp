@@ -72,8 +72,8 @@ struct Heating {
         return {(heat.winding - (x.winding_temperature - ambient) / winding_resistance - exchanged) / winding_capacity,
                 (heat.gear - (x.gear_temperature - ambient) / gear_resistance + exchanged) / gear_capacity};
     }
-    /// Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length. Not taken exactly, so that bodies gain what the
-    /// others lose to rounding.
+    /// A Runge-Kutta step of fourth order is stable up to 2.78 times the time of a decay. Not taken exactly, so that bodies gain
+    /// what the others lose to rounding.
     constexpr S fastest() const {
         const S winding = (S(1.0) / winding_resistance + S(2.0) * coupling) / winding_capacity;
         return max(winding, (S(1.0) / gear_resistance + S(2.0) * coupling) / gear_capacity) / S(2.5);

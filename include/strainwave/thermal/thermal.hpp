@@ -1,6 +1,6 @@
 #pragma once
 
-/// What every model of the temperatures of a drive is asked. It has
+/// Interface of a thermal model of a drive. It has
 ///
 ///     State, Output                    what changes continuously, and what it shows in recordings
 ///     active()                         whether it takes heat: else nobody works out how much there is
@@ -17,7 +17,7 @@ struct Temperatures {
     S winding, gear;  ///< K
 };
 
-/// What warms the bodies, W.
+/// Heat flows into the bodies, W.
 template <class S>
 struct Heat {
     S winding, gear;
