@@ -4,7 +4,7 @@
 /// One function binds every described struct as a frozen value: keyword constructor, properties, checks, repr, equality, help.
 namespace strainwave::host {
 
-/// None can be derived from: what is compiled would not call what Python overrides.
+/// No subclass is possible: compiled code would not call a method that Python overrides.
 template <class M>
 nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string& name) {
     static_assert(fully_described<M>, "every member needs a Field");

@@ -317,7 +317,7 @@ void bind_runs(nb::module_& core) {
             const bool refused = outcome.ending == kernel::Ending::out_of_bounds;
             PyErr_SetString(refused ? PyExc_ValueError : PyExc_FloatingPointError, text_of(outcome).c_str());
         } catch (const std::bad_alloc&) {
-            PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this run; record fewer samples at a time");
+            PyErr_SetString(PyExc_MemoryError, "there is not enough memory; use fewer samples at a time");
         }
     });
     core.attr("max_lanes") = kernel::max_lanes;

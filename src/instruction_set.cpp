@@ -9,7 +9,7 @@ namespace strainwave::host {
 
 namespace {
 
-/// From the widest to what every machine has.
+/// Ordered from the widest to the one of every machine.
 constexpr std::string_view all[] = {"avx512", "avx2", "baseline"};
 
 bool supported(std::string_view name) {

@@ -274,8 +274,7 @@ void define_value(nb::handle type, const Description& description) {
             void* const model = unmade(self, *of);
             of->copy(model, of->defaults);
             set_members(model, values, *of);
-            if (!missing.empty())
-                throw nb::type_error((of->name + " needs " + missing + ": it has no default that suits most gears").c_str());
+            if (!missing.empty()) throw nb::type_error((of->name + " needs " + missing + ": no default suits most gears").c_str());
             check_relations(model, *of);
             if (of->check_passivity) of->check_passivity(model);
             nb::inst_mark_ready(self);

@@ -327,7 +327,7 @@ const Description& description_of(nb::handle object);
 /// The model that a Python object holds; refused if it is none of this type.
 const void* model_in(nb::handle object, const Description& description);
 
-/// The same model with other numbers; refused if they contradict each other.
+/// The model with other numbers; an error if they contradict each other.
 nb::object with_numbers(const void* model, const Description& description, const std::vector<double>& numbers);
 
 /// Help for a struct: what it is, its members, what it raises, its source.

@@ -26,7 +26,7 @@ using Number = std::function<void(const std::string& name, int element, const Fi
 template <class X, class Law>
 void each_name(const Law& law, const std::string& before, const Number& number);
 
-/// The same of a struct within one: of the part of that name, if the law has one.
+/// Names of a struct within another: of the part of that name, if the law has one.
 template <class X, class Law>
 void each_name_within(const Law& law, const std::string& before, const Field& field, const Number& number) {
     bool is_of_part = false;

@@ -16,10 +16,10 @@ std::string shortest(double x);
 std::string with_unit(double x, const char* unit);
 /// "[0, inf)": what a field may be.
 std::string limits(const Field& field);
-/// In words and numbers, that a law is used where it is not valid.
+/// Message that a law is used outside its range of validity.
 std::string outside(const Domain<double>& domain);
 std::string text_of(nb::handle value);
-/// The same, cut short where it is long; of a value that was never made, that.
+/// The text of a value, shortened if it is long; a note if the value was never constructed.
 std::string shortened(nb::handle value);
 /// A text written in a raw string, with the indent of its source taken off.
 std::string dedented(const char* text);

@@ -110,7 +110,7 @@ CONTRADICTING: list[tuple[sw.Gear, dict[str, Any], str]] = [
     (
         GEAR,
         {"input_inertia": 0.0},
-        "input_inertia = 0 kg.m2 must exceed 0 with stages, where the wave generator turns by itself; give its inertia",
+        "input_inertia = 0 kg.m2 must exceed 0 with stages: the wave generator is a body of its own; give its inertia",
     ),
 ]
 

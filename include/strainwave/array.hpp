@@ -12,7 +12,7 @@ struct Array {
     static constexpr int size() { return n; }
 };
 
-/// Up to `capacity` elements: what a set of parameters repeats (harmonics, Maxwell elements).
+/// Up to `capacity` repeated elements of a set of parameters (harmonics, Maxwell elements).
 template <class T, int capacity_>
 struct Sequence {
     static constexpr int capacity = capacity_;

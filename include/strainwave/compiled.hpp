@@ -1,6 +1,6 @@
 #pragma once
 
-/// Before what a step spends its time in: a kernel asks to inline every call on the way there, and that once, not for each stage.
+/// Mark of the functions that take most of the time of a step: a kernel inlines every call in them, once, not for each stage.
 /// NVRTC inlines every call anyway, and compiles for minutes where it does that for each stage.
 #if defined(__CUDACC_RTC__)
 #define SW_RATES __noinline__

@@ -169,7 +169,7 @@ struct Drive {
         return x;
     }
 
-    /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
+    /// The state at rest at `output_angle` = 0 up to the kinematic error, without twist and history.
     constexpr State rest() const {
         State x = initial_state();
         // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
@@ -450,7 +450,7 @@ struct Drive {
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u) const {
         return {{y.input_angle, x.turns}, y.input_speed, temperatures(y, u).winding};
     }
-    /// The same, and the torque that its motion needs, where the motor prescribes it.
+    /// The rotor, and the torque that its motion needs if the motor prescribes it.
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
         Rotor at = rotor(x, y, u);
         if constexpr (motor::can_prescribe<Motor>)

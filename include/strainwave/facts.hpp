@@ -50,7 +50,7 @@ constexpr S pressure_angle(const Part& part) {
         { return law.pressure_angle; });
 }
 
-/// None where a part has none.
+/// Teeth of a part; 0 if it has none.
 struct Teeth {
     int flexspline{0};
     int circular_spline{0};

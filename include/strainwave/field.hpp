@@ -51,11 +51,11 @@ struct Field {
 /// Describes a number, or a sequence of numbers: SW_FIELD(m, member, unit, doc, min, max).
 #define SW_FIELD(self, member, ...) \
     (self).member, ::strainwave::Field { #member, __VA_ARGS__ }
-/// The same for one that whoever makes the model must give. The value in the struct is then an order of magnitude.
+/// A required member, without default in Python. The value in the struct is an order of magnitude.
 #define SW_REQUIRED(self, member, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.needed()
-/// The same for one that has no effect by default, which a file may leave out.
+/// A member without effect by default, which a file may leave out.
 #define SW_OPTIONAL(self, member, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.without_effect()
-/// The same for one that is as large as another, listed before, unless it is given: SW_FOLLOWS(m, member, leader, unit, doc, ...).
+/// A member whose default is another member, listed before: SW_FOLLOWS(m, member, leader, unit, doc, ...).
 #define SW_FOLLOWS(self, member, leader, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.following(#leader)
 /// Describes a member that is itself described: SW_PART(m, member, doc).
 #define SW_PART(self, member, doc) \
@@ -253,7 +253,7 @@ constexpr void refill(X& state, const Scalars& scalars) {
     detail::Write write{scalars.item};
     X::fields(state, write);
 }
-/// The same state with these scalars in place of its own.
+/// The state with its scalars replaced by these.
 template <Described X, class Scalars>
 constexpr X refilled(const X& state, const Scalars& scalars) {
     X other = state;

@@ -31,7 +31,7 @@ public:
         x.input_slip_direction = x.output_slip_direction = S(0.0);  // what does not move has slipped to neither side
     }
 
-    /// Its transmission error is infinite where the rounds do not come to an end.
+    /// The state found. Its transmission error is infinite if the rounds do not converge.
     constexpr typename Drive::State found() {
         // Derivatives are a round or two behind the values; the rounding of an error is that of a larger angle [rad].
         constexpr int most = 500, more = 3;
@@ -156,8 +156,8 @@ private:
             refill(x.continuous.motor, at);
         }
     }
-    /// By how much each number of the motor changes so that, by the slopes there, no rate is left of those that relax. Gauss's
-    /// elimination without exchange of rows, for the resistance stands on the diagonal.
+    /// Change of each number of the motor that makes the rates of those that relax zero, by the slopes there. Gauss's elimination
+    /// without exchange of rows, for the resistance stands on the diagonal.
     constexpr MotorNumbers newton_step(const MotorNumbers& at, const MotorNumbers& relaxation, const S& gear_torque) const {
         const S increment(1e-3);  // A, so that no limit hides it
         const int n = at.size();

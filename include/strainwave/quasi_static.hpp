@@ -16,9 +16,9 @@ public:
     constexpr QuasiStatic(const Gear& gear_, const S& temperature_, const S& begin = S(0.0))
         : gear(gear_), temperature(temperature_), held(initial_state(gear_.hysteresis)), at(begin) {}
 
-    /// At a twist [rad] that is reached without turning back on the way, N.m.
+    /// Torque [N.m] at a twist [rad] that is reached without reversal.
     constexpr S torque(const S& twist) const { return gear.held_torque(twist, held, twist - at, temperature, factor); }
-    /// From here on the spring is so many times as stiff as in the mean.
+    /// The stiffness of the spring, relative to its mean, for all later calls.
     constexpr void vary(const S& stiffness_factor) { factor = stiffness_factor; }
     constexpr void move(const S& twist) {
         held = gear.hysteresis.advance(held, twist - at);

@@ -45,7 +45,7 @@ struct WichmannHill {
     }
 
 private:
-    /// For whole numbers in [0, 2^24 - divisor].
+    /// Valid for whole numbers in [0, 2^24 - divisor].
     static constexpr S modulo(const S& number, double divisor) {
         const S rest = number - S(divisor) * rint(number / S(divisor));
         return select(rest < S(0.0), rest + S(divisor), rest);

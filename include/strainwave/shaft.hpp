@@ -53,8 +53,8 @@ struct Shaft {
     struct Impelled {
         S speed, slip_direction;
     };
-    /// After `dt` [s] under the same torques, those of friction as impulses: `friction(direction)` is the torque against slip. A
-    /// shaft at rest breaks away only where its driving torque exceeds the holding torque.
+    /// The shaft after `dt` [s] under the same torques, those of friction as impulses: `friction(direction)` is the torque against
+    /// slip. A shaft at rest breaks away only where its driving torque exceeds the holding torque.
     template <class Friction>
     constexpr Impelled impelled(const S& dt, const Friction& friction) const {
         const S momentum = speed * inertia, push = driving_torque * dt;

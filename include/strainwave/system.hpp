@@ -104,7 +104,7 @@ constexpr typename System::Evaluation up_to_date(const System& system, const typ
     return system::due(system, at.state, within) ? system::sampled(system, at, u, within) : at;
 }
 
-/// At the end of a step of `dt` [s]: angles brought back within a turn, the time since the last evaluation kept.
+/// The state at the end of a step of `dt` [s]: angles within a turn, the time since the last evaluation kept.
 template <class System, class S>
 constexpr void finish_step(const System& system, typename System::State& x, const S& dt) {
     if constexpr (requires { system.finish_step(x, dt); }) system.finish_step(x, dt);
@@ -223,7 +223,7 @@ constexpr bool breaks_away(const System& system, const typename System::Evaluati
     return false;
 }
 
-/// The same with that shaft slipping.
+/// The state with that shaft slipping.
 template <class System>
 constexpr typename System::Evaluation break_away(const System& system, const typename System::Evaluation& at,
                                                  const typename System::Input& u) {

@@ -54,7 +54,7 @@ struct Laws<S, List<Law...>, Inner> {
     static void read(Part& part, kernel::Reader<S>& from) {
         read(part, from, [](const auto&) {});
     }
-    /// The same, and calls note(law) with the law as it was written.
+    /// Also calls note(law) with the law as it was written.
     template <class Note>
     static void read(Part& part, kernel::Reader<S>& from, const Note& note) {
         part.chosen = *from.laws++;

@@ -20,21 +20,21 @@ extern const kernel::Table table;
 
 // A drive at one instant.
 
-/// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
+/// The state at rest at `output_angle` = 0 up to the kinematic error, without twist and history.
 State rest(const Set& drive);
 /// The initial state with some quantities known; not finite if there is none.
 State started(const Set& drive, const initial::Known<double>& known, const Input& u);
-/// With the slip direction of each shaft as its speed and its friction have it.
+/// The state with the slip direction of each shaft that follows from its speed and its friction.
 State consistent(const Set& drive, const State& x);
 /// Initial state of a run: consistent, and sampled by a controller that samples.
 State begin(const Set& drive, const State& x, const Input& u);
 /// When its controller acts.
 control::Schedule<double> schedule(const Set& drive, const State& x);
-/// With what friction remembers after `dt` [s] at constant speeds.
+/// The state with the memory of friction after `dt` [s] at constant speeds.
 State relaxed(const Set& drive, const State& x, const Input& u, double dt);
-/// With its hysteresis brought up to date at a twist [rad].
+/// The state with its hysteresis brought up to date at a twist [rad].
 State advance_hysteresis(const Set& drive, const State& x, double twist);
-/// With those shafts slipping that stick and are driven beyond what holds them.
+/// The state in which each shaft slips that is driven beyond its breakaway torque.
 State break_away(const Set& drive, const State& x, const Input& u);
 /// The state becomes that after one step.
 Outcome step_once(const Set& drive, State& x, const Interval<Input>& u, double dt);

@@ -69,7 +69,7 @@ S needed_torque(const Drive& drive, typename Drive::State& x, const Motion& now,
            friction::torque(gear.friction_input, x.continuous.friction_input, at.input.steady());
 }
 
-/// The same at each of some instants, one after another: `motion` has `Motion::count` numbers of each.
+/// Torques at consecutive instants: `motion` has `Motion::count` numbers of each.
 template <int n, class Drive>
 void needed_torques(const Drive& drive, const double* motion, const double* inputs, std::size_t instants, std::size_t first,
                     std::size_t count, double* torque, double* slopes) {

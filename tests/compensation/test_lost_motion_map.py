@@ -70,8 +70,8 @@ def test_an_empty_map_asks_for_nothing() -> None:
     ("changed", "words"),
     [
         ({"forward": [0.0, 1e-4]}, "angle, forward and backward must have equally many elements"),
-        ({"angle": [0.0, 0.0, 1.0]}, "angle must rise"),
-        ({"angle": [0.0, 2.0, 1.0]}, "angle must rise"),
+        ({"angle": [0.0, 0.0, 1.0]}, "angle must increase"),
+        ({"angle": [0.0, 2.0, 1.0]}, "angle must increase"),
         ({"reach": 0.0}, r"lost_motion_map\.reach = 0 rad must lie in \(0, inf\)"),
         ({"angle": [*range(33)], "forward": [0.0] * 33, "backward": [0.0] * 33}, "32"),
     ],

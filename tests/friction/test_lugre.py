@@ -151,9 +151,9 @@ def test_without_dry_friction_only_viscous_friction_is_left(speed: float) -> Non
 
 
 def test_a_bristle_has_some_reach_at_rest() -> None:
-    with pytest.raises(ValueError, match=r"^lugre: breakaway must be positive where coulomb is$"):
+    with pytest.raises(ValueError, match=r"^lugre: breakaway must be positive if coulomb is positive$"):
         made(LuGre, coulomb=0.03, breakaway=0.0)
-    with pytest.raises(ValueError, match="breakaway must be positive where coulomb is"):
+    with pytest.raises(ValueError, match="breakaway must be positive if coulomb is positive"):
         bristle().replace(breakaway=0.0)
 
 

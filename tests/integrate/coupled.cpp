@@ -66,15 +66,15 @@ int main(int count, char** words) {
         phi_functions();
         return 0;
     }
-    const double kinked = std::atof(words[1]), told = std::atof(words[2]), drive = std::atof(words[3]),
+    const double kinked = std::atof(words[1]), has_side = std::atof(words[2]), drive = std::atof(words[3]),
                  duration = std::atof(words[4]);
     for (int i = 5; i < count; ++i) {
         const int steps = std::atoi(words[i]);
-        const StiffFollower<double> system{.kinked = kinked, .told = told};
+        const StiffFollower<double> system{.kinked = kinked, .has_side = has_side};
         const auto y = followed(system, drive, duration, steps);
         Dual<1> frequency(2e4);
         frequency.slope[0] = 1.0;
-        const StiffFollower<Dual<1>> sloped{.frequency = frequency, .kinked = kinked, .told = told};
+        const StiffFollower<Dual<1>> sloped{.frequency = frequency, .kinked = kinked, .has_side = has_side};
         std::printf("%.17g %.17g %.17g %.17g\n", y.angle, y.place, y.speed,
                     followed(sloped, drive, duration, steps).angle.slope[0]);
     }

@@ -3,11 +3,11 @@
 
 namespace strainwave {
 
-/// A light body on a stiff spring whose other end a slow swing moves, as the angle of the swing says: by its sine, or, with a
-/// kink, by the size of its sine, be it `told` or not. A system that is no drive, with a coupled block.
+/// A light body on a stiff spring whose other end a slow swing moves, by the angle of the swing: by its sine, or, with a
+/// kink, by the size of its sine, with or without `has_side`. A system that is no drive, with a coupled block.
 template <class S>
 struct StiffFollower {
-    S frequency{2e4}, damping{0.01}, pull{0.3}, kinked{0.0}, told{1.0};
+    S frequency{2e4}, damping{0.01}, pull{0.3}, kinked{0.0}, has_side{1.0};
 
     struct Input {
         S drive{40.0};
@@ -58,7 +58,7 @@ struct StiffFollower {
     Array<S, 2> coupled_rate(const Array<S, 1>&, const Array<S, 2>& z) const {
         return {{z[1], -frequency * (frequency * z[0] + S(2.0) * damping * z[1])}};
     }
-    S side(const State& x) const { return select(kinked * told > S(0.0), sin(x.continuous.angle), S(1.0)); }
+    S side(const State& x) const { return select(kinked * has_side > S(0.0), sin(x.continuous.angle), S(1.0)); }
     S side(const State& x, const State& after, const S&, const S& fraction) const {
         return sin(x.continuous.angle + fraction * (after.continuous.angle - x.continuous.angle));
     }

@@ -202,7 +202,7 @@ except MemoryError as error:
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert run.stderr == ""
-    assert run.stdout == "there is no memory for 60000000 numbers, which take 480 MB; take fewer at a time\n"
+    assert run.stdout == "there is no memory for 60000000 numbers, which need 480 MB; use fewer at a time\n"
 
 
 def test_too_little_memory_for_what_is_copied_is_told_too() -> None:
@@ -220,4 +220,4 @@ except MemoryError as error:
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert run.stderr == ""
-    assert run.stdout == "there is not enough memory for this; take fewer samples at a time\n"
+    assert run.stdout == "there is not enough memory; use fewer samples at a time\n"

@@ -176,7 +176,7 @@ def test_what_is_required_is_named_where_it_is_missing_and_nothing_else(model: A
     if not required:
         model()
         return
-    with pytest.raises(TypeError, match=rf"^{model.name} needs {', '.join(required)}: no value suits most gears$"):
+    with pytest.raises(TypeError, match=rf"^{model.name} needs {', '.join(required)}: no default suits most gears$"):
         model()
     for name in required:
         with pytest.raises(TypeError, match=rf"^{model.name} needs {name}: "):

@@ -55,7 +55,7 @@ struct Compensation {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, feedforward, "Feed-forward of a model of the drive"));
         visit(SW_PART(m, learning, "Learning of errors that repeat"));
-        visit(SW_PART(m, observer, "Observer of what the model lacks"));
+        visit(SW_PART(m, observer, "Observer of disturbances that the model lacks"));
         visit(SW_PART(m, dither, "Torque that swings around zero"));
         visit(SW_FIELD(m, actuation_per_torque, "1/(N.m)", "Actuation of the motor per torque, p", smallest));
         visit(SW_FIELD(m, actuation_per_speed, "s/rad", "Actuation of the motor per input speed, q: its back-EMF"));

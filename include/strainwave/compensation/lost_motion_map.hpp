@@ -31,9 +31,10 @@ struct LostMotionMap {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, angle, "rad", "Output angles, rising"));
-        visit(SW_FIELD(m, forward, "rad", "Lead at the output where it moves forwards"));
-        visit(SW_FIELD(m, backward, "rad", "Lead at the output where it moves backwards"));
-        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 over which what is left to take up falls to 1/e", smallest));
+        visit(SW_FIELD(m, forward, "rad", "Lead at the output of forward motion"));
+        visit(SW_FIELD(m, backward, "rad", "Lead at the output of backward motion"));
+        visit(SW_FIELD(m, reach, "rad", "Output angle r_0 after a reversal over which the remaining lost motion falls to 1/e",
+                       smallest));
     }
 
     constexpr const char* problem() const {

@@ -77,10 +77,10 @@ struct TwistIdentification {
         deviations of its prior. Keep |i| n times the largest amplitude below 1: beyond that the input has several angles for one
         command. Its own lead changes theta and i theta_out alike, so it does not change z.
 
-        The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the size of what
-        the estimates leave. The deviations are right while the model errs by ``noise``, for no longer than ``noise_time`` in
-        one sense. It needs both encoders and a feed-forward with a twist. A load that the feed-forward does not know is taken
-        for compliance.
+        The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the root
+        mean square of the residual. The deviations are right while the model errs by ``noise``, for no longer than
+        ``noise_time`` in one sense. It needs both encoders and a feed-forward with a twist. A load that the feed-forward does
+        not know is taken for compliance.
 
         >>> from strainwave.compensation import TwistIdentification
         >>> TwistIdentification(order=[2]).memory
@@ -117,7 +117,7 @@ struct TwistIdentification {
             visit(SW_PART(m, excitation, "Excitations [1/s]"));
             visit(SW_PART(m, mean, "Means of the regressors"));
             visit(SW_FIELD(m, correlation, "1", "Correlations of the estimates, row by row below the diagonal"));
-            visit(SW_FIELD(m, residual, "rad", "Root mean square of what the estimates leave, at the output"));
+            visit(SW_FIELD(m, residual, "rad", "Root mean square of the residual at the output"));
             visit(SW_FIELD(m, time, "s", "Time of motion, up to the window"));
             visit(SW_FIELD(m, torsion, "rad", "Twist of the model, at the input"));
             visit(SW_FIELD(m, torsion_rate, "rad/s", "Rate of the twist of the model, at the input"));

@@ -30,7 +30,7 @@ constexpr void set_numbers(typename Drive::Continuous& y, const typename Drive::
     refill(y.structure, inner);
 }
 
-/// For each shaft 1 where it moves as it is driven, else 0: it sticks, or is placed.
+/// 1 for each shaft that moves freely, else 0: it sticks, or its motion is prescribed.
 template <class S, class Drive>
 constexpr Array<S, 2> mode(const Drive& drive, const typename Drive::State& x) {
     const auto moves = [](const S& slip_direction) { return select(slip_direction == S(0.0), S(0.0), S(1.0)); };

@@ -25,7 +25,8 @@ struct Input {
         visit(SW_FIELD(m, temperature_rate, "K/s", "Its rate"));
     }
 
-    /// At a fraction of a step. Between the three instants the command is Hermite's cubic, all else the parabola through them.
+    /// Inputs at a fraction of a step. The command is Hermite's cubic between the three instants, all else the parabola through
+    /// them.
     static constexpr Input between(const Input& start, const Input& middle, const Input& end, const S& fraction, const S& dt) {
         const auto late = fraction > S(0.5);
         const S x = S(2.0) * fraction - select(late, S(1.0), S(0.0)), half = S(0.5) * dt;

@@ -58,7 +58,7 @@ struct FlexsplineCrack {
     /// Share of the pulse in cos(2 k psi).
     constexpr S harmonic(int k) const {
         const S x = S(k) * width / S(pi), beyond = S(1.0) - x;
-        // Beyond the half, sin(pi x) = sin(pi (1 - x)), which takes the zero of 1 - x^2 away.
+        // sin(pi x) = sin(pi (1 - x)) beyond the half, which avoids the zero of 1 - x^2.
         return width / S(pi) *
                select(x < S(0.5), sinc(x) / ((S(1.0) - min(x, S(0.5))) * (S(1.0) + x)), sinc(beyond) / (x * (S(1.0) + x)));
     }

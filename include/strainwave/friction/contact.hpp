@@ -25,7 +25,7 @@ struct Contact {
     S dry_most{1.0};                  ///< The largest it can become
     S viscous{1.0};                   ///< Factor on viscous friction
 
-    /// The same with dry and viscous friction multiplied.
+    /// The contact with dry and viscous friction multiplied.
     constexpr Contact scaled(const Factors<S>& by) const {
         return {speed, sliding, angle, load, temperature, dry * by.dry, dry_most * by.dry_most, viscous * by.viscous};
     }

@@ -69,7 +69,7 @@ struct LuGre {
 
     /// Torque that opposes the motion, in N.m, for the bristle as it stands.
     constexpr S torque(const State& x, const Contact<S>& contact) const { return torque(x, contact, rate(x, contact)); }
-    /// The same, its rate being known.
+    /// Torque at a known rate of the bristle.
     constexpr S torque(const State& x, const Contact<S>& contact, const State& rate) const {
         return bristle_stiffness * x.deflection + damping(contact.speed) * rate.deflection +
                contact.viscous * viscous * contact.speed;

@@ -99,7 +99,7 @@ struct PositionDependent {
 private:
     static constexpr S angle(const Contact<S>& contact) { return contact.angle.within + S(2.0 * pi) * contact.angle.turns; }
 
-    /// At a speed `faster` than the reference; it comes last, so that no product overflows before the whole does.
+    /// Factor at a speed `faster` than the reference; multiplied last, so that no product overflows before the result does.
     constexpr S level(const Contact<S>& contact, const S& faster) const {
         const S q = inside(angle(contact)), average = contact.dry * ((quadratic * q + linear) * q + constant);
         return max(average + average * speed_factor * faster + contact.dry * ripple(contact.angle.within), S(0.0));

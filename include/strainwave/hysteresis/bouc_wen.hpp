@@ -59,9 +59,9 @@ inline constexpr R bernoulli[10] = {
 
 }  // namespace detail
 
-/// Bouc-Wen's law without units: v the torque along the motion, in [-1, 1], and dv/dp = 1 - s over the path p, where
-/// s = v^n while v > 0 and s = -reversal |v|^n while v < 0. Solved by its integrals: no step is too large, none is divided.
-/// Up to the knee these are series in s, beyond it series in the depth L = -n ln v, which falls to 0 at the asymptote.
+/// Bouc-Wen's law without units: v the torque along the motion, in [-1, 1], and dv/dp = 1 - s over the path p, where s = v^n while
+/// v > 0 and s = -reversal |v|^n while v < 0. Solved by its integrals: no step is too large, none is divided. These are series in
+/// s up to the knee, and beyond it in the depth L = -n ln v, which falls to 0 at the asymptote.
 template <class S>
 struct BoucWenFlow {
     using Moments = Array<S, 30>;
@@ -86,7 +86,7 @@ struct BoucWenFlow {
         return end * end * polynomial(terms, loss(end)) - v * v * polynomial(terms, loss(v));
     }
 
-    /// By how much that integral falls short of the path, whatever the torques.
+    /// Difference of the path and that integral, whatever the torques.
     constexpr S shortfall(const S& v, const S& end) const {
         const S a = min(v, knee()), b = min(end, knee()), share = S(1.0) / n;
         const Depths once = bernoulli(S(1.0) - share), twice = bernoulli(S(1.0) - share - share);

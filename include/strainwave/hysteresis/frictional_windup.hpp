@@ -51,7 +51,7 @@ struct FrictionalWindup {
         visit(SW_REQUIRED(m, friction, "N.m", "Friction F against the wind-up, at the output's scale", 0));
     }
 
-    /// Its springs hold no torque beyond a finite twist (E-R16).
+    /// Range of its springs: no torque beyond a finite twist (E-R16).
     constexpr Domain<S> domain(const S& twist) const { return springs.domain(twist); }
 
     struct State {
@@ -81,7 +81,7 @@ struct FrictionalWindup {
             next.windup_torque = select(slips, along(over, slipped), held);
             next.torque = select(slips, along(over, slipped + friction), trial);
         }
-        // At rest no rounding moves it; what derivatives there are is the trial's.
+        // No rounding moves it at rest; its derivatives are those of the trial.
         const auto rests = increment == S(0.0);
         next.torque = select(rests, value_only(x.torque) + (trial - value_only(trial)), next.torque);
         next.windup_torque = select(rests, held, next.windup_torque);

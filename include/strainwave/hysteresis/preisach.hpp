@@ -104,7 +104,7 @@ struct Preisach {
     }
 
 private:
-    /// From the outermost turning point inwards, until the twist is reached.
+    /// Search from the outermost turning point inwards, until the twist is reached.
     constexpr S held(const State& x) const {
         S torque = density.virgin(x.maximum[0]) - S(2.0) * density.everett(x.maximum[0], x.low(0));
         auto inside = x.low(0) < x.twist;  // a lane that has reached its twist waits for the others

@@ -81,7 +81,7 @@ public:
 private:
     static constexpr double shortest = 1e-9;  ///< s
     static constexpr int max_failed_shortest = 100;
-    int failed_shortest = 0;  ///< of the shortest steps, one after the other
+    int failed_shortest = 0;  ///< consecutive steps of the shortest length that missed the tolerance
     /// s. Where a jump of the forces makes a step this short, its error no longer falls faster than its length.
     static constexpr double brief = 1e-6;
     /// s. A system forgets an error within about this time, so that errors of steps may add up to the tolerance over it.
@@ -196,8 +196,8 @@ private:
         note(abs(a.watched - b.watched) * share / tolerated(max(largest.watched, abs(b.watched))));
         return worst;
     }
-    /// By how much the speeds miss Simpson's rule over the two halves: of the same order and size as what the whole is off, but
-    /// where a force kinks on the way, and whole and halves happen to agree, it does not vanish.
+    /// Deviation of the speeds from Simpson's rule over the two halves. It has the order and size of the error of the whole step,
+    /// and does not vanish if a force has a kink within the step and whole and halves agree by chance.
     constexpr Flat<S, Continuous> contradiction(const Evaluation& from, const Trial& tried, const S& length) const {
         auto difference = flattened<S>(zeroed<S>(from.state.continuous));
         if (chatters()) return difference;

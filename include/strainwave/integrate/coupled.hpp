@@ -174,7 +174,7 @@ private:
         length = taken;
         known = true;
     }
-    /// Up to shortly before a moment, past it, and on to the end.
+    /// A step in three parts: to shortly before a moment, past it, and on to the end.
     constexpr State in_parts(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt, const S& moment) {
         const S middle = clip(moment, S(2.0 * brief), S(1.0 - 2.0 * brief));
         const S ends[] = {middle - S(brief), middle + S(brief), S(1.0)};

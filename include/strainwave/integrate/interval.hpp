@@ -13,8 +13,8 @@ struct Interval {
     constexpr Interval part(const S& from, const S& to, const S& dt) const {
         return {at(from, dt), at(S(0.5) * (from + to), dt), at(to, dt)};
     }
-    /// At a fraction of the step of `dt` [s]: from the input itself if it has `between`, else on the parabola through the three
-    /// instants.
+    /// Input at a fraction of the step of `dt` [s]: from the input itself if it has `between`, else on the parabola through the
+    /// three instants.
     template <class S>
     constexpr Input at(const S& fraction, const S& dt) const {
         if constexpr (requires { Input::between(start, middle, end, fraction, dt); })

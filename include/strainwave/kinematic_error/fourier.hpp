@@ -56,7 +56,7 @@ struct Fourier {
         return sum;
     }
 
-    /// The same sum, arranged for speed.
+    /// The sum, arranged for speed.
     constexpr Compiled compile() const { return {Harmonics<S, capacity>::of(order, amplitude, phase)}; }
 };
 

@@ -18,7 +18,7 @@ struct Planar {
     constexpr S squared() const { return dot(*this); }
     /// Exactly 0 at 0, where a derivative of the square root would not be finite.
     constexpr S length() const { return select(squared() > S(smallest), sqrt(max(squared(), S(smallest))), S(0.0)); }
-    /// In [-pi, pi]; by the half angle, which is differentiable on the axes too.
+    /// Angle in [-pi, pi], by the half angle, which is differentiable on the axes too.
     constexpr S direction() const {
         const S inner = S(2.0) * atan(y / max(length() + abs(x), S(smallest)));
         return select(x < S(0.0), along(y, S(pi)) - inner, inner);

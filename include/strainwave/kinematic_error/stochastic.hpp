@@ -89,7 +89,7 @@ struct Stochastic {
                    load_sensitivity * sign(torque) * torque_rate / (S(1.0) + fall);
         }
 
-        /// By four standard deviations of what is close to Gaussian: one place in 16000 has more.
+        /// Four standard deviations of a nearly Gaussian value: one place in 16000 exceeds them.
         constexpr MaxChange max_change() const {
             S squares{0.0};
             for (int k = 0; k < waves; ++k) squares = squares + order[k] * order[k];
@@ -126,7 +126,7 @@ struct Stochastic {
         return compile().at(angle, torque, speed);
     }
 
-    /// The same sum, its orders and phases drawn once.
+    /// The sum, with its orders and phases drawn once.
     constexpr Compiled compile() const {
         Compiled sum = scaled();
         sum.engaged = active();

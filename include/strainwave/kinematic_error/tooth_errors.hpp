@@ -131,7 +131,7 @@ struct ToothErrors {
 
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
 
-    /// The same sum, arranged for speed: every random phase drawn, every average taken.
+    /// The sum, arranged for speed: with all random phases and all averages.
     constexpr Compiled compile() const {
         auto random = WichmannHill<S>::seeded(seed);
         Array<S, highest> first{}, second{};

@@ -65,7 +65,7 @@ struct Delayed {
         return rate;
     }
     constexpr State relaxation_rate() const {
-        // None of the sections: each follows another, so that a step which is exact for one alone is not for their chain.
+        // No section is stepped exactly: each follows another, so that a step which is exact for one is not exact for the chain.
         return {{}, law.relaxation_rate()};
     }
     constexpr S fastest() const { return max(strainwave::fastest<S>(law), per_second()); }

@@ -51,7 +51,7 @@ struct Noisy {
         }
     };
 
-    /// The same with its frequencies and phases drawn.
+    /// The sensor with its frequencies and phases drawn.
     struct Compiled {
         using Inner = decltype(compiled(Law{}));
         using State = typename Noisy<S, Inner>::State;

@@ -126,15 +126,15 @@ struct InSeries {
         return level;
     }
 
-    /// Without derivatives.
+    /// Copy of the springs without derivatives.
     constexpr InSeries constant() const {
         return {{value_only(flexspline.softness), value_only(flexspline.hardening)},
                 {value_only(wave_generator.softness), value_only(wave_generator.hardening)}};
     }
 
 private:
-    /// Below the torque, and near it: no part gives way more than its linear self, nor beyond its bound; and with that
-    /// as x and y, arctan x <= x (1 + 4 x^2 / 15) / (1 + 3 x^2 / 5) and 1 - exp(-y) <= y / (1 + y / 2).
+    /// Lower bound close to the torque: no part yields more than its linear spring, nor beyond its bound; and with that as x and
+    /// y, arctan x <= x (1 + 4 x^2 / 15) / (1 + 3 x^2 / 5) and 1 - exp(-y) <= y / (1 + y / 2).
     constexpr S start(const S& d) const {
         const S at_least = max(linear(d), max(flexed(d), waved(d)));
         const S x = flexspline.hardening * at_least, square = x * x, y = wave_generator.hardening * at_least;
@@ -142,13 +142,13 @@ private:
         return max(at_least, d / (flexspline_gives + wave_generator.softness / (S(1.0) + S(0.5) * y)));
     }
     constexpr S linear(const S& d) const { return d / (flexspline.softness + wave_generator.softness); }
-    /// With the wave generator at its bound; tan(pi p / 2) within 0.3 %.
+    /// Torque with the wave generator at its bound; tan(pi p / 2) within 0.3 %.
     constexpr S flexed(const S& d) const {
         const S far = max(d - wave_generator.bound(), S(0.0)) / flexspline.softness;
         const S p = min(S(2.0 / pi) * flexspline.hardening * far, S(0.9999995)), square = p * p;
         return far * (S(1.0) - S(0.1894) * square) / (S(1.0) - square);
     }
-    /// With the flexspline at its bound; -log(1 - u) >= 2 u / (2 - u).
+    /// Torque with the flexspline at its bound; -log(1 - u) >= 2 u / (2 - u).
     constexpr S waved(const S& d) const {
         const S far = max(d - flexspline.bound(), S(0.0)) / wave_generator.softness;
         return S(2.0) * far / (S(2.0) - min(wave_generator.hardening * far, S(1.0)));

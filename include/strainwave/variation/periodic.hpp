@@ -67,7 +67,7 @@ struct Periodic {
     }
     constexpr Factor<S> at(const Angle<S>& angle) const { return compile().at(angle); }
 
-    /// The same sum, arranged for speed.
+    /// The sum, arranged for speed.
     constexpr Compiled compile() const { return {Harmonics<S, capacity>::of(order, amplitude, phase), largest(), active()}; }
 };
 

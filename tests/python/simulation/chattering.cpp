@@ -104,7 +104,7 @@ typename D::Evaluation smooth_step(const D& drive, const typename D::Evaluation&
     return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 
-/// A tenth of a second in steps that keep a tolerance; tells how many end later than an event too.
+/// A tenth of a second in steps that keep a tolerance, and how many of them end later than an event.
 void run_adaptively(double wall) {
     const auto drive = made<double>(wall);
     using Chatters = std::remove_cv_t<decltype(drive)>;

@@ -168,7 +168,7 @@ def test_a_start_and_an_initial_state_exclude_each_other() -> None:
 
 def test_where_nothing_balances_there_is_no_state() -> None:
     soft = geared(stiffness=sw.stiffness.Linear(k=1.0), load=sw.loads.Pendulum(inertia=0.1, gravity_torque=500.0))
-    words = "there is no state that has the quantities of initial: .* do not balance there; give another angle, or the torque$"
+    words = "no state has the quantities of initial: .* are not in equilibrium there; give another angle, or the torque$"
     with pytest.raises(ValueError, match=f"^{words}") as alone:
         sw.simulate(soft, SHORT, dt=1e-5, initial={"input_angle": 3.0})
     with pytest.warns(sw.EnsembleWarning, match=words):

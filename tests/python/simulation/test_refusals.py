@@ -274,5 +274,5 @@ def test_a_run_that_has_diverged_goes_no_further() -> None:
 
 @pytest.mark.parametrize("quantity", [-1, len(_core.quantities), 10**6])
 def test_the_core_refuses_a_quantity_that_does_not_exist(quantity: int) -> None:
-    with pytest.raises(ValueError, match="there is no such quantity"):
+    with pytest.raises(ValueError, match="there is no quantity of this index"):
         _core.started(DRIVE, [quantity], np.ones(1), np.zeros(6))

@@ -424,5 +424,5 @@ def test_a_step_that_cannot_follow_the_gear_is_refused_with_one_that_can() -> No
 
 
 def test_a_drive_without_inertia_at_the_input_is_refused() -> None:
-    with pytest.raises(ValueError, match="cannot both be 0: something must turn at the input"):
+    with pytest.raises(ValueError, match="cannot both be 0: the input needs an inertia"):
         sw.Drive(motor=sw.motor.DC(inertia=0.0))

@@ -187,7 +187,7 @@ public:
     void get_derivatives(double* numbers) const { write(tried().derivatives.rate, numbers); }
     // Positive until a shaft has stopped or broken away. It is zero a little later, so that a solver stops behind the event.
     double event_indicator() const { return strainwave::system::event_function<double>(drive, tried()) + event_delay; }
-    // The end of a step of the solver. True if a number has changed beside, as an angle that is reduced to one turn.
+    // The end of a step of the solver. True if a further number has changed, as an angle that is reduced to one turn.
     bool complete() {
         if (!content.is_on_trial) return false;
         State x = content.here.state;
