@@ -114,7 +114,7 @@ nb::list outputs_of(const ParameterDrive& drive) {
     return list;
 }
 
-/// The unit of what a controller is given: of a law that only passes it on, that of what the motor takes.
+/// The unit of the command of a controller: for a law that only passes it on, that of the actuation.
 template <class Law>
 const char* command_unit(const Law& law, const char* of_motor) {
     if constexpr (requires { law.visit([](const auto&) {}); })
@@ -125,7 +125,7 @@ const char* command_unit(const Law& law, const char* of_motor) {
         return *Law::command_unit == 0 ? of_motor : Law::command_unit;
 }
 
-/// The output of the motor of a drive that is what the controller gives it, and its unit.
+/// Name and unit of the output of the motor that is its actuation.
 nb::tuple actuation_of(const ParameterDrive& drive) {
     return drive.motor.visit([]<class Motor>(const Motor&) {
         const char* unit = "";

@@ -56,7 +56,7 @@ struct Queue {
     double first() const { return next < end ? *next : unbounded; }
 };
 
-/// Instants from three series: whatever is within `tolerance` of its neighbour is one. Which are samples, and the longest step.
+/// Instants from three series, those within `tolerance` of each other being one; flags of the samples, and the longest step.
 nb::tuple time_grid_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
     const std::size_t most = steps.size() + samples.size() + breaks.size();
     const auto instants = room(most);

@@ -48,7 +48,7 @@ public:
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (!report.is_none()) report(done);
     }
-    /// Throws what Python raised, if that ended the work; a refusal where the drive did.
+    /// Throws the error of Python if that ended the work, or an error if the drive did.
     void check(const kernel::Outcome& outcome) const {
         if (failure) std::rethrow_exception(failure);
         if (outcome.ending != kernel::Ending::done) throw outcome;

@@ -4,7 +4,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 
-/// Calls of verbs from Python, taken as they come: what does not fit is refused in one line, where nanobind lists every overload.
+/// Calls of verbs from Python with any arguments: a wrong one is an error of one line, while nanobind lists every overload.
 namespace strainwave::host {
 
 /// An argument of a verb as its signature lists it: name, type, and the value it has if it is not given, in Python's words. One
@@ -55,7 +55,7 @@ private:
 void define_verb(nb::handle type, const Description& description, const char* name, const std::vector<Accepted>& accepted,
                  const std::string& result, const char* doc, std::function<nb::object(const void*, const Call&)> f);
 
-/// f(model, numbers) of one number or more, all given as Python's own: what is called most often, and takes no time to look at.
+/// f(model, numbers) of Python numbers only: the most frequent call, without any conversion.
 void define_function(nb::handle type, const Description& description, const char* name, const std::vector<Accepted>& accepted,
                      const char* doc, std::function<double(const void*, const double*)> f);
 

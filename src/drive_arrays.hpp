@@ -7,7 +7,7 @@
 #include "members.hpp"
 #include "names.hpp"
 
-/// Drives and their states as Python holds them, for what runs them.
+/// Drives and their states, from Python's objects to those of the runs.
 namespace strainwave::host {
 
 inline Parts parts_of(const ParameterDrive& drive) { return parts_of(description_of<ParameterDrive>(), &drive); }

@@ -46,7 +46,7 @@ namespace {
 
 using kernel::Ending;
 
-/// A run of many members: what all threads share.
+/// Data of a run of many members that all threads share.
 class EnsembleRun {
     const kernel::Table& kernel;
     const Ensemble& ensemble;

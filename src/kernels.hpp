@@ -18,7 +18,7 @@ kernel::Table kernel_with(Entry kernel::Table::* entry, const std::vector<int>& 
     return loaded.*entry ? loaded : general::table;
 }
 
-/// Adds what a kernel can do. It stays loaded; after `forget_kernels` the general drive runs such drives again.
+/// Adds the jobs of a kernel. It stays loaded; after `forget_kernels` the general drive runs such drives again.
 void add_kernel(const std::vector<int>& laws, const kernel::Table& table);
 void forget_kernels(const std::vector<int>& laws);
 

@@ -260,7 +260,7 @@ constexpr MemberType made_member_type() {
 template <class T>
 inline constexpr MemberType member_type = made_member_type<T>();
 
-/// A member of a struct: what is known of it, where it lies, and its type.
+/// A member of a struct: its description, place and type.
 struct Member {
     Field field;
     std::ptrdiff_t offset;
@@ -330,7 +330,7 @@ const void* model_in(nb::handle object, const Description& description);
 /// The model with other numbers; an error if they contradict each other.
 nb::object with_numbers(const void* model, const Description& description, const std::vector<double>& numbers);
 
-/// Help for a struct: what it is, its members, what it raises, its source.
+/// Help for a struct: its doc, members, errors and source.
 std::string documentation(const Description& description);
 
 /// Constructor, copies, properties, repr, equality, hash and pickling of a frozen value.

@@ -12,7 +12,7 @@ namespace {
 template <class Law>
 using StateOf = general::StateOf<double, Law>;
 
-/// The described struct of what a law shows.
+/// The described struct of the outputs of a law.
 template <class Law>
 constexpr auto output_of_law() {
     if constexpr (requires { typename Law::Output; })
@@ -62,7 +62,7 @@ void each_name(const Law& law, const std::string& before, const Number& number) 
     }
 }
 
-/// Goes through a struct of the general drive; the names of what a part keeps come from the law that the drive has there.
+/// Visits a struct of the general drive; the names of the numbers of a part come from its law.
 template <bool of_output>
 struct NameWalk {
     const ParameterDrive& drive;

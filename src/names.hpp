@@ -6,7 +6,7 @@
 
 namespace strainwave::host {
 
-/// A number of a state of a drive, or of what it shows of itself.
+/// A number of the state or of the outputs of a drive.
 struct Name {
     std::string part;  ///< path of the part that it belongs to, or "" if it is the drive's own
     std::string name;

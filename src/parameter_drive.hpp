@@ -9,7 +9,7 @@ namespace strainwave {
 
 namespace detail {
 
-/// A law that holds another holds any, where it is chosen at run time.
+/// A law around another one accepts any, if it is chosen at run time.
 template <class S, class Law>
 struct AtRunTime {
     using type = Law;

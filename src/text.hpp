@@ -14,7 +14,7 @@ namespace nb = nanobind;
 /// The shortest text that is read as the same number.
 std::string shortest(double x);
 std::string with_unit(double x, const char* unit);
-/// "[0, inf)": what a field may be.
+/// Limits of a field, as "[0, inf)".
 std::string limits(const Field& field);
 /// Message that a law is used outside its range of validity.
 std::string outside(const Domain<double>& domain);
@@ -23,7 +23,7 @@ std::string text_of(nb::handle value);
 std::string shortened(nb::handle value);
 /// A text written in a raw string, with the indent of its source taken off.
 std::string dedented(const char* text);
-/// Keeps what nanobind only points at.
+/// Keeps a text that nanobind only points at.
 const char* kept(std::string text);
 
 }  // namespace strainwave::host

@@ -62,7 +62,7 @@ void check_domain(const std::string& law, const Domain<double>& domain) {
 
 namespace {
 
-/// The part of the general drive that a law is, by itself: called with what Python holds.
+/// A single law as a part of the general drive: called with Python's objects.
 template <class Part>
 SingleLaw<Part> single_law(const BoundLaw& of, const void* model) {
     return {of.description, model, of.law};
@@ -333,7 +333,7 @@ using Contact = friction::Contact<double>;
     "under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and " \
     "`temperature` [K]. A law ignores the arguments that it does not depend on."
 
-/// An argument and what a contact depends on, each of the same type.
+/// An argument and the numbers of a contact, each of the same type.
 std::vector<Accepted> contacted(const Accepted& first) {
     return {first, {"angle", first.type, "0.0"}, {"load", first.type, "0.0"}, {"temperature", first.type, "293.15"}};
 }

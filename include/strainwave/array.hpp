@@ -2,7 +2,7 @@
 
 namespace strainwave {
 
-/// A fixed number of elements: what a state repeats. Zero only where it is declared with {}.
+/// A fixed number of repeated elements of a state. Zero only if it is declared with {}.
 template <class T, int n>
 struct Array {
     T item[n > 0 ? n : 1];  // C++ has no array of no elements
@@ -51,7 +51,7 @@ private:
     }
 };
 
-/// Gives others as many elements as one has; what they are is yet to be set.
+/// Gives others as many elements as one has; their values are not set.
 template <class T, int n, class... Others>
 constexpr void size_like(const Array<T, n>&, Others&...) {}
 template <class T, int capacity, class... Others>

@@ -113,7 +113,7 @@ struct Drive {
     using Mesh = typename Gear::Mesh;
     using Resistance = friction::Resistance<S>;
 
-    /// The rate of the continuous numbers, and what it was worked out from.
+    /// The rate of the continuous numbers, and the quantities that it follows from.
     struct Derivatives {
         Continuous rate;
         Mesh mesh;

@@ -115,7 +115,7 @@ inline constexpr bool fully_described = detail::visited<T>() == detail::members<
 
 namespace detail {
 
-/// Counts scalars, elements of arrays included; of what is counted at run time the most there can be.
+/// Count of scalars, elements of arrays included; of arrays with a count at run time, their capacity.
 template <class S>
 struct Counter {
     int count = 0;

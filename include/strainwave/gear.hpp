@@ -161,7 +161,7 @@ struct Gear {
                kinematic_noise.growth(torque, torque_rate, generator.speed,
                                       structure.generator_acceleration(mesh.rate, acceleration));
     }
-    /// The torques of a gear that stands so at a temperature [K], its hysteresis last brought up to date at `held_twist`.
+    /// The torques of a gear at these angles and a temperature [K], its hysteresis last brought up to date at `held_twist`.
     constexpr Mesh loaded(Mesh mesh, const Inner& inner, const Shafts& at, const typename Hysteresis::State& held,
                           const S& held_twist, const S& temperature) const {
         const variation::Factor<S> factor = stiffness_factor(inner, at);
@@ -323,7 +323,7 @@ private:
                     : "kinematic_error has the flexspline fixed, kinematics the circular_spline; give both alike"};
     }
 
-    /// The error where the gear stands, and what it leaves of the gap.
+    /// The error at these angles, and the gap less the error.
     struct Engaged {
         kinematic_error::Error<S> error;
         S deformation;

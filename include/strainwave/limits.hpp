@@ -17,9 +17,9 @@ struct Limits {
     constexpr S limited(const S& asked) const { return clip(asked, low, high); }
     constexpr Limits within(const S& most) const { return {clip(low, -most, most), clip(high, -most, most)}; }
 
-    /// The rate of an integral of `error` that feeds `asked`: the error, but where it leads further beyond a limit it fades, and is
-    /// gone a twentieth of the range beyond. If it ended at once, what is asked would slide along the limit, to and fro at every
-    /// step, and no step would be short enough for a tolerance.
+    /// The rate of an integral of `error` that feeds `asked`: the error, which falls to zero at 5 % of the range beyond a limit. If
+    /// it ended at once, the actuation would slide along the limit, to and fro at every step, and no step would be short enough for
+    /// a tolerance.
     constexpr S integral_rate(const S& asked, const S& error) const {
         const S faded = max(S(fading) * (high - low), S(smallest));
         const S above = min(max(asked - high, S(0.0)) / faded, S(1.0)), below = min(max(low - asked, S(0.0)) / faded, S(1.0));

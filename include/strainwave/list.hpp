@@ -14,7 +14,7 @@ struct Extension<List<Law...>, More...> {
     using type = List<Law..., More...>;
 };
 }  // namespace detail
-/// A list, and what may stand around its laws.
+/// A list, and the laws that may modulate its laws.
 template <class L, template <class...> class... More>
 using Extended = typename detail::Extension<L, More...>::type;
 

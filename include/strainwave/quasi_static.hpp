@@ -29,7 +29,7 @@ public:
     constexpr S twist(const S& wanted) const {
         return reached([&](const S& x) { return torque(x); }, wanted);
     }
-    /// The twist of the spring where it shares a `whole` [rad] with a `compliance` [rad/(N.m)] in series.
+    /// The twist of the spring in series with a `compliance` [rad/(N.m)], at a `whole` twist [rad].
     constexpr S twist_within(const S& whole, const S& compliance) const {
         return reached([&](const S& x) { return x + compliance * torque(x); }, whole);
     }

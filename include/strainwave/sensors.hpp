@@ -99,7 +99,7 @@ struct Sensors {
         const S input = max(one(input_angle), one(input_speed)), output = max(one(output_angle), one(output_speed));
         return max(max(input, output), max(one(current), one(torque)));
     }
-    /// The state in which they show what there is.
+    /// The state in which each sensor shows the true value.
     constexpr State steady_state(const Measurement& actual) const {
         return each([](const auto& sensor, const S& value) { return sensor.steady_state(value); }, actual);
     }

@@ -20,7 +20,7 @@ struct Shaft {
     S holding_torque{0.0};  ///< N.m: the most that set-valued friction balances at rest
 
     constexpr auto sticks() const { return slip_direction == S(0.0); }
-    /// Driven beyond what holds it.
+    /// True if the shaft is driven beyond its breakaway torque.
     constexpr auto breaks_away() const {
         const auto overcome = holding_torque < abs(driving_torque);
         return sticks() & overcome;
@@ -38,12 +38,12 @@ struct Shaft {
         const auto overcome = abs(driving_torque) > holding_torque;
         return select(stops & !overcome, S(0.0), sign(driving_torque));
     }
-    /// The slip direction of a shaft about which nothing else is known than its speed and, at rest, where it was slipping to.
+    /// The slip direction of a shaft from its speed and, at rest, from its last slip direction.
     constexpr S consistent_direction() const {
         if (!can_stick) return S(1.0);
         return select(speed == S(0.0), sign(slip_direction), sign(speed));
     }
-    /// The share of the holding torque that is in use while it sticks, with the sign of what it balances.
+    /// The share of the breakaway torque that acts while it sticks, with the sign of the driving torque.
     constexpr S share_of_hold() const {
         if (!can_stick) return S(0.0);
         return clip(driving_torque / max(holding_torque, S(smallest)), S(-1.0), S(1.0));

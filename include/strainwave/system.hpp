@@ -55,7 +55,7 @@ inline constexpr int coupled_count = [] {
         return 0;
 }();
 
-/// The numbers, limited to what they can reach, for a stage of a step may exceed that. `now` is an instant close by.
+/// The numbers within their bounds, which a stage of a step may exceed. `now` is an instant close by.
 template <class System>
 constexpr typename System::Continuous clamped(const System& system, const typename System::Continuous& y,
                                               const typename System::Derivatives& now) {

@@ -20,7 +20,7 @@ struct Feedforward : Part {
     compensation::RequestAndState<S, State> step(const State& x, const control::Command<S>& command, const S& period) const;
 };
 
-/// Lists of compensators that go by what is measured.
+/// Lists of compensators that act on measurements.
 enum class Corrections { learning, observer };
 
 /// A learner or an observer by any law.

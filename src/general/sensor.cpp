@@ -7,7 +7,7 @@
 
 namespace strainwave::general {
 
-/// Stands for whatever sensor another holds.
+/// Placeholder for the inner sensor of another.
 struct SensorWithin {};
 
 namespace detail {

@@ -4,8 +4,8 @@
 /// The torque that a motion needs.
 namespace strainwave::kernel {
 
-/// A motion of the input at an instant, as it stands in an array: angle [rad], speed [rad/s], acceleration [rad/s2], and the time
-/// since the motion before it [s]; 0 where friction has long been sliding.
+/// A motion of the input at an instant, as an array: angle [rad], speed [rad/s], acceleration [rad/s2], and the time since the
+/// motion before it [s]; 0 where friction has long been sliding.
 struct Motion {
     double angle, speed, acceleration, step;
     static constexpr int count = 4;

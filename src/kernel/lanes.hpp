@@ -14,7 +14,7 @@ inline constexpr std::size_t lanes = sizeof(S) <= sizeof(double) ? 1 : sizeof(S)
 inline double lane_of(double x, std::size_t) { return x; }
 inline void set_lane(double& x, std::size_t, double value) { x = value; }
 
-// Calls f with what each lane of some scalars holds.
+// Calls f with the value of each lane of some scalars.
 template <class F>
 void each_lane(double a, double b, double c, F&& f) {
     f(a, b, c);

@@ -121,7 +121,7 @@ struct Table {
     Outcome (*differentiate)(const Set& set, const Beginning& beginning, const Schedule& schedule, const int* parameters,
                              std::size_t parameter_count, const Rows& rows, double* slopes, const Progress& progress);
     /// The torque that each of n motions of the input needs, and its derivatives by numbered parameters: motion[4 i ...] are angle
-    /// [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], inputs[input_count i ...] what acts;
+    /// [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], inputs[input_count i ...] the inputs;
     /// slopes[p * n + i].
     void (*inverse_dynamics)(const Set& set, const double* motion, const double* inputs, std::size_t n, const int* parameters,
                              std::size_t parameter_count, double* torque, double* slopes);

@@ -2,7 +2,7 @@
 #include <strainwave/friction/resistance.hpp>
 #include <strainwave/shaft.hpp>
 
-/// The places of a drive where friction acts, and what it does to the two shafts.
+/// The places of friction in a drive, and its torques on the two shafts.
 namespace strainwave {
 
 template <class S>
@@ -31,7 +31,7 @@ constexpr Contacts<S> moved(const typename Drive::Derivatives& now, const typena
             now.contacts.output.moving(y.output_speed)};
 }
 
-// The largest torque that holds a shaft against what drives it, N.m.
+// The largest torque that holds a shaft at rest, N.m.
 template <class S, class Drive>
 constexpr S input_hold(const Drive& drive, const typename Drive::Derivatives& now) {
     const S push = sign(now.input_driving_torque), per_input = now.mesh.per_input;

@@ -4,7 +4,7 @@
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/structure/structure.hpp>
 
-/// The bodies within a gear, and both shafts: what masses, dampers and even springs do to them is linear. A step takes these
+/// The bodies within a gear, and both shafts: masses, dampers and even springs act linearly on them. A step takes these
 /// numbers as one block (system.hpp), however stiff it is: input speed, transmission error, output speed, then the state of the
 /// structure.
 namespace strainwave::coupled_bodies {

@@ -37,7 +37,8 @@ constexpr S of_two_masses(const Drive& drive, const S& stiffness, const S& slope
 }
 
 /// Highest decay rate of speeds [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
-/// back-EMF and control, but for what steps take exactly. The larger eigenvalue of what two speeds do to their rates.
+/// back-EMF and control, without the part that steps take exactly. The larger eigenvalue of the matrix from two speeds to their
+/// rates.
 template <class S, class Drive>
 constexpr S damping(const Drive& drive) {
     auto x = drive.rest();
@@ -95,10 +96,10 @@ constexpr S natural_frequency(const Drive& drive, const S& twist, const S& tempe
 
 /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: vibrations, the decay of speeds and of a controlled
 /// current, sensors, what the controller filters, and temperatures; with the random error of the gear, which stiffens the one and
-/// damps the other, be it the wrong way round. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
-/// its length, of a vibration 2.83 times, and 2.5 leaves room. Of bodies within the gear it is what their even reaction leaves
-/// out, for steps take that exactly; where much is left out, their vibrations: 1.25 radians of these a step are stable, whatever is
-/// left out.
+/// damps the other, be it the wrong way round. Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length, of a
+/// vibration 2.83 times, and 2.5 leaves room. Of bodies within the gear it is the part that their even reaction leaves out, for
+/// steps take the even reaction exactly. If that part is large, the vibrations of the bodies count: 1.25 radians of these a step
+/// are stable, whatever is left out.
 template <class S, class Drive>
 constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto& gear = drive.gear;

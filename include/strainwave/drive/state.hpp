@@ -51,7 +51,7 @@ struct Discrete {
     }
 };
 
-/// A drive at one instant: the motion, what changes at instants only, and what the drive remembers of the past.
+/// State of a drive at one instant: the motion, the discrete numbers, and the memory.
 template <class S, class Continuous, class Discrete, class HysteresisState>
 struct State {
     Continuous continuous{};

@@ -5,10 +5,10 @@
 
 /// Faults of a drive. A fault does not simulate: it lists the numbers of a drive that it changes. It has
 ///
-///     severity                 in [0, 1]; 0 changes nothing, 1 is what its doc defines
+///     severity                 in [0, 1]; 0 changes nothing, 1 is the change that its doc defines
 ///     mode, effect, signal     its row in the table of failure modes
 ///     changes(facts, visit)    calls visit(change) for each change, the same ones in the same order at every severity
-///     missing(facts)           what a drive of these facts lacks, or a null pointer; left out if it needs nothing
+///     missing(facts)           text of the fact that the drive lacks, or a null pointer; left out if the fault needs none
 namespace strainwave::fault {
 
 enum class Kind { scale, add, vector, wave };

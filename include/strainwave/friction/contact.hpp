@@ -59,7 +59,7 @@ concept Modulation = requires(const Law& law) {
     law.modulated({});
 };
 
-/// A law and what modulates its contact, rearranged for speed.
+/// A law and the modulation of its contact, rearranged for speed.
 template <class S, class Law, class Modulator>
 struct Modulated {
     Modulator modulator;
@@ -148,7 +148,7 @@ constexpr typename Law::State relaxation_rate(const Law& law, const typename Law
         return {};
 }
 
-/// The state within what it can ever reach.
+/// The state within its invariant bounds.
 template <class Law, class S>
 constexpr typename Law::State clamped(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)
@@ -159,7 +159,7 @@ constexpr typename Law::State clamped(const Law& law, const typename Law::State&
         return x;
 }
 
-/// The state with what is either so or so, and stays that way over a step, decided anew.
+/// The state with its discrete modes re-evaluated, which are constant over a step.
 template <class Law, class S>
 constexpr typename Law::State update_mode(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)

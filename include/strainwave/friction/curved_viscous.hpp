@@ -39,7 +39,7 @@ struct CurvedViscous {
         visit(SW_FIELD(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
         visit(SW_REQUIRED(m, viscous_torque, "N.m", "Viscous torque F_v at reference_speed", 0));
         visit(SW_REQUIRED(m, exponent, "1", "Exponent p of the speed", 0.1, 4));
-        visit(SW_REQUIRED(m, reference_speed, "rad/s", "Speed v_r at which viscous_torque holds", smallest));
+        visit(SW_REQUIRED(m, reference_speed, "rad/s", "Speed v_r of viscous_torque", smallest));
     }
 
     using State = Stateless<S>;

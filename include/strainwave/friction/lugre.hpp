@@ -67,7 +67,7 @@ struct LuGre {
     /// The bristle of a contact that has long been sliding.
     constexpr State steady_state(const Contact<S>& contact) const { return {sign(contact.speed) * reach(contact)}; }
 
-    /// Torque that opposes the motion, in N.m, for the bristle as it stands.
+    /// Torque that opposes the motion, in N.m, for the present bristle.
     constexpr S torque(const State& x, const Contact<S>& contact) const { return torque(x, contact, rate(x, contact)); }
     /// Torque at a known rate of the bristle.
     constexpr S torque(const State& x, const Contact<S>& contact, const State& rate) const {

@@ -51,7 +51,7 @@ struct MaxwellSlipFriction {
         visit(SW_REQUIRED(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
         visit(SW_FOLLOWS(m, breakaway, coulomb, "N.m", "Static friction torque F_s", 0));
         visit(SW_REQUIRED(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
-        visit(SW_REQUIRED(m, attraction, "N.m/s", "Rate C at which slipping elements are drawn to the Stribeck curve", smallest));
+        visit(SW_REQUIRED(m, attraction, "N.m/s", "Rate C at which slipping elements approach the Stribeck curve", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 
@@ -136,7 +136,7 @@ struct MaxwellSlipFriction {
         return next;
     }
 
-    /// The elements after `dt` [s] under one contact: exact, whatever sticks or slips meanwhile.
+    /// The elements after `dt` [s] under one contact: exact, also if elements begin to slip.
     constexpr State advance(const State& x, const Contact<S>& contact, const S& dt) const {
         const S sense = sign(contact.speed), path = abs(contact.speed) * dt, kept = exp(-relaxation(contact) * dt);
         const S full = this->level(contact);

@@ -39,8 +39,7 @@ struct MixedLubrication {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_REQUIRED(m, coulomb, "N.m",
-                          "Friction torque F_c that is left once the lubricant carries, without the viscous part", 0));
+        visit(SW_REQUIRED(m, coulomb, "N.m", "Friction torque F_c of full lubrication, without the viscous part", 0));
         visit(SW_REQUIRED(m, breakaway, "N.m", "Static friction torque F_s", 0));
         visit(SW_REQUIRED(m, stribeck_speed, "rad/s", "Speed v_s at which the excess has fallen to 1/e, at T_0 without load",
                           smallest));

@@ -68,8 +68,8 @@ struct PositionDependent {
         visit(SW_FIELD(m, speed_factor, "s/rad", "Relative rise of the average friction with speed", 0));
         visit(SW_FIELD(m, reference_speed, "rad/s", "Speed v_c at which the average friction was measured", 0));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Viscous torque per speed", 0));
-        visit(SW_REQUIRED(m, domain_start, "rad", "Least angle at which the average friction was measured"));
-        visit(SW_REQUIRED(m, domain_end, "rad", "Greatest angle at which the average friction was measured"));
+        visit(SW_REQUIRED(m, domain_start, "rad", "Lower end of the measured domain of the average friction"));
+        visit(SW_REQUIRED(m, domain_end, "rad", "Upper end of the measured domain of the average friction"));
         visit(SW_FIELD(m, outside, "1", "Average friction beyond its domain"));
     }
 
@@ -84,7 +84,7 @@ struct PositionDependent {
         return contact.sliding * level(contact, abs(contact.speed) - reference_speed) + contact.viscous * viscous * contact.speed;
     }
 
-    /// The largest torque it balances at rest, in N.m: never less than what sliding sets in with.
+    /// The largest torque it balances at rest, in N.m: at least the torque at the begin of sliding.
     constexpr S hold(const Contact<S>& contact) const {
         return max(static_ratio * level(contact, S(0.0)), level(contact, -reference_speed));
     }
@@ -105,7 +105,7 @@ private:
         return max(average + average * speed_factor * faster + contact.dry * ripple(contact.angle.within), S(0.0));
     }
 
-    /// The angle of the domain that stands for this one.
+    /// The angle of the domain that replaces this one.
     constexpr S inside(const S& q) const {
         if (outside != Outside::periodic) return clip(q, domain_start, domain_end);
         const S length = max(domain_end - domain_start, S(smallest)), periods = (q - domain_start) / length;

@@ -38,7 +38,7 @@ struct TorqueEfficiency {
         visit(SW_REQUIRED(m, average_loss, "1", "Loss per torque transmitted, mean of driving and back-driving", 0));
         visit(SW_FIELD(m, difference_loss, "1",
                        "Half the difference of the losses when driving and when back-driven, per torque transmitted"));
-        visit(SW_REQUIRED(m, presliding, "rad", "Angle h over which the loss turns round after a reversal", smallest));
+        visit(SW_REQUIRED(m, presliding, "rad", "Presliding angle h over which the loss reverses", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 
@@ -58,7 +58,7 @@ struct TorqueEfficiency {
     /// The engagement of a contact that has long been sliding.
     constexpr State steady_state(const Contact<S>& contact) const { return {sign(contact.speed)}; }
 
-    /// Torque that opposes the motion, in N.m, for the engagement as it stands.
+    /// Torque that opposes the motion, in N.m, for the present engagement.
     constexpr S torque(const State& x, const Contact<S>& contact) const {
         const S z = x.engagement, loss = contact.dry * z * (along(contact.load, average_loss) + difference_loss * z);
         return loss * contact.load + contact.viscous * viscous * contact.speed;

@@ -252,7 +252,7 @@ struct BoucWen {
     /// Torque [N.m] once the twist has moved by `increment` [rad]; the state stays as it is.
     constexpr S torque(const State& x, const S& increment) const { return advance(x, increment).held; }
 
-    /// Work [J] put in while the twist moves by `increment` [rad], monotonically.
+    /// Work [J] done on the law while the twist moves by `increment` [rad], monotonically.
     constexpr S work(const State& x, const S& increment) const {
         const BoucWenFlow<S> flow = this->flow();
         const S v = along(increment, confined(x) / saturation), end = flow.after(v, path(increment));

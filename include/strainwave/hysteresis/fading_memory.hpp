@@ -108,7 +108,7 @@ struct FadingMemory {
         return sum;
     }
 
-    /// Work [J] put in while the twist moves by `increment` [rad], monotonically.
+    /// Work [J] done on the law while the twist moves by `increment` [rad], monotonically.
     constexpr S work(const State& x, const S& increment) const {
         S sum{0.0};
         for (int j = 0; j < stiffness.count; ++j) {

@@ -91,7 +91,7 @@ struct FrictionalWindup {
     /// Torque [N.m] once the twist has moved by `increment` [rad]; the state stays as it is.
     constexpr S torque(const State& x, const S& increment) const { return advance(x, increment).torque; }
 
-    /// Work [J] put in while the twist moves by `increment` [rad], monotonically: into the springs, and against friction.
+    /// Work [J] done on the law while the twist moves by `increment` [rad], monotonically: into the springs, and against friction.
     constexpr S work(const State& x, const S& increment) const {
         const Springs both = springs.in_series();
         const State next = advance(x, increment);
@@ -99,7 +99,7 @@ struct FrictionalWindup {
         return stored(next) - stored(x) + friction * slip;
     }
 
-    /// Elastic energy [J] of both springs; beyond the bound, where torque is constant, what it has done there.
+    /// Elastic energy [J] of both springs; beyond the bound, where the torque is constant, with its work there.
     constexpr S stored(const State& x) const {
         const Springs both = springs.in_series();
         const S flexspline = abs(x.torque), wave_generator = abs(x.windup_torque);

@@ -66,7 +66,7 @@ struct MaxwellSlip {
         return sum;
     }
 
-    /// Work [J] put in while the twist moves by `increment` [rad], monotonically: spring work up to slip, then friction.
+    /// Work [J] done on the law while the twist moves by `increment` [rad], monotonically: spring work up to slip, then friction.
     constexpr S work(const State& x, const S& increment) const {
         const S sense = sign(increment), path = abs(increment);
         S sum{0.0};

@@ -67,7 +67,7 @@ struct Preisach {
             return nested ? nullptr : "maximum must not rise, minimum must not fall, and all must enclose the twist";
         }
 
-        /// The last minimum is the twist: what turns back more often is not remembered.
+        /// The last minimum is the twist: further reversals are not stored.
         constexpr const S& low(int k) const { return k < capacity - 1 ? minimum[k] : twist; }
     };
 
@@ -89,7 +89,8 @@ struct Preisach {
     /// Torque [N.m] once the twist has moved by `increment` [rad]; the state stays as it is.
     constexpr S torque(const State& x, const S& increment) const { return held(advance(x, increment)); }
 
-    /// Work [J] put in while the twist moves by `increment` [rad], monotonically: branch by branch, as turning points are passed.
+    /// Work [J] done on the law while the twist moves by `increment` [rad], monotonically: branch by branch, as turning points are
+    /// passed.
     constexpr S work(const State& x, const S& increment) const {
         const S to = x.twist + increment;
         S torque = density.virgin(x.maximum[0]), sum = initial(x, to);

@@ -37,7 +37,7 @@ struct PowerDensity {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, limit, "rad", "Twist L at which everything slips", smallest));
-        visit(SW_REQUIRED(m, saturation, "N.m", "Torque T_s once everything slips", 0));
+        visit(SW_REQUIRED(m, saturation, "N.m", "Torque T_s at which everything slips", 0));
         visit(SW_FIELD(m, exponent, "1", "Power p: 1 elastic, 2 uniform density", 1, 100));
     }
 
@@ -135,7 +135,7 @@ struct GridDensity {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, limit, "rad", "Twist L at which everything slips", smallest));
-        visit(SW_REQUIRED(m, weight, "N.m", "Torque w_ij that each cell carries", 0));
+        visit(SW_REQUIRED(m, weight, "N.m", "Torque w_ij of each cell", 0));
     }
 
     constexpr const char* problem() const {

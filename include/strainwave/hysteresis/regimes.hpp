@@ -54,7 +54,7 @@ struct Regimes {
         visit(SW_REQUIRED(m, negative_unloading, "N.m/rad", "Stiffness while a negative torque falls, and beyond the stop",
                           smallest));
         visit(SW_REQUIRED(m, positive_loading, "N.m/rad", "Stiffness while a positive torque builds up", 0));
-        visit(SW_REQUIRED(m, onset, "N.m", "Torque T_0 at which the soft regimes set in", 0));
+        visit(SW_REQUIRED(m, onset, "N.m", "Torque T_0 at which the soft regimes begin", 0));
         visit(SW_REQUIRED(m, lost_motion, "rad", "Plastic twist w between the stops: width of the loop at zero torque", 0));
     }
 
@@ -90,7 +90,7 @@ struct Regimes {
         return select(elastic < S(0.0), negative_unloading, positive_unloading) * elastic;
     }
 
-    /// Work [J] put in while the twist moves by `increment` [rad], monotonically: elastic, and lost to the plastic share.
+    /// Work [J] done on the law while the twist moves by `increment` [rad], monotonically: elastic, and lost to the plastic share.
     constexpr S work(const State& x, const S& increment) const {
         const State next = advance(x, increment);
         const S before = x.twist - x.plastic, after = next.twist - next.plastic, half = S(0.5) * lost_motion;

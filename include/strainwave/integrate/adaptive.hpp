@@ -95,7 +95,7 @@ private:
     /// step that an event has `cut`, or that the end of the interval has shortened, does not limit longer ones.
     constexpr bool stands(const S& error, const S& length, bool cut) {
         const S max_growth(4.0);
-        // An error of what is not a number is larger than any; a step must not become nothing.
+        // The error of not-a-number is larger than any; the length of a step must not become zero.
         const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), max_growth) : S(0.2);
         const bool kept = error <= S(1.0), last = next <= S(shortest);
         if (!kept || !(cut || max_growth * length < next)) next = max(length * factor, S(shortest));
@@ -176,8 +176,8 @@ private:
     constexpr Measured measured(const typename System::State& x, const Evaluation& at) const {
         return {flattened<S>(x.continuous), system::watched<S>(system, at)};
     }
-    /// The error of a step of some `length` [s] in units of what is tolerated, the largest of all: that of the two halves, by
-    /// how far the whole is off, in proportion to the step; and what contradicts it, however short the step.
+    /// The largest error of a step of some `length` [s] in units of the tolerance: the difference of the two halves to the whole,
+    /// in proportion to the step; and the contradiction, however short the step.
     constexpr S error(const Evaluation& from, const Trial& tried, const S& length) const {
         const Measured a = measured(system::aligned(system, tried.whole.state, tried.end.state), tried.whole);
         const Measured b = measured(tried.end.state, tried.end);

@@ -3,9 +3,9 @@
 
 namespace strainwave::integrate {
 
-/// The moment within (from, 1] at which the margin first falls below zero, in lanes where it does by the end; 1 in the others.
-/// Anderson and Bjorck's variant of regula falsi, which closes a bracket around it; and of that the end, for before a margin jumps
-/// the side is not determined.
+/// Return the first moment within (from, 1] at which the margin falls below zero, in lanes where it does by the end; 1 in the
+/// others. Anderson and Bjorck's variant of regula falsi, which closes a bracket around it; and of that the end, for before a
+/// margin jumps the side is not determined.
 template <class S, class Margin>
 constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
     // Less than a state so close by differs from its rounding, and some units in the last place of the moment: a float resolves no

@@ -24,7 +24,7 @@ constexpr typename System::State moreau_jean_part(const System& system, const ty
     return x;
 }
 
-/// Steps in parts so short that they follow what a coupled block does by itself.
+/// Steps in parts short enough to resolve the motion of a coupled block.
 template <class S, class System>
 constexpr typename System::State moreau_jean_parts(const System& system, const typename System::Evaluation& from,
                                                    const Interval<typename System::Input>& u, const S& dt) {

@@ -87,7 +87,7 @@ public:
 
 namespace detail {
 
-/// ROS34PW2 of Rang and Angermann (2005), table 4.1: four stages, third order whatever stands for the Jacobian, L-stable.
+/// ROS34PW2 of Rang and Angermann (2005), table 4.1: four stages, third order with any matrix for the Jacobian, L-stable.
 struct Ros34pw2 {
     static constexpr int stages = 4;
     static constexpr double gamma = 0.43586652150845900;

@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/angle.hpp>
 
-/// Pure kinematic error e(theta_in), at the output: what two encoders see of a gear that transmits no torque.
+/// Pure kinematic error e(theta_in), at the output: the difference of two encoders on a gear that transmits no torque.
 namespace strainwave::kinematic_error {
 
 template <class S>

@@ -138,7 +138,7 @@ struct Misalignment {
         return {};
     }
 
-    /// Everything in units of the major radius, and less what it is without misalignment: displacements, some 1e-3 of the
+    /// All lengths in units of the major radius, less their values without misalignment: displacements, some 1e-3 of the
     /// radius, then keep their digits in float too.
     struct Compiled {
         S radius, scale;

@@ -3,8 +3,8 @@
 
 /// Interface of a meter of the energy of a drive. It has
 ///
-///     State, Output                        what changes continuously, and what it shows in recordings
-///     active()                             whether it measures: else nobody works out any power
+///     State, Output                        continuous numbers, and channels in recordings
+///     active()                             true if it measures; otherwise powers are not calculated
 ///     rate(powers)                         -> State
 ///     output(state, powers, stored)        -> Output
 namespace strainwave::meter {

@@ -99,9 +99,9 @@ struct PMSM {
         visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
         visit(SW_FIELD(m, current_offset, "A", "Amplitude I_o that the current sensors add", 0));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
-        visit(SW_OPTIONAL(m, phase_resistance_excess, "Ohm", "Resistance DR that one phase has more than the others", 0));
+        visit(SW_OPTIONAL(m, phase_resistance_excess, "Ohm", "Excess resistance DR of one phase", 0));
         visit(SW_OPTIONAL(m, dead_time_voltage, "V", "Voltage V that a phase loses by the dead time of the inverter", 0));
-        visit(SW_OPTIONAL(m, dead_time_current, "A", "Phase current i_c below which the dead time takes less", smallest));
+        visit(SW_OPTIONAL(m, dead_time_current, "A", "Phase current i_c below which the voltage of the dead time falls", smallest));
     }
 
     constexpr const char* problem() const {

@@ -28,7 +28,7 @@ struct Growing {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, begin, "1", "Use u_0 at which the fault begins", 0));
-        visit(SW_REQUIRED(m, scale, "1", "Use u_1 from its beginning to its severity", smallest));
+        visit(SW_REQUIRED(m, scale, "1", "Use u_1 from the beginning to the full severity", smallest));
         visit(SW_FIELD(m, exponent, "1", "Power p of the growth", 0.1, 10));
         visit(SW_FIELD(m, unit, "1", "Unit of usage"));
     }

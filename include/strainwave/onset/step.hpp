@@ -23,7 +23,7 @@ struct Step {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_REQUIRED(m, at, "1", "Use u_0 at which the fault is there", 0));
+        visit(SW_REQUIRED(m, at, "1", "Use u_0 at which the fault begins", 0));
         visit(SW_FIELD(m, unit, "1", "Unit of usage"));
     }
 

@@ -54,7 +54,7 @@ template <class L>
 constexpr L blend(const WordOf<L>& mask, const L& a, const L& b) {
     return mask ? a : b;
 }
-/// x within [low, high]; what is not a number stays so.
+/// x within [low, high]; not-a-number stays so.
 template <class L>
 constexpr L clipped(const L& x, double low, double high) {
     const L above = blend(x < low, everywhere<L>(low), x);

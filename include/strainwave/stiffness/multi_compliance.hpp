@@ -110,7 +110,7 @@ struct InSeries {
         const S flexed = S(1e6) / max(flexspline.hardening, S(1e-30)), waved = S(40.0) / max(wave_generator.hardening, S(1e-30));
         return min(max(flexed, waved), S(1e18));
     }
-    /// The twist that is missing. What is left up to the bound is more exact than what lies behind, once it is less; its
+    /// The remaining twist. The rest up to the bound is more exact than the twist itself, if it is smaller; its
     /// derivatives are not.
     constexpr S missing(const S& d, const Given<S>& given) const {
         const S end = bound(), mismatch = d - given.twist, left = value_only(given.rest - (end - d));
@@ -154,14 +154,14 @@ private:
         return S(2.0) * far / (S(2.0) - min(wave_generator.hardening * far, S(1.0)));
     }
 
-    /// The torque itself: what the search leaves, one step of Newton's does.
+    /// The torque itself: one step of Newton's method after the search.
     constexpr S solved(const S& d) const {
         const S top = largest(), level = search(d);
         const Given<S> given = at(level);
         return select(level < top, min(level + missing(d, given) / given.compliance, top), top);
     }
 
-    /// Halley's method, held between what has proved too low and too high.
+    /// Halley's method, bracketed by values that are too low and too high.
     constexpr S search(const S& d) const {
         const S top = largest(), scale = S(1.0) / max(wave_generator.hardening, S(1e-30));
         S level = min(start(d), top), low = S(0.5) * min(linear(d), top), high = top + top;

@@ -96,14 +96,14 @@ struct Staged {
         visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest, 1));
         visit(SW_FIELD(m, pressure_angle, "rad", "Pressure angle alpha_t of the teeth", 0.01, 1.5));
         visit(SW_REQUIRED(m, coupling_stiffness, "N.m/rad", "Stiffness K_WG between input shaft and wave generator", smallest));
-        visit(SW_FIELD(m, coupling_damping, "N.m.s/rad", "Damping c_WG there", 0));
+        visit(SW_FIELD(m, coupling_damping, "N.m.s/rad", "Damping c_WG between input shaft and wave generator", 0));
         visit(SW_REQUIRED(m, bearing_stiffness, "N/m", "Radial stiffness K_b of the wave generator's bearing", smallest));
         visit(SW_FIELD(m, bearing_damping, "N.s/m", "Damping c_b of that bearing", 0));
         visit(SW_REQUIRED(m, mesh_stiffness, "N/m", "Stiffness K_m of the mesh, along its line of action", smallest));
         visit(SW_FIELD(m, mesh_damping, "N.s/m", "Damping c_m of the mesh", 0));
         visit(SW_REQUIRED(m, circular_spline_stiffness, "N.m/rad",
                           "Stiffness K_CS between circular spline and output shaft, or housing if that spline is fixed", smallest));
-        visit(SW_FIELD(m, circular_spline_damping, "N.m.s/rad", "Damping c_CS there", 0));
+        visit(SW_FIELD(m, circular_spline_damping, "N.m.s/rad", "Damping c_CS of the same joint", 0));
         visit(SW_REQUIRED(m, radial_mass, "kg", "Mass m_r of the flexspline's ring that moves radially", smallest));
         visit(SW_REQUIRED(m, flexspline_inertia, "kg.m2", "Inertia J_FS of the flexspline's ring, about its axis", smallest));
         visit(SW_REQUIRED(m, circular_spline_inertia, "kg.m2", "Inertia J_CS of the circular spline", smallest));

@@ -2,11 +2,11 @@
 
 /// Interface of a thermal model of a drive. It has
 ///
-///     State, Output                    what changes continuously, and what it shows in recordings
-///     active()                         whether it takes heat: else nobody works out how much there is
+///     State, Output                    continuous numbers, and channels in recordings
+///     active()                         true if it takes heat; otherwise heat flows are not calculated
 ///     at(state, ambient)               -> Temperatures
 ///     rate(state, heat, ambient)       -> State
-///     gear_rate(rate, ambient_rate)    -> K/s, how fast the gear warms up
+///     gear_rate(rate, ambient_rate)    -> K/s, rate of the temperature of the gear
 ///     output(state, ambient)           -> Output
 ///
 /// The temperature that a run gives is the ambient one.
