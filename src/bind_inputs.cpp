@@ -58,13 +58,13 @@ struct Queue {
 
 /// Instants from three series, those within `tolerance` of each other being one; flags of the samples, and the longest step.
 nb::tuple time_grid_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
-    const std::size_t most = steps.size() + samples.size() + breaks.size();
-    const auto instants = room(most);
-    const auto sampled = room<std::uint8_t>(most);
+    const std::size_t capacity = steps.size() + samples.size() + breaks.size();
+    const auto instants = room(capacity);
+    const auto sampled = room<std::uint8_t>(capacity);
     Queue step(steps), sample(samples), jump(breaks);
     std::size_t count = 0;
     double before = -unbounded;
-    for (std::size_t i = 0; i < most; ++i) {
+    for (std::size_t i = 0; i < capacity; ++i) {
         const double instant = std::min(std::min(step.first(), sample.first()), jump.first());
         if (instant - before > tolerance) {
             sampled[count] = 0;

@@ -95,11 +95,12 @@ private:
             return list;
         }
         if (nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__")) refuse_type(field, "a sequence of numbers", value);
-        constexpr int most = sizeof(list.item) / sizeof(list.item[0]);
+        constexpr int capacity = sizeof(list.item) / sizeof(list.item[0]);
         int count = 0;
         for (nb::handle item : nb::iter(value)) {
-            if (count == most)
-                throw nb::value_error((owner + "." + field.name + " holds at most " + std::to_string(most) + " elements").c_str());
+            if (count == capacity)
+                throw nb::value_error(
+                    (owner + "." + field.name + " holds at most " + std::to_string(capacity) + " elements").c_str());
             list[count] = number(item, field, field.name + ("[" + std::to_string(count) + "]"));
             ++count;
         }

@@ -57,14 +57,14 @@ void evaluate_together(const Signal& signal, const double* instants, Side side, 
 /// Lays out one signal; its values go to every `input_count`th number from `values` on, its rates likewise.
 void lay_out(const Signal& signal, const double* instants, std::size_t steps, double* values, double* rates) {
     if (steps == 0) return;
-    constexpr std::size_t most = 256;  // steps at a time, so that what is between stays in the nearest memory
-    double t[2 * most + 1], value[2 * most + 1], rate[2 * most + 1];
+    constexpr std::size_t chunk = 256;  // steps at a time, so that what is between stays in the nearest memory
+    double t[2 * chunk + 1], value[2 * chunk + 1], rate[2 * chunk + 1];
     const auto put = [&](std::size_t place, std::size_t from) {
         values[place * kernel::input_count] = value[from];
         rates[place * kernel::input_count] = rate[from];
     };
-    for (std::size_t first = 0; first < steps; first += most) {
-        const std::size_t count = std::min(most, steps - first);
+    for (std::size_t first = 0; first < steps; first += chunk) {
+        const std::size_t count = std::min(chunk, steps - first);
         for (std::size_t i = 0; i < count; ++i) {
             t[2 * i] = instants[first + i];
             t[2 * i + 1] = 0.5 * (instants[first + i] + instants[first + i + 1]);

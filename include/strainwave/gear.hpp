@@ -254,7 +254,7 @@ struct Gear {
 
     /// Largest part that the even reaction leaves out at these twists and this temperature, over a turn of the wave generator.
     constexpr structure::Unevenness<S> unevenness(const S& twist, const S& temperature) const {
-        constexpr int parts = 512;
+        constexpr int samples = 512;
         const S even = even_stiffness();
         S softest = stiffness.tangent(S(0.0));
         over_twists(twist, [&](const S& tangent) { softest = min(softest, tangent); });
@@ -262,8 +262,8 @@ struct Gear {
         const S stiffest = steepest(twist, temperature);
         structure::Unevenness<S> found{max(stiffest - even, even - softest), S(0.0), S(0.0), S(0.0)};
         const auto inner = initial_state(structure);
-        for (int i = 0; i < parts; ++i) {
-            const Shafts at = shafts({S((2.0 * i / parts - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0));
+        for (int i = 0; i < samples; ++i) {
+            const Shafts at = shafts({S((2.0 * i / samples - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0));
             const Engaged stood = engaged_without_noise(inner, at, structure.generator(inner, at));
             found.slope = max(found.slope, abs(stood.error.slope));
             found.per_twist = max(found.per_twist, abs(stood.per_twist));
@@ -282,25 +282,25 @@ private:
     /// Calls visit(tangent) for the stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign.
     template <class Visit>
     constexpr void over_twists(const S& twist, const Visit& visit) const {
-        constexpr int parts = 64;
-        for (int i = -parts; i <= parts; ++i) visit(stiffness.tangent(twist * S(double(i) / parts)));
+        constexpr int samples = 64;
+        for (int i = -samples; i <= samples; ++i) visit(stiffness.tangent(twist * S(double(i) / samples)));
     }
     /// The largest stiffness [N.m/rad] of the hysteresis on its first way to a twist [rad], to one side.
     constexpr S steepest_loading(const S& twist, const S& side) const {
-        constexpr int parts = 64;
+        constexpr int samples = 64;
         const typename Hysteresis::State virgin{};
         const S little = side * S(1e-12);  // rad: within any loop's first slope, and more than rounding
         S largest = hysteresis.torque(virgin, little) / little;
         if (!any(twist > S(0.0))) return largest;
-        const S part = side * max(twist / S(parts), S(1e-12));
+        const S part = side * max(twist / S(samples), S(1e-12));
         S before{0.0};
-        for (int i = 1; i <= parts; ++i) {
+        for (int i = 1; i <= samples; ++i) {
             const S torque = hysteresis.torque(virgin, S(i) * part);
             largest = max(largest, (torque - before) / part);
             before = torque;
         }
-        const S rest = S(1.0 / parts) * part;  // of the way, for a stiffness that rises steeply
-        return max(largest, (before - hysteresis.torque(virgin, S(parts) * part - rest)) / rest);
+        const S rest = S(1.0 / samples) * part;  // of the way, for a stiffness that rises steeply
+        return max(largest, (before - hysteresis.torque(virgin, S(samples) * part - rest)) / rest);
     }
     /// Teeth of the kinematic error must be those of the kinematics, or have its ratio if the kinematics has no teeth.
     constexpr Contradiction<S> problem_of_teeth(const S& ratio) const {

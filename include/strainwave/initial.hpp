@@ -34,20 +34,21 @@ public:
     /// The state found. Its transmission error is infinite if the rounds do not converge.
     constexpr typename Drive::State found() {
         // Derivatives are a round or two behind the values; the rounding of an error is that of a larger angle [rad].
-        constexpr int most = 500, more = 3;
-        constexpr double rounding = 1e-15, least = 1e-3;
+        constexpr int max_rounds = 500, converged_rounds = 3;
+        constexpr double max_relative_change = 1e-15, min_angle = 1e-3;
         S before(unbounded);
-        int settled = 0;
-        for (int i = 0; i < most && settled < more; ++i) {
+        int converged = 0;
+        for (int i = 0; i < max_rounds && converged < converged_rounds; ++i) {
             const S twist = round();
             const auto& y = x.continuous;
             const S output = (y.input_angle + S(2.0 * pi) * x.turns) * drive.gear.kinematics.inverse_ratio();
-            settled = S(rounding) * max(max(abs(output), abs(twist)), S(least)) >= abs(twist - before) ? settled + 1 : 0;
+            converged =
+                S(max_relative_change) * max(max(abs(output), abs(twist)), S(min_angle)) >= abs(twist - before) ? converged + 1 : 0;
             before = twist;
         }
         drive.advance_hysteresis(x, before);
         settle();
-        if (settled < more) x.continuous.transmission_error = S(unbounded) * S(10.0);
+        if (converged < converged_rounds) x.continuous.transmission_error = S(unbounded) * S(10.0);
         return x;
     }
 
@@ -132,27 +133,27 @@ private:
     /// Newton's iteration, which for a linear winding ends at once. Where it finds none the motor stays as it was.
     constexpr void settle_motor(const S& gear_torque) {
         if constexpr (count > 0) {
-            constexpr int most = 30;
-            constexpr double rounding = sizeof(Real<S>) == sizeof(float) ? 1e-5 : 1e-13, least = 1e-3;  // least: A
+            constexpr int max_steps = 30;
+            constexpr double max_relative_step = sizeof(Real<S>) == sizeof(float) ? 1e-5 : 1e-13, min_current = 1e-3;  // A
             MotorNumbers start = flattened<S>(x.continuous.motor), relaxation = flattened<S>(drive.motor.relaxation_rate());
             if (known.knows(current)) {
                 start[0] = known[current];
                 relaxation[0] = S(0.0);
             }
             MotorNumbers at = start;
-            auto goes_on = S(0.0) == S(0.0), settled = !goes_on;
-            for (int i = 0; i < most && any(goes_on); ++i) {
+            auto goes_on = S(0.0) == S(0.0), converged = !goes_on;
+            for (int i = 0; i < max_steps && any(goes_on); ++i) {
                 const MotorNumbers step = newton_step(at, relaxation, gear_torque);
                 auto close = goes_on;
                 for (int k = 0; k < at.size(); ++k) {
                     at[k] = select(goes_on, at[k] + step[k], at[k]);
-                    close = close & (abs(step[k]) < S(rounding) * max(abs(at[k]), S(least)));
+                    close = close & (abs(step[k]) < S(max_relative_step) * max(abs(at[k]), S(min_current)));
                 }
                 const auto left = !close;
-                settled = !(left & !settled);
+                converged = !(left & !converged);
                 goes_on = goes_on & left;
             }
-            for (int k = 0; k < at.size(); ++k) at[k] = select(settled, at[k], start[k]);
+            for (int k = 0; k < at.size(); ++k) at[k] = select(converged, at[k], start[k]);
             refill(x.continuous.motor, at);
         }
     }

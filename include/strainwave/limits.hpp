@@ -21,13 +21,13 @@ struct Limits {
     /// it ended at once, the actuation would slide along the limit, to and fro at every step, and no step would be short enough for
     /// a tolerance.
     constexpr S integral_rate(const S& asked, const S& error) const {
-        const S faded = max(S(fading) * (high - low), S(smallest));
+        const S faded = max(S(integral_fading_range) * (high - low), S(smallest));
         const S above = min(max(asked - high, S(0.0)) / faded, S(1.0)), below = min(max(low - asked, S(0.0)) / faded, S(1.0));
         return select(error > S(0.0), error * (S(1.0) - above), error * (S(1.0) - below));  // no sum: at 0 it has one slope
     }
 
 private:
-    static constexpr double fading = 0.05;
+    static constexpr double integral_fading_range = 0.05;  ///< share of the range between the limits
 };
 
 }  // namespace strainwave

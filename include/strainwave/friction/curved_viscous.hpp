@@ -54,11 +54,12 @@ struct CurvedViscous {
     constexpr S hold(const Contact<S>& contact) const { return contact.dry * max(breakaway, coulomb); }
 
 private:
-    static constexpr double creep = 1e-6;  ///< of reference_speed: below, the viscous torque falls linearly, with a slope at rest
+    /// Share of reference_speed below which the viscous torque falls linearly, with a slope at rest.
+    static constexpr double linear_share = 1e-6;
 
     /// F_v (|v|/v_r)^p.
     constexpr S viscous(const S& speed) const {
-        const S slow = S(creep) * reference_speed, fast = max(abs(speed), slow);
+        const S slow = S(linear_share) * reference_speed, fast = max(abs(speed), slow);
         const S depth = exponent * (log(max(fast, S(smallest))) - log(reference_speed));
         return viscous_torque * exp(min(depth, S(beyond_digits))) * min(abs(speed) / max(slow, S(smallest)), S(1.0));
     }

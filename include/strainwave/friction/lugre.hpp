@@ -118,8 +118,8 @@ private:
         return max(torque / bristle_stiffness, least_reach(contact.speed));
     }
     static constexpr S least_reach(const S& speed) {
-        constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s; a power of two, for exact division
-        return clip(abs(speed) / S(fastest), S(smallest), S(1.0));
+        constexpr double max_rate = 1267650600228229401496703205376.0;  // 1/s; a power of two, for exact division
+        return clip(abs(speed) / S(max_rate), S(smallest), S(1.0));
     }
 
     /// The largest y^r (F_s / (F_c + D y) - 1) over y = exp(-(v/v_s)^2) in [0, 1], with D = F_s - F_c, r = (v_s/v_d)^2. It lies at

@@ -179,8 +179,8 @@ private:
 
     /// Rate at which a slipping element approaches its limit [1/s].
     constexpr S relaxation(const Contact<S>& contact) const {
-        constexpr double fastest = 1e30;  // 1/s: finite in every scalar, if there is no friction at all
-        return attraction / max(sliding_torque(contact.speed), max(attraction / S(fastest), S(smallest)));
+        constexpr double max_rate = 1e30;  // 1/s: finite in every scalar, if there is no friction at all
+        return attraction / max(sliding_torque(contact.speed), max(attraction / S(max_rate), S(smallest)));
     }
 
     static constexpr double about_to_slip = 0.5;

@@ -89,8 +89,8 @@ struct TorqueEfficiency {
 private:
     /// `presliding`, unless the engagement follows faster than numbers resolve.
     constexpr S angle(const Contact<S>& contact) const {
-        constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s: 2^100, finite in every scalar
-        return max(presliding, abs(contact.speed) / S(fastest));
+        constexpr double max_rate = 1267650600228229401496703205376.0;  // 1/s: 2^100, finite in every scalar
+        return max(presliding, abs(contact.speed) / S(max_rate));
     }
 };
 

@@ -100,9 +100,9 @@ struct BoucWenFlow {
 
 private:
     static constexpr double knee_depth = 1.0;
-    static constexpr double tiny = 1e-30;  ///< its powers vanish, its logarithm does not overflow
+    static constexpr double min_torque = 1e-30;  ///< its powers vanish, its logarithm does not overflow
     /// A Newton step whose square is below this leaves an error below rounding.
-    static constexpr double settled = sizeof(S) == sizeof(float) ? 1e-8 : 1e-17;
+    static constexpr double last_step_squared = sizeof(S) == sizeof(float) ? 1e-8 : 1e-17;
 
     template <int size>
     static constexpr S polynomial(const Array<S, size>& c, const S& x) {
@@ -134,7 +134,7 @@ private:
     }
 
     /// -n ln v where v > 0, cut where v^n vanishes.
-    constexpr S depth(const S& v) const { return min(n * -log(max(v, S(tiny))), S(beyond_digits)); }
+    constexpr S depth(const S& v) const { return min(n * -log(max(v, S(min_torque))), S(beyond_digits)); }
     constexpr S loss(const S& v) const { return select(v < S(0.0), -reversal, S(1.0)) * exp(-depth(abs(v))); }
     constexpr S path(const S& v) const { return v * polynomial(path_terms, loss(v)); }
     constexpr BoucWenFlow plain() const {
@@ -149,12 +149,12 @@ private:
         const S low = value_only(from), way = value_only(p);
         if (!any(wanted)) return low;
         const BoucWenFlow flow = plain();
-        const S high = flow.knee(), gone = flow.loss(low), bend = flow.n * gone / along(low, max(abs(low), S(tiny)));
+        const S high = flow.knee(), gone = flow.loss(low), bend = flow.n * gone / along(low, max(abs(low), S(min_torque)));
         S v = clip(low + way * (S(1.0) - gone) * (S(1.0) - S(0.5) * way * bend), low, high);
         for (int i = 0; (i < 16) && any(wanted); ++i) {
             const S step = flow.newton(v, value_only(target));
             v = select(wanted, clip(v + step, low, high), v);
-            wanted = wanted & (flow.n * step * step > S(settled));
+            wanted = wanted & (flow.n * step * step > S(last_step_squared));
         }
         if constexpr (differentiates<S>) v = v + slope_of(newton(v, target));
         return v;
@@ -171,7 +171,7 @@ private:
         for (int i = 0; (i < 8) && any(wanted); ++i) {
             const S step = log_step(plain_terms, y, origin, goal);
             y = select(wanted, y + step, y);
-            wanted = wanted & (step * step > S(settled));
+            wanted = wanted & (step * step > S(last_step_squared));
         }
         if constexpr (differentiates<S>) y = y + slope_of(log_step(terms, y, start, fall));
         return from * exp(start * (S(1.0) - exp(y)) / n);
@@ -265,9 +265,9 @@ struct BoucWen {
     constexpr S stored(const State& x) const { return x.held * x.held / (S(2.0) * stiffness); }
 
 private:
-    static constexpr double endless = 100.0;  ///< A path that saturates from any torque, to the last digit
+    static constexpr double saturated_path = 100.0;  ///< A path that saturates from any torque, to the last digit
     constexpr BoucWenFlow<S> flow() const { return BoucWenFlow<S>::of(sharpness, S(2.0) * shape - S(1.0)); }
-    constexpr S path(const S& increment) const { return min(stiffness * abs(increment) / saturation, S(endless)); }
+    constexpr S path(const S& increment) const { return min(stiffness * abs(increment) / saturation, S(saturated_path)); }
     /// No motion leads beyond the saturation.
     constexpr S confined(const State& x) const { return clip(x.held, -saturation, saturation); }
 };

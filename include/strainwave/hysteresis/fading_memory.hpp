@@ -33,13 +33,13 @@ struct Decayed {
     S twice;
 
     static constexpr Decayed along_path(const S& rate, const S& path) {
-        constexpr double handover = 0.5;
-        const S x = rate * path, small = min(x, S(handover));
+        constexpr double series_below = 0.5;
+        const S x = rate * path, small = min(x, S(series_below));
         S series{0.0};
         for (int k = 12; k >= 0; --k) series = series * small + S(detail::decay_series<Real<S>>[k]);
-        const S settled = (S(1.0) - exp(-min(x, S(beyond_digits)))) / rate;
-        return {select(x < S(handover), path * (S(1.0) - small * series), settled),
-                select(x < S(handover), path * path * series, (path - settled) / rate)};
+        const S exact = (S(1.0) - exp(-min(x, S(beyond_digits)))) / rate;
+        return {select(x < S(series_below), path * (S(1.0) - small * series), exact),
+                select(x < S(series_below), path * path * series, (path - exact) / rate)};
     }
 };
 

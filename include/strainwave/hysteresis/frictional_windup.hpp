@@ -162,7 +162,7 @@ private:
             const S moved = select(trusted, abs(next - gone), S(unbounded));
             mismatch = abs(off);
             gone = select(searching, next, gone);
-            searching = searching & (moved > S(close) * scale(both, flexspline));
+            searching = searching & (moved > S(last_step) * scale(both, flexspline));
         }
         return held + gone;
     }
@@ -172,7 +172,7 @@ private:
         return min(max(flexed, abs(flexspline)), S(1.0) / max(both.wave_generator.hardening, S(1e-30)));
     }
     static constexpr int max_steps = 64;
-    static constexpr double close = 1e-4;  // what a step e leaves is e^2 at least, and e^4 after Newton's
+    static constexpr double last_step = 1e-4;  // relative; the error after a step e is e^2 at least, and e^4 after Newton's
 };
 
 }  // namespace strainwave::hysteresis

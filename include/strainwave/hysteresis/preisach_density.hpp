@@ -183,12 +183,12 @@ struct GridDensity {
     }
 
 private:
-    static constexpr int most = 10;
-    using Rows = Array<S, most>;
+    static constexpr int max_rows = 10;
+    using Rows = Array<S, max_rows>;
 
     constexpr int rows() const {
         int n = 0;
-        while (n < most && n * (n + 1) / 2 < weight.count) ++n;
+        while (n < max_rows && n * (n + 1) / 2 < weight.count) ++n;
         return n;
     }
     constexpr S width() const { return S(2.0) * limit / S(rows()); }

@@ -70,7 +70,7 @@ public:
             if (gave_up()) return from;
             if (stop.event) tried.end = apply_event(tried.end);
             if (!within(done, tried.to, tried.end, [&](const S& at) { return along(from, tried, u, dt, at); })) return from;
-            events = chatters() ? max_events - 1 : taken > S(brief) ? stop.event : events + stop.event;
+            events = chatters() ? max_events - 1 : taken > S(brief_step) ? stop.event : events + stop.event;
             if (failed_shortest == 0) note(tried.end);
             from = tried.end;
             done = tried.to;
@@ -79,13 +79,13 @@ public:
     }
 
 private:
-    static constexpr double shortest = 1e-9;  ///< s
+    static constexpr double shortest_step = 1e-9;  ///< s
     static constexpr int max_failed_shortest = 100;
     int failed_shortest = 0;  ///< consecutive steps of the shortest length that missed the tolerance
     /// s. Where a jump of the forces makes a step this short, its error no longer falls faster than its length.
-    static constexpr double brief = 1e-6;
+    static constexpr double brief_step = 1e-6;
     /// s. A system forgets an error within about this time, so that errors of steps may add up to the tolerance over it.
-    static constexpr double forgetting = 0.1;
+    static constexpr double forgetting_time = 0.1;
     int events = 0;  ///< each within a brief time of the other
 
     /// True if events follow so fast that the next step is one of Moreau and Jean's.
@@ -97,8 +97,8 @@ private:
         const S max_growth(4.0);
         // The error of not-a-number is larger than any; the length of a step must not become zero.
         const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), max_growth) : S(0.2);
-        const bool kept = error <= S(1.0), last = next <= S(shortest);
-        if (!kept || !(cut || max_growth * length < next)) next = max(length * factor, S(shortest));
+        const bool kept = error <= S(1.0), last = next <= S(shortest_step);
+        if (!kept || !(cut || max_growth * length < next)) next = max(length * factor, S(shortest_step));
         ++(kept || last ? accepted : rejected);
         if (kept || last) failed_shortest = kept ? 0 : failed_shortest + 1;
         return kept || last;
@@ -136,7 +136,7 @@ private:
     constexpr Stop stop(const Evaluation& from, const Trial& tried, const Inputs& u, const S& dt) const {
         if (const Look look = closest(from, tried.half, u, dt, tried.begin, tried.middle); look.left < S(0.0)) {
             // An event within the shortest time of a step is one at once.
-            const S soon = min(tried.begin + S(shortest) / dt, look.at);
+            const S soon = min(tried.begin + S(shortest_step) / dt, look.at);
             if (event_function(stretch(from, u, dt, tried.begin, soon)) < S(0.0)) return {tried.begin, true, soon};
             const S met = moment(from, look, u, dt, tried.begin);
             return {met, true, met};
@@ -160,7 +160,7 @@ private:
             const auto reach = [&](const S& fraction) { return stretch(start, u, dt, from, from + fraction * (to - from)); };
             const auto beyond = [&](const S& fraction) { return sign(before) * system::watched<S>(system, reach(fraction)); };
             const S empty = crossing(beyond, S(0.0), abs(before), -abs(after));
-            const S soon = min(empty + S(shortest) / ((to - from) * dt), S(1.0));  // a moment that a step can resolve
+            const S soon = min(empty + S(shortest_step) / ((to - from) * dt), S(1.0));  // a moment that a step can resolve
             if (const S left = event_function(reach(soon)); left < S(0.0)) return {from + soon * (to - from), left};
         }
         return {to, event_function(end)};
@@ -182,7 +182,7 @@ private:
         const Measured a = measured(system::aligned(system, tried.whole.state, tried.end.state), tried.whole);
         const Measured b = measured(tried.end.state, tried.end);
         const auto against = contradiction(from, tried, length);
-        const S share = S(forgetting / (chatters() ? 3.0 : 15.0)) / (length + S(brief));
+        const S share = S(forgetting_time / (chatters() ? 3.0 : 15.0)) / (length + S(brief_step));
         S worst{0.0};
         const auto note = [&](const S& off) {
             if (!(off <= worst) && worst == worst) worst = off;  // what is not a number stays

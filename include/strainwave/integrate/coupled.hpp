@@ -156,11 +156,11 @@ public:
     }
 
 private:
-    static constexpr double rounding = 1e-8;  // relative
+    static constexpr double same_length = 1e-8;  // relative
     /// Fraction of a step, larger than the error of the moment of a jump.
-    static constexpr double brief = 1e-3;
+    static constexpr double jump_margin = 1e-3;
 
-    static constexpr auto close(const S& dt, const S& to) { return abs(dt - to) < S(rounding) * to; }
+    static constexpr auto close(const S& dt, const S& to) { return abs(dt - to) < S(same_length) * to; }
     constexpr void prepare(const System& system, const State& x, const S& dt) {
         const Mode asked = system.coupled_mode(x);
         const S taken = select(close(dt, undivided), undivided + (dt - value_only(dt)), dt);
@@ -176,8 +176,8 @@ private:
     }
     /// A step in three parts: to shortly before a moment, past it, and on to the end.
     constexpr State in_parts(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt, const S& moment) {
-        const S middle = clip(moment, S(2.0 * brief), S(1.0 - 2.0 * brief));
-        const S ends[] = {middle - S(brief), middle + S(brief), S(1.0)};
+        const S middle = clip(moment, S(2.0 * jump_margin), S(1.0 - 2.0 * jump_margin));
+        const S ends[] = {middle - S(jump_margin), middle + S(jump_margin), S(1.0)};
         Evaluation at = from;
         S begin{0.0};
         for (int i = 0;; ++i) {

@@ -26,10 +26,10 @@ constexpr void multiply(const Square<S, n>& a, const Square<S, n>& b, Square<S, 
 /// returned (Osborne 1960). Sums below 1 are left alone: they are of no account for exp Z.
 template <class S, int n>
 constexpr Array<S, n> balance(Square<S, n>& z) {
-    constexpr int sweeps = 4;
+    constexpr int balancing_sweeps = 4;
     Array<S, n> scale;
     for (int i = 0; i < n; ++i) scale[i] = S(1.0);
-    for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (int sweep = 0; sweep < balancing_sweeps; ++sweep)
         for (int i = 0; i < n; ++i) {
             S of_column{1.0}, of_row{1.0};
             for (int j = 0; j < n; ++j) {
@@ -69,12 +69,12 @@ struct PhiFunctions {
     /// The functions of `z`: by their series if Z is small, and by doubling from there (Skaflestad and Wright 2009). The count of
     /// doublings follows for each lane by itself, so that each has the bits that it has alone. What `z` and `room` hold is lost.
     constexpr void set(Square<S, n>& z, Square<S, n>& room) {
-        constexpr double small = 0.5;
-        constexpr int most = 64;
+        constexpr double max_series_norm = 0.5;
+        constexpr int max_doublings = 64;
         const Array<S, n> scale = balance(z);
         S norm = value_only(largest_column(z)), part{1.0}, doublings{0.0};
-        for (int i = 0; i < most; ++i) {
-            const auto large = norm > S(small);
+        for (int i = 0; i < max_doublings; ++i) {
+            const auto large = norm > S(max_series_norm);
             if (!any(large)) break;
             norm = select(large, S(0.5) * norm, norm);
             part = select(large, S(0.5) * part, part);

@@ -28,12 +28,12 @@ constexpr typename System::State moreau_jean_part(const System& system, const ty
 template <class S, class System>
 constexpr typename System::State moreau_jean_parts(const System& system, const typename System::Evaluation& from,
                                                    const Interval<typename System::Input>& u, const S& dt) {
-    constexpr double most = 1e4;
+    constexpr double max_parts = 1e4;
     auto block = coupled_matrix<S>(system, system.coupled_mode(from.state));
     for (auto& column : block.item)
         for (S& x : column.item) x = dt * x;
     balance(block);
-    const S parts = clip(rint(S(2.0) * value_only(largest_column(block)) + S(0.5)), S(1.0), S(most)), share = S(1.0) / parts;
+    const S parts = clip(rint(S(2.0) * value_only(largest_column(block)) + S(0.5)), S(1.0), S(max_parts)), share = S(1.0) / parts;
     auto at = from;
     auto end = from.state;
     for (S done{0.0};;) {

@@ -19,9 +19,9 @@ constexpr S steepest(const Law& law) {
     } else {
         constexpr int parts = 4096;
         const auto ready = compiled(law);
-        S most(0.0);
-        for (int i = 0; i < parts; ++i) most = max(most, S(abs(ready.at({S((2.0 * i / parts - 1.0) * pi), S(i)}).slope)));
-        return most;
+        S largest(0.0);
+        for (int i = 0; i < parts; ++i) largest = max(largest, S(abs(ready.at({S((2.0 * i / parts - 1.0) * pi), S(i)}).slope)));
+        return largest;
     }
 }
 

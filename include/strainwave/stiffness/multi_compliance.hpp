@@ -176,13 +176,13 @@ private:
             const S next = select((bent >= low) & (high >= bent), bent, sqrt(low * high));
             const S moved = abs(min(next, top) - min(level, top));
             level = select(searching, next, level);
-            searching = searching & (moved > S(close) * min(level, scale));
+            searching = searching & (moved > S(last_step) * min(level, scale));
             if (!any(searching)) break;
         }
         return min(level, top);
     }
     static constexpr int max_steps = 64;
-    static constexpr double close = 2e-3;  // what a step e leaves is e^3, and e^6 after Newton's
+    static constexpr double last_step = 2e-3;  // relative; the error after a step e is e^3, and e^6 after Newton's
 };
 
 }  // namespace detail
