@@ -27,13 +27,13 @@ struct AdaptiveFourier {
                   \dot a_n = \gamma\, (r - \theta_{out}) \sin(n\theta - \varphi_n), \quad
                   \dot b_n = \gamma\, (r - \theta_{out}) \cos(n\theta - \varphi_n), \qquad \varphi_n = n\, \omega\, t_{lag}
 
-        with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag of
-        the position loop. The input leads by i e^. Let P(j n omega) be the response of the output to the lead. The amplitude of
-        a constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
-        It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega| is
-        below ``min_speed``. No sine and no cosine exceeds ``limit``. Keep |i| n times the largest
-        amplitude below 1: beyond that the input has several angles for one command. An error of the output encoder itself is learnt as well.
-        An order of 0 learns a constant: with min_speed = 0 it is a slow integral of the error of the output.
+        with theta the input angle, r the commanded and theta_out the measured output angle, gamma = gain, t_lag = lag of the
+        position loop. The input leads by i e^. Let P(j n omega) be the response of the output to the lead. The amplitude of a
+        constant error of order n decays as exp(-gamma/2 |P| cos(Delta) t), with Delta the angle between P and exp(-j phi_n).
+        It grows if Delta exceeds 90 degrees. Therefore learning stops if n |omega| exceeds ``max_frequency``, and if |omega|
+        is below ``min_speed``. No sine and no cosine exceeds ``limit``. Keep |i| n times the largest amplitude below 1: beyond
+        that the input has several angles for one command. An error of the output encoder itself is learnt as well. An order of
+        0 learns a constant: with min_speed = 0 it is a slow integral of the error of the output.
 
         >>> from strainwave.compensation import AdaptiveFourier
         >>> AdaptiveFourier(order=[1, 2]).gain

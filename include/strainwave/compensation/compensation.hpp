@@ -43,8 +43,8 @@ struct Compensation {
         tau_o the torques of feed-forward, dither, learner and observer; p = actuation_per_torque, q = actuation_per_speed. The
         controller follows theta_r with the input and r with the output. It adds u_f to its actuation before any limit.
 
-        p is 1 if the motor takes a torque, and 1 over the torque constant if it takes a current, and for a Cascade. For a motor that
-        takes a voltage p is resistance over torque constant, and q the back-EMF constant.
+        p is 1 if the motor takes a torque, and 1 over the torque constant if it takes a current, and for a Cascade. For a
+        motor that takes a voltage p is resistance over torque constant, and q the back-EMF constant.
 
         >>> import strainwave as sw
         >>> part = sw.Compensation(observer=sw.compensation.DisturbanceObserver(inertia=2e-4, limit=0.3))

@@ -18,16 +18,17 @@ struct DisturbanceObserver {
         .. math:: \hat d = \frac{g}{s + g}\,\big(\tau - \tau_f - J s\,(\omega - \omega_r)\big), \qquad
                   \tau \leftarrow \tau + \operatorname{clip}(\hat d, \pm d_{max})
 
-        with tau the torque of the motor, tau_f the feed-forward, omega the input speed, omega_r its command, J = inertia at the input,
-        g = bandwidth, d_max = limit. Without a model the observer supplies friction, load and inertial torque. With a model it
-        supplies the difference. The filter is exact for a torque that is constant over a period.
+        with tau the torque of the motor, tau_f the feed-forward, omega the input speed, omega_r its command, J = inertia at
+        the input, g = bandwidth, d_max = limit. Without a model the observer supplies friction, load and inertial torque. With
+        a model it supplies the difference. The filter is exact for a torque that is constant over a period.
 
-        tau is the actuation of the motor over actuation_per_torque. With a torque_constant it is that times the measured current,
-        as a Cascade needs, whose actuation is a voltage. tau_f does not contain the torque that the law of control computes from
-        its command or model. The observer would supply that torque twice. Set viscous_feedforward and coulomb_feedforward of the
-        law to 0, and compensate friction by the model. Do not use the observer with FeedbackLinearisation or
-        KinematicErrorTracking. The observer alone is stable if g T J / J_r < 2, with T the period and J_r the true inertia. Above the
-        vibration of the load, J_r is the inertia of the input. A bandwidth near that vibration excites it.
+        tau is the actuation of the motor over actuation_per_torque. With a torque_constant it is that times the measured
+        current, as a Cascade needs, whose actuation is a voltage. tau_f does not contain the torque that the law of control
+        computes from its command or model. The observer would supply that torque twice. Set viscous_feedforward and
+        coulomb_feedforward of the law to 0, and compensate friction by the model. Do not use the observer with
+        FeedbackLinearisation or KinematicErrorTracking. The observer alone is stable if g T J / J_r < 2, with T the period and
+        J_r the true inertia. Above the vibration of the load, J_r is the inertia of the input. A bandwidth near that vibration
+        excites it.
 
         >>> from strainwave.compensation import DisturbanceObserver
         >>> DisturbanceObserver(inertia=2e-4, bandwidth=150.0, limit=0.3).bandwidth

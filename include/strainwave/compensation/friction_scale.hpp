@@ -20,10 +20,10 @@ struct FrictionScale {
                   \;\text{ where } |\omega_r| \ge \omega_{min}, \qquad \hat s \in [s_{min}, s_{max}], \qquad
                   \sigma = \omega_r - \omega + \lambda\, (\theta_r - \theta)
 
-        with F the friction of the feed-forward, theta_r, omega_r and theta, omega the input angle and speed commanded
-        and measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = min_speed,
-        s_min, s_max = min_scale, max_scale. If the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function
-        J (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop
+        with F the friction of the feed-forward, theta_r, omega_r and theta, omega the input angle and speed commanded and
+        measured, gamma = gain, lambda = position_gain, that of the position loop, omega_min = min_speed, s_min, s_max =
+        min_scale, max_scale. If the loop gives k sigma, and the inertia J at the input is at most k / lambda, the function J
+        (sigma^2 + lambda^2 (theta_r - theta)^2) + (s - s^)^2 / gamma never grows, whatever the gain; with a delay in the loop
         gamma must be small. With lambda = 0, a motion of one sense under a position loop does not determine s. The scale is
         constant below omega_min, because rest and presliding do not determine s.
 

@@ -23,7 +23,7 @@ struct IterativeLearning {
         "BristowTharayilAlleyne2006, iterative learning control with a filter Q, over the output angle in place of time and for "
         "each sense of motion; between the two senses: Dahl1968";
     static constexpr auto doc = R"(
-        Learning of errors that repeat over the output angle, for each sense of motion: lost motion and kinematic error, without a model.
+        Learning of errors that repeat over the output angle, such as lost motion, for each sense of motion.
 
         .. math:: \hat e = \sum_j w_j(r)\,\Big(\tfrac{1 + s}{2} f_j + \tfrac{1 - s}{2} b_j\Big), \qquad
                   ds = (\operatorname{sgn}(dr) - s)\, \frac{|dr|}{r_0}
@@ -31,19 +31,19 @@ struct IterativeLearning {
         .. math:: \dot f_j = \tfrac{1 + s}{2} \Big(\gamma\, w_j(r - \dot r\, t_{lag})\,(r - \theta_{out})
                   - \sigma\, w_j(r)\,\big(f_j - \tfrac{1}{2}(f_{j-1} + f_{j+1})\big)\Big)
 
-        with r the commanded and theta_out the measured output angle, w_j the hat functions of 32 angles from ``low`` to ``high``, f_j and
-        b_j the tables of forward and backward motion, gamma = gain, sigma = smoothing, t_lag = lag of the position loop, s the
-        sense of motion, r_0 = reach; b_j follows likewise with 1 - s. The input leads by i e^. Beyond the ends the lead is constant.
-        Learning needs an angle within ``low`` and ``high`` and an input speed between ``min_speed`` and ``max_speed``. No value
-        exceeds ``limit``. Keep reach above the way of the command in a period: after a reversal the lead changes at
-        2 |dr/dt| / reach times half of f - b.
+        with r the commanded and theta_out the measured output angle, w_j the hat functions of 32 angles from ``low`` to
+        ``high``, f_j and b_j the tables of forward and backward motion, gamma = gain, sigma = smoothing, t_lag = lag of the
+        position loop, s the sense of motion, r_0 = reach; b_j follows likewise with 1 - s. The input leads by i e^. Beyond the
+        ends the lead is constant. Learning needs an angle within ``low`` and ``high`` and an input speed between ``min_speed``
+        and ``max_speed``. No value exceeds ``limit``. Keep reach above the way of the command in a period: after a reversal
+        the lead changes at 2 |dr/dt| / reach times half of f - b.
 
-        A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at the
-        ends half as much is learnt. gamma is at most v / h and at most one per period, whatever ``gain``: no pass learns more than the whole error. The cells
-        within v t_lag of the end of a pass are not learnt. A wave of
-        the error is learnt if the position loop lags by less than 90 degrees beyond ``lag``, as it must up to ``max_speed``.
-        The output encoder is needed. Errors that change within two cells are not learnt: Repetitive and AdaptiveFourier learn
-        errors that repeat with the input.
+        A pass at output speed v over cells of width h leaves 1 - gamma h / v of an error that does not vary over the angle; at
+        the ends half as much is learnt. gamma is at most v / h and at most one per period, whatever ``gain``: no pass learns
+        more than the whole error. The cells within v t_lag of the end of a pass are not learnt. A wave of the error is learnt
+        if the position loop lags by less than 90 degrees beyond ``lag``, as it must up to ``max_speed``. The output encoder is
+        needed. Errors that change within two cells are not learnt: Repetitive and AdaptiveFourier learn errors that repeat
+        with the input.
 
         >>> from strainwave.compensation import IterativeLearning
         >>> IterativeLearning(low=-0.5, high=0.5).limit

@@ -20,9 +20,10 @@ struct LostMotionMap {
         .. math:: \theta = i\,\Big(r + \tfrac{1 + s}{2} f(r) + \tfrac{1 - s}{2} b(r)\Big), \qquad
                   ds = (\operatorname{sgn}(dr) - s)\, \frac{|dr|}{r_0}
 
-        with r the commanded output angle, f and b the lines through forward and backward over angle. angle increases; beyond its ends
-        f and b are constant. s is the sense of motion: at an angle r_0 = reach after a reversal 1/e of the lost motion is left.
-        Before the first motion s = 0, the middle of both. The map needs no model. It does not depend on load and speed.
+        with r the commanded output angle, f and b the lines through forward and backward over angle. angle increases; beyond
+        its ends f and b are constant. s is the sense of motion: at an angle r_0 = reach after a reversal 1/e of the lost
+        motion is left. Before the first motion s = 0, the middle of both. The map needs no model. It does not depend on load
+        and speed.
 
         >>> from strainwave.compensation import LostMotionMap
         >>> LostMotionMap(angle=[0.0], forward=[2e-4], backward=[-2e-4]).reach

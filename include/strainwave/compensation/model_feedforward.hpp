@@ -48,10 +48,10 @@ struct ModelFeedforward {
 
         .. math:: \tau = J_{in} \ddot\theta + (T + F_{mesh})\,(1/i - e'(\theta)) + F_{in}
 
-        with r the commanded output angle, i the signed ratio, T the torque that the gear transmits, delta its twist, e its kinematic
-        error, theta the input angle, J_in = motor_inertia + gear.input_inertia. The request is the lead theta - i r of the
-        input, and the torque tau. ``gear`` and ``load`` are the model. An effect that the model lacks is not compensated.
-        The ratio of ``gear`` must be that of the drive.
+        with r the commanded output angle, i the signed ratio, T the torque that the gear transmits, delta its twist, e its
+        kinematic error, theta the input angle, J_in = motor_inertia + gear.input_inertia. The request is the lead theta - i r
+        of the input, and the torque tau. ``gear`` and ``load`` are the model. An effect that the model lacks is not
+        compensated. The ratio of ``gear`` must be that of the drive.
 
         The fixed point theta <- i (r + e(theta) + delta) is repeated ``rounds`` times. It converges if q = |i| max|e'| < 1: each
         round reduces the error to at most the share q. delta lies on the branch of the hysteresis that the command follows.

@@ -70,12 +70,13 @@ struct TwistIdentification {
         kinematic error that the model lacks, P their covariance, P_0 that of the priors, sigma = noise, t_n = noise_time, t_s the
         period, t_m = memory. The input leads by i (c delta + a_n sin n theta + b_n cos n theta); the offset is estimated only.
 
-        A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least ``min_excitation``.
-        The inverse of the excitation is the time in which the motion determines the number as well as its prior does. Otherwise
-        the number and its standard deviation are kept, and the gain of the others accounts for its uncertainty. A constant torque does
-        not determine the compliance. At an input speed below ``min_speed`` nothing changes. No number exceeds ``limit`` standard
-        deviations of its prior. Keep |i| n times the largest amplitude below 1: beyond that the input has several angles for one
-        command. Its own lead changes theta and i theta_out alike, so it does not change z.
+        A number is adapted while its excitation, var(phi_j) P_0jj / (sigma^2 t_n) over ``window``, is at least
+        ``min_excitation``. The inverse of the excitation is the time in which the motion determines the number as well as its
+        prior does. Otherwise the number and its standard deviation are kept, and the gain of the others accounts for its
+        uncertainty. A constant torque does not determine the compliance. At an input speed below ``min_speed`` nothing
+        changes. No number exceeds ``limit`` standard deviations of its prior. Keep |i| n times the largest amplitude below 1:
+        beyond that the input has several angles for one command. Its own lead changes theta and i theta_out alike, so it does
+        not change z.
 
         The state contains estimates (``value``), standard deviations (``deviation``), excitations, and ``residual``, the root
         mean square of the residual. The deviations are right while the model errs by ``noise``, for no longer than

@@ -23,7 +23,7 @@ struct FeedbackLinearisation {
     static constexpr auto source =
         "Spong1987, section 3, with the kinematic error and its reaction; document P, which asks for feedback linearisation";
     static constexpr auto doc = R"(
-        Position controller of a flexible joint that makes the output obey a linear equation of fourth order, however large its motion.
+        Position controller of a flexible joint: the output obeys a linear equation of fourth order.
 
         .. math:: \delta = \theta/i - q - e(\theta), \qquad J \ddot q = T(\delta) - T_{load}(q, \dot q), \qquad
                   \dot\delta = g\,\omega - \dot q, \qquad g = 1/i - e'(\theta)
@@ -34,15 +34,15 @@ struct FeedbackLinearisation {
                   \tau = J_{in}\, \frac{\ddot\delta + e''\omega^2 + \ddot q}{g} + g\, T(\delta), \qquad
                   u = \operatorname{clip}(p\,\tau + b\,\omega + u_f, \pm u_{max})
 
-        with r the commanded output angle, theta, omega the measured input angle and speed, q the measured output angle, i the signed
-        ratio, e the kinematic error, T the stiffness of ``gear``, J the inertia of ``load``, J_in = motor_inertia + gear.input_inertia,
-        w = bandwidth, p = actuation_per_torque, b = actuation_per_speed (see ``Compensation``), u_f the feed-forward of a compensation,
-        u_max = limit. If the model is exact and the limit is not reached, the output has four poles at -w. Its error obeys
-        (d/dt + w)^4 (r - q) = r^(4) plus the error of the derivatives of r by the lags.
+        with r the commanded output angle, theta, omega the measured input angle and speed, q the measured output angle, i the
+        signed ratio, e the kinematic error, T the stiffness of ``gear``, J the inertia of ``load``, J_in = motor_inertia +
+        gear.input_inertia, w = bandwidth, p = actuation_per_torque, b = actuation_per_speed (see ``Compensation``), u_f the
+        feed-forward of a compensation, u_max = limit. If the model is exact and the limit is not reached, the output has four
+        poles at -w. Its error obeys (d/dt + w)^4 (r - q) = r^(4) plus the error of the derivatives of r by the lags.
 
-        It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come from two
-        lags of the time reference_time, which must be at least the period of a sampled controller. Derivatives of load and stiffness over
-        the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
+        It needs both encoders. The second and third derivative of the output follow from the twist. Those of the command come
+        from two lags of the time reference_time, which must be at least the period of a sampled controller. Derivatives of
+        load and stiffness over the motion are central differences over 0.01 / w, and e'' is one over 1 mrad of the input.
 
         A stiffness of the model of k times the real one moves the poles to those of
 
@@ -52,12 +52,12 @@ struct FeedbackLinearisation {
         Omega is the vibration of the joint with both ends free. With k above 1 the joint is stable only if w^2 exceeds
         (k - 1) Omega^2 / (5 - 1/k). If the stiffness is uncertain, use a smaller one.
 
-        The law leaves out friction, damping and hysteresis of the gear, the relief of its kinematic error by load, and a brake of the
-        load. Compensate the friction by a compensation. The law has no integral. A load torque d that the model lacks leaves the
-        error (6/w^2 - T'/(J w^4)) d/J: its twist counts as acceleration. The law ignores the input leads of a compensation, because
-        it contains gear and load. A ModelFeedforward for it must have the friction alone. If actuation_per_speed of the
-        ``Compensation`` is not 0, set that of the law to 0: both add the back-EMF. The stiffness must be nowhere zero. Sensors and
-        period must be fast against w. A large w amplifies noise by w^4.
+        The law leaves out friction, damping and hysteresis of the gear, the relief of its kinematic error by load, and a brake
+        of the load. Compensate the friction by a compensation. The law has no integral. A load torque d that the model lacks
+        leaves the error (6/w^2 - T'/(J w^4)) d/J: its twist counts as acceleration. The law ignores the input leads of a
+        compensation, because it contains gear and load. A ModelFeedforward for it must have the friction alone. If
+        actuation_per_speed of the ``Compensation`` is not 0, set that of the law to 0: both add the back-EMF. The stiffness
+        must be nowhere zero. Sensors and period must be fast against w. A large w amplifies noise by w^4.
 
         >>> import strainwave as sw
         >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9))

@@ -25,7 +25,7 @@ struct KinematicErrorTracking {
     static constexpr auto source =
         "GandhiGhorbel2002, in the form of SlotineLi1991, section 9.1, with the load and the sign convention of this package";
     static constexpr auto doc = R"(
-        Position controller of a stiff gear with kinematic error, whose output converges although the ratio varies as the input turns.
+        Position controller of a stiff gear that compensates its kinematic error.
 
         .. math:: q = \theta/i - e(\theta), \qquad g = 1/i - e'(\theta), \qquad M = J_{in} + J g^2, \qquad
                   M \dot\omega + \tfrac{1}{2} M' \omega^2 = \tau - g\, T_{load}
@@ -33,19 +33,20 @@ struct KinematicErrorTracking {
         .. math:: \omega_r = \frac{\dot r + \lambda (r - q)}{g}, \qquad s = \omega - \omega_r, \qquad
                   \tau = M \dot\omega_r + \tfrac{1}{2} M' \omega\, \omega_r + g\, T_{load} - K s
 
-        with r the commanded output angle, theta, omega the measured input angle and speed, i the signed ratio, e the kinematic error of
-        ``gear``, J and T_load inertia and torque of ``load``, J_in = motor_inertia + gear.input_inertia, lambda = bandwidth,
-        K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
+        with r the commanded output angle, theta, omega the measured input angle and speed, i the signed ratio, e the kinematic
+        error of ``gear``, J and T_load inertia and torque of ``load``, J_in = motor_inertia + gear.input_inertia, lambda =
+        bandwidth, K = speed_gain. q is the measured output angle, or that of the equation where ``feedback`` names the input.
         The actuation is clip(p tau + b omega + u_f, limit) as that of FeedbackLinearisation.
 
-        M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and the model
-        exact. Then s falls at the rate K / M, and the error r - q at lambda. A torque d that the model lacks leaves |s| up to |d| / K, and
-        an error up to g |d| / (K lambda). A slope e' that is wrong by D leaves an error up to D omega / lambda. The acceleration of
-        the command comes from a lag of the time reference_time, which must be at least the period of a sampled controller.
+        M' comes from e'', a difference over 1 mrad of the input. V = M s^2 / 2 obeys dV/dt = -K s^2 if the gear is rigid and
+        the model exact. Then s falls at the rate K / M, and the error r - q at lambda. A torque d that the model lacks leaves
+        |s| up to |d| / K, and an error up to g |d| / (K lambda). A slope e' that is wrong by D leaves an error up to D omega /
+        lambda. The acceleration of the command comes from a lag of the time reference_time, which must be at least the period
+        of a sampled controller.
 
-        The law leaves out torsion: K / M must be well below the vibration of load and gear. It leaves out friction: compensate it by a
-        compensation, whose input leads the law ignores. It has no integral. If actuation_per_speed of the ``Compensation`` is not 0,
-        set that of the law to 0: both add the back-EMF.
+        The law leaves out torsion: K / M must be well below the vibration of load and gear. It leaves out friction: compensate
+        it by a compensation, whose input leads the law ignores. It has no integral. If actuation_per_speed of the
+        ``Compensation`` is not 0, set that of the law to 0: both add the back-EMF.
 
         >>> import strainwave as sw
         >>> error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[3e-4], phase=[0.0])

@@ -16,7 +16,8 @@ struct OpenLoop {
         .. math:: u = g r
 
         with r the command, u the voltage [V] of a DC, a BrushlessDC or a PMSM, the current [A] of a CurrentSource, the torque
-        [N.m] of a TorqueSource or the acceleration [rad/s2] of an AccelerationSource, g = gain (an amplifier's). The command has the unit of u.
+        [N.m] of a TorqueSource or the acceleration [rad/s2] of an AccelerationSource, g = gain (an amplifier's). The command
+        has the unit of u.
 
         >>> from strainwave.control import OpenLoop
         >>> OpenLoop().gain

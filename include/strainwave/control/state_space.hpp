@@ -34,11 +34,12 @@ struct StateSpace {
         by row, one row for each state. The states begin at 0. An angle error counts from the input lead of the compensation,
         as in StateFeedback.
 
-        In ``control.Sampled`` the states go forward by Euler, x + T (A x + B y). A controller of discrete time, x + = A_d x + B_d y, has
-        A = (A_d - 1)/T and B = B_d/T, and the same C and D. It is then exact.
+        In ``control.Sampled`` the states go forward by Euler, x + T (A x + B y). A controller of discrete time, x + = A_d x +
+        B_d y, has A = (A_d - 1)/T and B = B_d/T, and the same C and D. It is then exact.
 
-        Where the output is limited, ``tracking`` leads the states. An observer that contains C takes the actuation limited with l =
-        the input matrix of its model. A PI controller takes l = 1/(C t), with t its tracking time. Without tracking an integral winds up.
+        Where the output is limited, ``tracking`` leads the states. An observer that contains C takes the actuation limited
+        with l = the input matrix of its model. A PI controller takes l = 1/(C t), with t its tracking time. Without tracking
+        an integral winds up.
 
         The units below are those of a motor that takes a voltage u. For a motor that takes a current or a torque read A or N.m
         in place of V.

@@ -16,7 +16,8 @@ struct MagnetLoss {
     static constexpr auto doc = R"(
         Loss of flux, the same share of each magnet.
 
-        .. math:: K_m \leftarrow (1 - s\, l)\, K_m, \qquad K_b \leftarrow (1 - s\, l)\, K_b, \qquad \psi \leftarrow (1 - s\, l)\, \psi
+        .. math:: K_m \leftarrow (1 - s\, l)\, K_m, \qquad K_b \leftarrow (1 - s\, l)\, K_b, \qquad
+                  \psi \leftarrow (1 - s\, l)\, \psi
 
         with s = severity, l = loss, K_m = torque_constant, K_b = back_emf, psi = flux_linkage of the motor, as far as it has
         them. The gains of its controller stay. Leaves out that one magnet may lose more than another.
