@@ -17,12 +17,12 @@ struct SensorStates {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, input_angle, "State of that sensor"));
-        visit(SW_PART(m, input_speed, "State of that sensor"));
-        visit(SW_PART(m, output_angle, "State of that sensor"));
-        visit(SW_PART(m, output_speed, "State of that sensor"));
-        visit(SW_PART(m, current, "State of that sensor"));
-        visit(SW_PART(m, torque, "State of that sensor"));
+        visit(SW_PART(m, input_angle, "State of the sensor of the input angle"));
+        visit(SW_PART(m, input_speed, "State of the sensor of the input speed"));
+        visit(SW_PART(m, output_angle, "State of the sensor of the output angle"));
+        visit(SW_PART(m, output_speed, "State of the sensor of the output speed"));
+        visit(SW_PART(m, current, "State of the sensor of the current"));
+        visit(SW_PART(m, torque, "State of the sensor of the torque"));
     }
 };
 

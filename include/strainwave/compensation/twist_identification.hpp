@@ -16,10 +16,10 @@ struct TwistParameters {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, compliance, "1", "Of the relative change of the compliance"));
-        visit(SW_FIELD(m, offset, "rad", "Of the offset of the encoders"));
-        visit(SW_FIELD(m, sine, "rad", "Of the sine of each order"));
-        visit(SW_FIELD(m, cosine, "rad", "Of the cosine of each order"));
+        visit(SW_FIELD(m, compliance, "1", "Value for the relative change of the compliance"));
+        visit(SW_FIELD(m, offset, "rad", "Value for the offset of the encoders"));
+        visit(SW_FIELD(m, sine, "rad", "Value for the sine of each order"));
+        visit(SW_FIELD(m, cosine, "rad", "Value for the cosine of each order"));
     }
 
     constexpr S& operator[](int j) { return at(*this, j); }

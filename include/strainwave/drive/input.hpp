@@ -18,11 +18,11 @@ struct Input {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, command, "1", "Command of the controller, in the unit that it takes"));
-        visit(SW_FIELD(m, command_rate, "1/s", "Its rate"));
+        visit(SW_FIELD(m, command_rate, "1/s", "Rate of the command"));
         visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, a brake torque or an output angle"));
-        visit(SW_FIELD(m, load_rate, "1/s", "Its rate"));
+        visit(SW_FIELD(m, load_rate, "1/s", "Rate of the input of the load"));
         visit(SW_FIELD(m, temperature, "K", "Temperature around the drive"));
-        visit(SW_FIELD(m, temperature_rate, "K/s", "Its rate"));
+        visit(SW_FIELD(m, temperature_rate, "K/s", "Rate of the temperature around the drive"));
     }
 
     /// Inputs at a fraction of a step. The command is Hermite's cubic between the three instants, all else the parabola through

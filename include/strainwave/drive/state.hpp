@@ -70,8 +70,8 @@ struct State {
         visit(SW_PART(m, discrete, "Discrete part"));
         visit(SW_PART(m, hysteresis, "Memory of the hysteresis"));
         visit(SW_FIELD(m, held_twist, "rad", "Twist at which the hysteresis was last brought up to date"));
-        visit(SW_FIELD(m, held_rate, "rad/s", "Rate of the twist there"));
-        visit(SW_FIELD(m, elapsed, "s", "Time since then"));
+        visit(SW_FIELD(m, held_rate, "rad/s", "Rate of the twist at that time"));
+        visit(SW_FIELD(m, elapsed, "s", "Time since the hysteresis was last brought up to date"));
         visit(SW_FIELD(m, turns, "1", "Whole revolutions of the input"));
         visit(SW_FIELD(m, input_slip_direction, "1", "Slip direction of the input shaft, 0 while it sticks"));
         visit(SW_FIELD(m, output_slip_direction, "1", "Slip direction of the output shaft, 0 while it sticks"));

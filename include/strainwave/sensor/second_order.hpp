@@ -34,7 +34,7 @@ struct SecondOrder {
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, shown, "1", "Reading, in the unit of the measured quantity"));
-            visit(SW_FIELD(m, rate, "1/s", "Its rate"));
+            visit(SW_FIELD(m, rate, "1/s", "Rate of the reading"));
         }
     };
 
