@@ -21,7 +21,7 @@ from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.prepared_log import PreparedLog
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of
 from strainwave.orders.two_encoders import TransmissionError
 
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 SIGNIFICANT_DELAY_SIGMA = 2.5  # standard deviations, beyond which a delay is there
 MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the inertia: beyond, torques count from inertia
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
-PARTS = ("stiffness", "hysteresis", "damping", "kinematic_error")  # of the gear; the last one also from torques in A
+PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
 
 
@@ -60,7 +60,7 @@ def between_encoders(
         checks=tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source)),
         pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),),
     )  # fmt: skip
-    parts = PARTS[-1:] if taken.in_current else PARTS
+    parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
     return result, _with_parts(known, found, [part for part in parts if part not in known.determined], result)
 
 
@@ -156,6 +156,13 @@ def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_curr
             own = replace(own, sigma=float(np.hypot(sigma, scale.own * own.value))).resting_on(scale.common)
         own = own.unless_uncertain()
         yield own.in_current() if in_current else own
+
+
+def _has_kinematic_error(found: ElasticCandidate) -> bool:
+    """True if an order is determined; without any, the gear keeps the kinematic error of the start set."""
+    waves = zip(found.fit.estimates, found.sigmas, strict=True)
+    of_waves = [(each.value, float(sigma)) for each, sigma in waves if each.path.startswith("gear.kinematic_error.amplitude")]
+    return any(not is_uncertain(value, sigma) for value, sigma in of_waves)
 
 
 def _path(path: str, orders: Any, found: ElasticCandidate, law: Any) -> str:
