@@ -219,7 +219,7 @@ def analyse(
         found, read = evaluate_paths(paths, given, status.update)
         status.update("report")
         provenance = _provenance(read)
-        files: dict[str, str | bytes] = {**loop_files(found.loops), **angle_files(found.angles)}
+        files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
         files["results.json"] = results_json(results(found, provenance.date))
         files["report.html"] = rig_report(found, provenance, list(files))
         write_folder(target, files)
@@ -228,7 +228,9 @@ def analyse(
     if left := [each for each in there if each not in files]:
         print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
     for each in loop_names(found.loops):
-        print(f"for a gear: strainwave identify {gear or 'GEAR'} {target / each}.csv --kind torsion")
+        print(
+            f"for a gear: strainwave identify {gear or 'GEAR'} {'' if friction is None else f'{friction} '}{target / each}.csv"
+        )
 
 
 @rig.command()

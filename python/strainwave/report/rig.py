@@ -27,6 +27,7 @@ from strainwave.report.rig_tables import (
 from strainwave.rig.analysis.analysis import table
 from strainwave.rig.analysis.lost_motion import LOST_MOTION
 from strainwave.rig.analysis.result import Result
+from strainwave.rig.analysis.sides import FRICTION_TAKEN_OUT
 from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO
 from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.typeset import ARCMIN_PER_DEGREE, fixed, number
@@ -126,6 +127,11 @@ def setting(found: Evaluation) -> dict[str, str]:
         facts["Temperature"] = f"{fixed(min(temperatures) - 273.15, 1)} to {fixed(max(temperatures) - 273.15, 1)} °C"
     if found.rig is not None:
         facts["Rig"] = found.rig.name
+    corrected = [remark for loop in loops for remark in loop.remarks if remark.startswith(FRICTION_TAKEN_OUT)]
+    if corrected:
+        facts["Friction taken out"] = ", ".join(
+            dict.fromkeys(sentence(each.removeprefix(FRICTION_TAKEN_OUT)).rstrip(".") for each in corrected)
+        )
     return facts
 
 
@@ -179,7 +185,7 @@ def unknown(found: Evaluation) -> list[str]:
     facts: dict[str, list[str]] = {}
     for label, analysis in zip(found.labels, found.analyses, strict=True):
         for remark in analysis.remarks:
-            if not remark.startswith(OF_REGIMES):  # these stand with the loop
+            if not remark.startswith((*OF_REGIMES, FRICTION_TAKEN_OUT)):  # these stand with the loop and in the setting
                 facts.setdefault(remark, []).append(label)
     every = len(found.analyses)
     lines = [remark if len(labels) == every else f"{', '.join(labels)}: {remark}" for remark, labels in facts.items()]

@@ -15,8 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from strainwave.files.recording import Recording
+from strainwave.identification.kinds.torsion_loop import in_steps
 from strainwave.rig.analysis.analysis import LoopAnalysis
-from strainwave.rig.loop import Loop
+from strainwave.rig.loop import COLUMNS, Loop
 from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.rig.vision.angle import Angles
 
@@ -55,11 +57,14 @@ def _file_part(text: str) -> str:
 
 
 def loop_files(loops: Sequence[Loop]) -> dict[str, bytes]:
-    """Each loop as CSV and as Parquet, as `strainwave identify` reads them."""
+    """Return each loop as CSV and as Parquet, from which `strainwave identify` recognises it as a torsion loop.
+
+    `identify` takes friction of the input out by itself: the loops must be those that contain it, `Evaluation.measured`.
+    """
     made = {}
     with TemporaryDirectory() as folder:
         for name, loop in zip(loop_names(loops), loops, strict=True):
-            recording = loop.recording()
+            recording = _without_fast_clock(loop.recording())
             for path, write in (
                 (Path(folder, f"{name}.csv"), recording.to_csv),
                 (Path(folder, f"{name}.parquet"), recording.to_parquet),
@@ -67,6 +72,14 @@ def loop_files(loops: Sequence[Loop]) -> dict[str, bytes]:
                 write(path)
                 made[path.name] = path.read_bytes()
     return made
+
+
+def _without_fast_clock(recording: Recording) -> Recording:
+    """Return a loop without its time if rows follow so fast that they would be taken for a log of a drive."""
+    angle, torque = (name for pair in COLUMNS.values() for name in pair if name in recording)
+    if "time" not in recording or in_steps(recording.time, recording[angle], recording[torque]):
+        return recording
+    return recording.select([name for name in recording.names if name != "time"])
 
 
 def angle_files(angles: Sequence[Angles]) -> dict[str, bytes]:

@@ -133,7 +133,7 @@ def test_a_virtual_test_gives_back_the_row_of_document_t(made: Path, analysed: R
     assert found["deviations_from_plan"] == []
     steps = read_steps(made)
     assert set(found["photographs"]) == {step.image for step in steps}
-    assert f"for a gear: strainwave identify {GEAR} found/loop-0deg.csv --kind torsion" in analysed.stdout
+    assert f"for a gear: strainwave identify {GEAR} found/loop-0deg.csv\n" in analysed.stdout
 
 
 def test_the_photographs_stay_as_they_are_and_the_report_has_their_hashes(test: Path, tmp_path: Path) -> None:
@@ -149,7 +149,8 @@ def test_the_loop_feeds_an_identification_without_retyping(made: Path, analysed:
     command = next(line for line in analysed.stdout.splitlines() if line.startswith("for a gear: "))
     result = strainwave(*command.removeprefix("for a gear: strainwave ").split(), "--out", "gear", folder=made.parent)
     assert result.returncode == 0, result.stderr
-    assert (made.parent / "gear" / "gear.toml").exists()
+    assert "loop-0deg.csv: a torsion loop or branch" in result.stdout
+    assert "gear.stiffness.a1," in (made.parent / "gear" / "numbers.csv").read_text()
 
 
 def test_a_loop_that_others_measured_is_analysed(tmp_path: Path) -> None:
@@ -208,7 +209,17 @@ def test_friction_from_a_table_is_taken_out(tmp_path: Path) -> None:
     )
     result = strainwave("rig", "analyse", LOOP, "--gear", GEAR, "--friction", "friction.csv", folder=tmp_path)
     assert result.returncode == 0, result.stderr
-    assert "±0.02 N.m at the input, taken out" in result.stdout.replace("·", ".")
+    setting, _, limits = result.stdout.partition("not determined, or contradictory:")
+    assert "Friction taken out: ±0.02 N·m at the input (friction table" in setting
+    assert "taken out:" not in limits
+    analysed = tmp_path / "out" / "rig" / "loop-0deg.csv"
+    assert Recording.read(analysed)["input_torque"] == pytest.approx(Recording.read(LOOP)["input_torque"])
+    command = next(line for line in result.stdout.splitlines() if line.startswith("for a gear: "))
+    gear = strainwave(*command.removeprefix("for a gear: strainwave ").split(), folder=tmp_path)
+    assert gear.returncode == 0, gear.stderr
+    assert "NOT USED" not in gear.stdout
+    assert "friction.csv: a table of steady friction" in gear.stdout
+    assert "loop-0deg.csv: a torsion loop or branch" in gear.stdout
 
 
 def test_departures_from_the_plan_are_told(test: Path, tmp_path: Path) -> None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from math import degrees, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
 from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.reading.recognise import recognise
 from strainwave.report import rig_figures
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig import rig_report, setting, summary, unknown
@@ -191,7 +194,7 @@ def test_results_are_json_with_every_number(found: Evaluation) -> None:
 
 
 def test_loops_are_written_as_a_twin_reads_them(found: Evaluation) -> None:
-    files = loop_files(found.loops)
+    files = loop_files(found.measured)
     assert set(files) == {f"{name}.{ending}" for name in loop_names(found.loops) for ending in ("csv", "parquet")}
     assert files["loop-0deg.csv"].splitlines()[1] == b'"input_angle [rad]","input_torque [N.m]"'
 
@@ -252,3 +255,13 @@ def test_soft_spots_are_shaded_and_wide_ranges_are_logarithmic() -> None:
     texts = [node.text for node in Page(svg).root.find("text")]
     assert "soft spot" in texts
     assert {"0.5", "1", "2", "5"} <= set(texts)
+
+
+def test_a_loop_that_was_recorded_fast_is_written_without_its_clock_and_one_in_steps_with_it(tmp_path: Path) -> None:
+    angle = np.concatenate([np.linspace(a, b, 60) for a, b in ((0.2, -0.2), (-0.2, 0.2))])
+    for interval, names in ((0.01, 2), (60.0, 3)):
+        loop = Loop(angle, 4.0 * angle, side="input", name="a spring", time=interval * np.arange(len(angle)))
+        path = tmp_path / "loop-0deg.csv"
+        path.write_bytes(loop_files([loop])[path.name])
+        assert recognise(path).kind == "torsion"
+        assert len(Recording.read(path).names) == names

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
@@ -29,11 +30,14 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 
+Array = NDArray[np.float64]
+
 MIN_ROWS = 4  # of a loop or branch
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
 MAX_TWIST = 0.3  # rad of a gear at the output
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
 MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
+MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps; at such a rate a log shows no motion
 FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
@@ -59,8 +63,7 @@ class Torsion(Kind):
                 f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists: samples of a log whose rate is "
                 "needed, with --constant rate=HZ; or, if it is a torsion loop all the same, --kind torsion"
             )
-        is_spring = torque.min() < 0.0 < torque.max() and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING
-        return bool(abs(angle[-1] - angle[0]) <= MIN_TURNING or turning_points(angle) or is_spring)
+        return bool(abs(angle[-1] - angle[0]) <= MIN_TURNING or turning_points(angle) or _is_spring(angle, torque))
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torque = needed(columns, "torque", self.title)
@@ -128,6 +131,26 @@ class Torsion(Kind):
             Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
             for each in found
         )
+
+
+def is_loaded_in_steps(columns: Sequence[Column]) -> bool:
+    """True for a spring that a rig loads in steps, with the time of each: a log has more rows in a second, or turns."""
+    times, angles, torques = (measured(columns, quantity) for quantity in ("time", "angle", "torque"))
+    if not times or len(angles) != 1 or len(torques) != 1 or measured(columns, "speed", "current", "voltage"):
+        return False
+    return in_steps(times[0].si, angles[0].si, torques[0].si)
+
+
+def in_steps(time: Array, angle: Array, torque: Array) -> bool:
+    """True for a torque that alternates and follows the angle, in rows that are seconds apart."""
+    is_slow = len(time) > 1 and float(np.median(np.diff(time))) >= MIN_INTERVAL_OF_STEPS
+    return is_slow and float(np.ptp(angle)) <= MIN_TURNING and _is_spring(angle, torque)
+
+
+def _is_spring(angle: Array, torque: Array) -> bool:
+    """True if the torque alternates and follows the angle."""
+    alternates = torque.min() < 0.0 < torque.max() and np.ptp(angle) > 0.0
+    return bool(alternates and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING)
 
 
 def _why_output(angle: Column, torque: Column) -> str:

@@ -18,6 +18,8 @@ from strainwave.rig.loop import COLUMNS, Loop, Side
 
 Array = NDArray[np.float64]
 
+FRICTION_TAKEN_OUT = "friction of the wave generator, taken out: "  # how the remark on it begins
+
 
 def referred(loop: Loop, ratio: float, side: Side) -> Loop:
     """A loop as it would have been measured at the other shaft, of a gear that only divides and multiplies.
@@ -85,7 +87,7 @@ def without_friction(loop: Loop, friction: Value) -> Loop:
     torque = _behind_play(loop.torque, held, start)
     if segment(loop).closed:
         torque = _behind_play(loop.torque, held, float(torque[-1]))
-    remark = f"friction of the wave generator, ±{held:.3g} N.m at the input, taken out"
+    remark = f"{FRICTION_TAKEN_OUT}±{held:.3g} N.m at the input"
     return replace(
         loop,
         torque=torque,

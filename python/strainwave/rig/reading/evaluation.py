@@ -26,6 +26,7 @@ class Evaluation:
     Attributes:
         name: of the test
         analyses: of each loop, in the order measured
+        measured: the loops as they were before friction of the input was taken out; the analysed ones if none was
         comparisons: of positions and of units, where there are several
         gear_set: the gear that was taken to be on the rig, or None
         rig: on which it was tested, or None where loops were given as they are
@@ -37,6 +38,7 @@ class Evaluation:
 
     name: str
     analyses: tuple[LoopAnalysis, ...]
+    measured: tuple[Loop, ...]
     comparisons: tuple[Comparison, ...]
     gear_set: GearSet | None = None
     rig: Rig | None = None
@@ -60,6 +62,7 @@ def evaluate(
     loops: Sequence[Loop],
     *,
     name: str = "Torsion test",
+    measured: Sequence[Loop] | None = None,
     gear_set: GearSet | None = None,
     rated_torque: float | None = None,
     rig: Rig | None = None,
@@ -73,6 +76,7 @@ def evaluate(
     Args:
         loops: one or more
         name: of the test
+        measured: the loops before friction of the input was taken out; if not given, these
         gear_set: the gear on the rig: its ratio, rated torque and catalogue figures
         rated_torque: of the gear at the loaded shaft [N.m], instead of that of the set
         rig, steps, angles: what the loops were made from, for the report
@@ -91,7 +95,8 @@ def evaluate(
     analyses = tuple(analyse(loop, gear_set=gear_set, rated_torque=rated_torque) for loop in loops)
     compared = tuple(_comparisons(analyses))
     departed = None if deviations is None else tuple(deviations)
-    return Evaluation(name, analyses, compared, gear_set, rig, tuple(steps), tuple(angles), tuple(remarks), departed)
+    before = tuple(loops if measured is None else measured)
+    return Evaluation(name, analyses, before, compared, gear_set, rig, tuple(steps), tuple(angles), tuple(remarks), departed)
 
 
 def _labels(loops: Sequence[Loop]) -> Iterator[str]:

@@ -60,14 +60,16 @@ def evaluate_paths(
         OSError: a file or folder is not there
         ValueError: one cannot be read, or what is given does not fit
     """
-    tests, loops, read = _read(paths, given, progress)
+    tests, measured, read = _read(paths, given, progress)
+    loops = measured
     if given.friction is not None:
         if given.gear_set is None:
             raise ValueError(f"friction {given.friction} needs a gear, whose law of friction is fitted to the table")
-        loops, read = _without_friction(loops, given.friction, given.gear_set.gear), [*read, given.friction]
+        loops, read = _without_friction(measured, given.friction, given.gear_set.gear), [*read, given.friction]
     found = evaluate(
         loops,
         name=" and ".join(path.resolve().name for path in paths),
+        measured=measured,
         gear_set=given.gear_set,
         rated_torque=given.rated_torque,
         rig=tests[0].rig if len(tests) == len(paths) else None,

@@ -292,3 +292,21 @@ def test_a_file_whose_angle_jumps_is_of_two_recordings(tmp_path: Path, with_spee
     assert len(found.recording) == 250
     assert "q jumps by 0.5" in words_of(found)
     assert "2 recordings in one file, of which the longest is taken, rows 0 to 249" in words_of(found)
+
+
+def columns_of(folder: Path, *series: object) -> Path:
+    return write(folder / "steps.csv", "time [s],input_angle [rad],input_torque [N.m]", *series)
+
+
+@pytest.mark.parametrize(("interval", "kind"), [(60.0, "torsion"), (1.0, "torsion"), (0.01, "log")])
+def test_a_spring_that_is_loaded_in_steps_is_a_torsion_loop_and_a_fast_one_may_be_a_log(
+    tmp_path: Path, interval: float, kind: str
+) -> None:
+    twist = np.concatenate([np.linspace(a, b, 60) for a, b in ((0.2, -0.2), (-0.2, 0.2))])
+    assert recognise(columns_of(tmp_path, interval * np.arange(len(twist)), twist, 4.0 * twist)).kind == kind
+
+
+def test_a_slow_log_whose_torque_follows_the_speed_remains_a_log(tmp_path: Path) -> None:
+    time = np.arange(300.0)
+    angle = 2.0 * np.sin(0.2 * time)
+    assert recognise(columns_of(tmp_path, time, angle, 0.1 * np.cos(0.2 * time) + 0.01 * angle)).kind == "log"
