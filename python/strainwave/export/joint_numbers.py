@@ -8,8 +8,9 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.export.elements import GearElements, friction_losses, twist_at_largest
+from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, twist_at_largest
 from strainwave.export.exported import Exported
+from strainwave.export.mujoco import DEFAULT_TIMESTEP, friction_attributes
 from strainwave.files.gear_set import GearSet
 
 Array = NDArray[np.float64]
@@ -47,15 +48,32 @@ def joint(gear_set: GearSet, *, max_torque: float | None = None, name: str = "ge
     return Exported(
         "joint",
         gear_set.name,
-        {"joint.xml": _mujoco_default(values, name), "joint.urdf": _urdf(values, elements.ratio, name)},
+        {"joint.xml": _mujoco_default(numbers, name), "joint.urdf": _urdf(values, elements.ratio, name)},
         numbers,
         tuple(losses),
         (*elements.left_out, *left_out_if_rigid(elements)),
         (
-            "give the joint of your model the class of joint.xml, or the attributes in it; stiffness is no attribute of a "
-            "joint that a motor turns, as its spring acts between link and world",
+            "give the joint of your model the class of joint.xml, or all attributes in it: without solimpfriction and "
+            "solreffriction it creeps at a torque below its friction",
+            "do not copy the stiffness into <joint>: MuJoCo would tie the link to the world. For torsion use `strainwave "
+            "export mjcf`",
+            *remark_on_rotor(gear_set),
         ),
     )
+
+
+def remark_on_rotor(gear_set: GearSet) -> Iterator[str]:
+    """Yield a remark if the inertia of the motor is not part of the armature."""
+    if gear_set.motor is None:
+        yield (
+            "the file contains no motor: armature is the inertia of the wave generator alone. Add that of the rotor, times the "
+            "ratio squared"
+        )
+    elif not getattr(gear_set.motor, "inertia", 0.0):
+        yield (
+            "motor.inertia is 0 in the file: armature is the inertia of the wave generator alone. If `identify` found the "
+            "inertia of the load, it contains that of the rotor: do not add it again"
+        )
 
 
 def left_out_if_rigid(elements: GearElements) -> Iterator[str]:
@@ -76,9 +94,11 @@ def _numbers(elements: GearElements) -> dict[str, tuple[float, str]]:
     }
 
 
-def _mujoco_default(values: Mapping[str, str], name: str) -> str:
+def _mujoco_default(numbers: Mapping[str, tuple[float, str]], name: str) -> str:
     """Return a default class of MJCF."""
-    attributes = " ".join(f'{key}="{values[key]}"' for key in ("armature", "frictionloss", "damping"))
+    armature, dry, viscous = (numbers[key][0] for key in ("armature", "frictionloss", "damping"))
+    friction = friction_attributes(ShaftFriction(dry=dry, viscous=viscous), DEFAULT_TIMESTEP)
+    attributes = " ".join(f'{key}="{value}"' for key, value in {"armature": repr(armature), **friction}.items())
     return (
         f"<mujoco>\n  <default>\n    <default class={quoteattr(name)}>\n      <joint {attributes}/>\n    </default>\n"
         "  </default>\n</mujoco>\n"

@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 from strainwave.export.elements import GearElements
 from strainwave.export.exported import Exported
-from strainwave.export.joint_numbers import joint
+from strainwave.export.joint_numbers import joint, remark_on_rotor
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
 
@@ -57,6 +57,7 @@ def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joi
             "max_velocity follows from the largest input speed of the ratings; without one it is assumed",
             "drive_node.py needs rclpy, sensor_msgs and std_msgs: of ROS 2, or pip install ros-rclpy ros-rmw-fastrtps-cpp "
             "ros-sensor-msgs ros-std-msgs",
+            *remark_on_rotor(gear_set),
         ),
     )
 

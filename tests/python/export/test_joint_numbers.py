@@ -1,0 +1,54 @@
+"""Numbers of a joint: MuJoCo keeps a joint at rest below its friction, and the inertia that armature lacks is stated."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+import pytest
+import strainwave as sw
+from strainwave.export.joint_numbers import joint
+from strainwave.files.gear_set import GearSet
+
+mujoco = pytest.importorskip("mujoco")
+
+DURATION = 10.0  # s
+GEAR = GearSet.read("csg-20-100")
+
+
+def turned(attributes: dict[str, str], torque: float, timestep: float) -> float:
+    """Angle of a link of 1 kg.m² after a constant torque [rad]."""
+    own = " ".join(f'{key}="{value}"' for key, value in attributes.items())
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option gravity="0 0 0" timestep="{timestep}"/><worldbody><body><joint name="elbow" axis="0 0 1" {own}/>'
+        '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>'
+        '<actuator><motor joint="elbow"/></actuator></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    data.ctrl[0] = torque
+    mujoco.mj_step(model, data, nstep=round(DURATION / timestep))
+    return float(data.qpos[0])
+
+
+@pytest.mark.parametrize("timestep", [5e-4, 2e-3, 5e-3])
+def test_a_joint_of_mujoco_rests_below_its_friction(timestep: float) -> None:
+    found = joint(GEAR)
+    written = ElementTree.fromstring(str(found.files["joint.xml"])).find("default/default/joint")
+    assert written is not None
+    friction = found.numbers["frictionloss"][0]
+    assert float(written.attrib["frictionloss"]) == friction
+    assert 0.0 < turned(written.attrib, 0.9 * friction, timestep) < 1e-4  # rad in 10 s
+    assert turned(written.attrib, 1.1 * friction, timestep) > 0.1
+    plain = {key: value for key, value in written.attrib.items() if not key.startswith("sol")}
+    assert turned(plain, 0.9 * friction, timestep) > 1e-3  # MuJoCo's own default creeps
+
+
+def test_an_armature_without_the_rotor_is_stated() -> None:
+    for inertia, words in ((0.0, "motor.inertia is 0 in the file"), (2e-5, "")):
+        whole = GEAR.with_parts(motor=sw.motor.TorqueSource(inertia=inertia), source="test")
+        found = joint(whole)
+        stated = [each for each in found.remarks if "armature" in each]
+        assert len(stated) == bool(words)
+        assert all(words in each and "do not add it again" in each for each in stated)
+        armature = (whole.gear.input_inertia + inertia) * whole.gear.kinematics.ratio**2
+        assert found.numbers["armature"][0] == pytest.approx(armature)
+    assert any("contains no motor" in each for each in joint(GEAR).remarks)
