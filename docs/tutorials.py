@@ -24,6 +24,7 @@ from kept import kept
 SCRIPTS = Path(__file__).resolve().parents[1] / "examples" / "tutorials"
 HEAD = re.compile(r"^# %%(?: \[(markdown|console)\])?$", re.MULTILINE)  # of a cell
 COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)$", re.MULTILINE)
+MYST_COMMENT = re.compile(r"^ {0,3}%", re.MULTILINE)
 COMPILED = re.compile(r"^strainwave: compiling a kernel .*\n", re.MULTILINE)  # printed only if no earlier run compiled it
 RESOLUTION = 110  # dots per inch of a picture
 SIDE_BY_SIDE = 2  # tutorials that run at a time
@@ -119,6 +120,9 @@ def cells(text: str) -> Iterator[Cell]:
 def shown(cell: Cell, script: Path, folder: Path, names: dict[str, Any]) -> Iterator[str]:
     """Yield the Markdown of a cell: its text, then what it prints and draws."""
     if cell.kind == "markdown":
+        if comment := MYST_COMMENT.search(cell.text):
+            line = cell.line + 1 + cell.text.count("\n", 0, comment.start())
+            raise TutorialError(f"{script.name}, line {line}: begins with %, so that the page leaves it out: wrap it elsewhere")
         yield cell.text
     elif cell.kind == "console":
         yield f"```console\n{''.join(ran(cell, script))}```"

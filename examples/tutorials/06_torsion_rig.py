@@ -106,17 +106,17 @@ print("remarks:", (*test.remarks, *loop.remarks) or "none")
 speed = np.geomspace(1.0, 300.0, 12)
 columns = {"speed": speed, "torque": on_the_rig.friction_input.steady(speed)}
 friction = sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"}, "friction, measured apart")
-friction.to_csv("friction.csv")
-print(*Path("friction.csv").read_text().splitlines()[:4], sep="\n")
+friction.to_csv("rig_friction.csv")
+print(*Path("rig_friction.csv").read_text().splitlines()[:4], sep="\n")
 
 # %% [markdown]
 # ## The report
 #
-# `strainwave rig analyse` computes stiffness, hysteresis and lost motion by stated definitions, each with an interval of 95
-# %.
+# `strainwave rig analyse` computes stiffness, hysteresis and lost motion by stated definitions. The interval of 95 % is in
+# brackets.
 
 # %% [console]
-# $ strainwave rig analyse torsion-test --gear csg-25-100 --friction friction.csv --out analysis
+# $ strainwave rig analyse torsion-test --gear csg-25-100 --friction rig_friction.csv --out analysis
 
 # %% [markdown]
 # `analysis/report.html` has the figures, the definitions and the budget. `results.json` has every number. The same in Python,
@@ -141,7 +141,7 @@ axes.legend()
 # ## The gear
 #
 # `sw.identify` takes friction table and loop together and gives a gear. The first argument is the catalogue set to begin
-# with. On the command line: `strainwave identify csg-25-100 friction.csv analysis/loop-0deg.csv`.
+# with. On the command line: `strainwave identify csg-25-100 rig_friction.csv analysis/loop-0deg.csv`.
 
 # %%
 result = sw.identify("csg-25-100", {"friction": friction, "torsion": loop.recording()})

@@ -30,29 +30,39 @@ t = np.arange(0.0, 12.0, 0.004)
 q = 0.8 * np.sin(1.3 * t) + 0.25 * np.sin(3.1 * t)
 speed = np.gradient(q, t)
 torque = 2.0 * np.gradient(speed, t) + 30.0 * np.sin(q) + 6.0 * np.sign(speed) + 4.0 * speed
-columns = {"t": t, "q": q + 2e-6 * random.normal(size=len(t)), "tau": torque + 0.2 * random.normal(size=len(t))}
+torque += 0.2 * random.normal(size=len(t))  # noise of the sensor
+columns = {"t": t, "q": q + 2e-6 * random.normal(size=len(t)), "tau": torque}
 sw.Recording(columns, {"t": "s", "q": "rad", "tau": "N.m"}).to_csv("log.csv")
 
-# %% [console]
-# $ strainwave identify robot-joint log.csv --out found | grep -E 'gear\.|load\.|wrote'
+# %%
+result = sw.identify("robot-joint", ["log.csv"])
+for parameter in result.parameters:
+    each = parameter.estimate
+    print(f"{each.path:30} {each.value:9.3g} ± {each.sigma:.2g} {each.unit}")
+found = result.gear_set
+found.save("found.toml")
 
 # %% [markdown]
+# On the command line: `strainwave identify robot-joint log.csv --out found`, which writes the same gear to `found/gear.toml`.
+#
 # The numbers of friction belong to the input: 0.06 N·m there are 6 N·m at the output of a gear of ratio 100. What the log
 # does not determine, as stiffness and hysteresis, stays that of the set `robot-joint` and is marked as assumed in
-# `found/gear.toml`.
+# `found.toml`.
 #
 # ## MJCF and URDF: the numbers of a joint
 
 # %% [console]
-# $ strainwave export joint found/gear.toml --out joint
+# $ strainwave export joint found.toml --out joint
 # $ cat joint/joint.xml joint/joint.urdf
 
 # %% [markdown]
-# The last lines state the loss: a joint of MuJoCo has friction and inertia, and no torsion. Now the check. A torque of 20 N·m
-# turns a free joint; MuJoCo with these numbers must turn it as far as strainwave does.
+# The export states the loss: a joint of MuJoCo has friction and inertia, and no torsion. `armature` and
+# `load.inertia` together are the 2 kg·m² of the formula: the log shows their sum, and `robot-joint` states the rotor.
+#
+# Now the check. A torque of 20 N·m turns a free joint; MuJoCo with these numbers must turn it as far as strainwave does. With
+# 0.9 of its friction it must rest.
 
 # %%
-found = sw.GearSet.read("found/gear.toml")
 ratio = abs(found.gear.kinematics.ratio)
 free = sw.Drive(
     gear=found.gear, motor=sw.motor.TorqueSource(inertia=found.drive.motor.inertia), load=sw.loads.Inertia(inertia=1.0)
@@ -60,20 +70,28 @@ free = sw.Drive(
 pushed = sw.simulate(free, sw.scenario.constant(-20.0 / ratio, duration=2.0), sample=1e-3)  # N.m of the motor
 print(f"strainwave: {pushed['output_angle'][-1]:.3f} rad after 2 s")
 
-joint = sw.export.joint(found).numbers
 if find_spec("mujoco"):
     import mujoco
 
-    attributes = " ".join(f'{name}="{joint[name][0]}"' for name in ("armature", "frictionloss", "damping"))
-    model = mujoco.MjModel.from_xml_string(f"""<mujoco><option gravity="0 0 0" timestep="0.001"/><worldbody><body>
-        <joint name="elbow" axis="0 0 1" {attributes}/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
-        </body></worldbody><actuator><motor joint="elbow"/></actuator></mujoco>""")
+    exported = sw.export.joint(found)
+    scene = """<mujoco><include file="joint.xml"/><option gravity="0 0 0" timestep="0.001"/><worldbody><body>
+        <joint class="gear" name="elbow" axis="0 0 1"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+        </body></worldbody><actuator><motor joint="elbow"/></actuator></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(scene, {"joint.xml": exported.files["joint.xml"].encode()})
     data = mujoco.MjData(model)
     data.ctrl[0] = 20.0
     mujoco.mj_step(model, data, nstep=2000)
     print(f"MuJoCo:     {data.qpos[0]:.3f} rad after 2 s")
 
+    mujoco.mj_resetData(model, data)
+    data.ctrl[0] = 0.9 * exported.numbers["frictionloss"][0]
+    mujoco.mj_step(model, data, nstep=10000)
+    print(f"below its friction: {1e6 * data.qpos[0]:.0f} µrad after 10 s")
+
 # %% [markdown]
+# Dry friction in MuJoCo is soft: a joint with `frictionloss` alone creeps. The class in `joint.xml` has `solimpfriction` and
+# `solreffriction`, with which it rests.
+#
 # ## A drive for the other exports
 #
 # FMU, firmware and feed-forward need a motor, a controller and a load as well. The controller is a sampled one, because a
@@ -172,7 +190,7 @@ axes.legend()
 # | `there is no C++20 compiler …` | `pip install strainwave[compiler]`, or export sources: `--platform source` of an FMU. |
 # | `drive.control = … must be sampled` | Put the law into `sw.control.Sampled`, and simulate it so too. |
 # | firmware gives other numbers | `-ffp-contract=off` is missing, or the period differs from that in the header. |
-# | a joint in MuJoCo creeps | `frictionloss` is soft there. The exported class sets `solimpfriction`; yours may override it. |
+# | a joint in MuJoCo creeps | `frictionloss` is soft. Copy `solimpfriction` and `solreffriction` of `joint.xml`, too. |
 #
 # ## Where to go on
 #

@@ -187,6 +187,7 @@ def test_the_page_of_tutorials_lists_each() -> None:
             "# %% [console]\n# $ echo one\n# $ strainwave nonsense | cat",
             r"^wrong\.py, line 6: exit code 2 of strainwave nonsense",
         ),
+        ("# %% [markdown]\n# An interval of 95\n# %.", r"^wrong\.py, line 6: begins with %"),
     ],
 )
 def test_a_cell_that_fails_is_named_with_its_line(cell: str, message: str, tutorials: ModuleType, tmp_path: Path) -> None:
