@@ -80,7 +80,10 @@ def supplied_with(script: Path) -> list[Path]:
 
 
 def run(script: Path, folder: Path) -> None:
-    """Run the cells of a tutorial in a temporary folder, and write its page and pictures."""
+    """Run the cells of a tutorial in a temporary folder, and write its page and pictures.
+
+    Commands run in a copy of that folder: code that needs what a command wrote fails, as it would in the script alone.
+    """
     matplotlib.use("agg")
     text = script.read_text(encoding="utf-8")
     supplied = supplied_with(script)
@@ -125,7 +128,9 @@ def shown(cell: Cell, script: Path, folder: Path, names: dict[str, Any]) -> Iter
             raise TutorialError(f"{script.name}, line {line}: begins with %, so that the page leaves it out: wrap it elsewhere")
         yield cell.text
     elif cell.kind == "console":
-        yield f"```console\n{''.join(ran(cell, script))}```"
+        with tempfile.TemporaryDirectory() as apart:
+            shutil.copytree(Path.cwd(), apart, dirs_exist_ok=True)
+            yield f"```console\n{''.join(ran(cell, script, Path(apart)))}```"
     else:
         yield f"```python\n{cell.text}\n```"
         printed = executed(cell, script, names)
@@ -134,13 +139,13 @@ def shown(cell: Cell, script: Path, folder: Path, names: dict[str, Any]) -> Iter
         yield from drawn(f"{script.stem}-{cell.line}", folder)
 
 
-def ran(cell: Cell, script: Path) -> Iterator[str]:
-    """Yield each command of a console with its output. A command that may fail ends with `|| echo "exit code $?"`."""
+def ran(cell: Cell, script: Path, folder: Path) -> Iterator[str]:
+    """Yield each command with its output, run in a folder. A command that may fail ends with `|| echo "exit code $?"`."""
     path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
     for command in COMMAND.finditer(cell.text):
         done = subprocess.run(
             ["bash", "-o", "pipefail", "-c", command[1]], env=os.environ | {"PATH": path, "COLUMNS": "100"},
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+            cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
         )  # fmt: skip
         if done.returncode:
             line = cell.line + 1 + cell.text.count("\n", 0, command.start())

@@ -53,7 +53,7 @@ on_the_rig = sw.load("csg-25-100").replace(
     kinematic_error=sw.kinematic_error.Fourier(),
 )
 bench = sw.rig.load("06_torsion_rig_bench.toml")
-steps = sw.rig.read_steps("plan.csv")
+steps = sw.rig.plan(bench, 0.9, positions=[0.0]).steps  # those of plan.csv
 scene = sw.rig.Scene(size=(400, 300), radius=22.0, distance=180.0, blur=1.0, noise=0.01)  # pixels
 sw.rig.simulate_test(on_the_rig, bench, steps, folder="torsion-test", scene=scene, seed=1)
 

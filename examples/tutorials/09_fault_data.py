@@ -28,19 +28,20 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.metrics import roc_auc_score, roc_curve
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
+from strainwave.dataset.make import make
 from strainwave.diagnose.baseline import baseline_of, compared
 from strainwave.diagnose.refusals import usable
 from strainwave.diagnose.replicates import joint_motion
 
 print(Path("09_fault_data_plan.toml").read_text())
 
-# %% [console]
-# $ strainwave dataset 09_fault_data_plan.toml --out data --workers 1
-# $ ls data
+# %%
+made = make("09_fault_data_plan.toml", "data", workers=1)
+print(*sorted(path.name for path in made.iterdir()), sep="\n")
 
 # %% [markdown]
-# `strainwave dataset 09_fault_data_plan.toml --dry-run` measures beforehand what a plan takes. `data/card.md` describes the
-# set, `data/manifest.json` each column.
+# On the command line: `strainwave dataset 09_fault_data_plan.toml --out data`. With `--dry-run` instead of `--out` it measures
+# beforehand what a plan takes. `data/card.md` describes the set, `data/manifest.json` each column.
 #
 # ## Look at the rows
 #

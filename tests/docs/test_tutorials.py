@@ -197,6 +197,16 @@ def test_a_cell_that_fails_is_named_with_its_line(cell: str, message: str, tutor
         tutorials.run_alone(script, tmp_path / "out")
 
 
+def test_code_must_not_need_what_a_command_wrote(tutorials: ModuleType, tmp_path: Path) -> None:
+    """A script that is run as a whole has no commands."""
+    script = tmp_path / "wrong.py"
+    script.write_text(
+        '# %% [markdown]\n# # Wrong\n\n# %% [console]\n# $ echo one > made.csv\n# $ cat made.csv\n\n# %%\nopen("made.csv")\n'
+    )
+    with pytest.raises(tutorials.TutorialError, match=r"^wrong\.py, line 9: FileNotFoundError: "):
+        tutorials.run_alone(script, tmp_path / "out")
+
+
 def test_a_page_shows_what_cells_print_and_draw(tutorials: ModuleType, tmp_path: Path) -> None:
     """The folder of a tutorial has its data; a command that may fail shows its exit code."""
     (tmp_path / "data.csv").write_text("1\n2\n")
