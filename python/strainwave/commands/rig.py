@@ -191,8 +191,8 @@ def analyse(
 ) -> None:
     """Turn photographs and masses, or measured loops, into stiffness, lost motion, and a report.
 
-    Writes report.html, results.json, and of each loop and of the angles a .csv and a .parquet file. The photographs stay where
-    they are; the report holds their hashes.
+    Writes report.html, results.json, and of each loop and of the angles a .csv and a .parquet file. Loops are written as
+    measured, with friction inside. The photographs stay where they are; the report has their hashes.
     """
     from rich.console import Console
 
