@@ -29,7 +29,7 @@ PAGES = {
     "dataset": "Diagnosis",
     "_core": "Gear and drive",
 }
-MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export", "drives": "Drives of the documents"}
+MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export"}
 VALUES = "Values in results"
 
 

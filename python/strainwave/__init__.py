@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 try:
-    from strainwave import drives
+    import_module("strainwave._core")
 except ImportError as error:
     import sys
     import sysconfig
@@ -255,7 +255,6 @@ __all__ = [
     "control",
     "derivatives",
     "detection_limit",
-    "drives",
     "equilibrium",
     "export",
     "fault",

@@ -74,7 +74,7 @@ class Torsion(Kind):
             raise UndecidedError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
         turns = len(turning_points(angle.si))
         branch = "one branch of a torsion loop, which shows stiffness only"
-        shape = f"a torsion loop with {turns} reversals" if turns else branch
+        shape = f"a torsion loop with {turns} reversal{'s' if turns > 1 else ''}" if turns else branch
         why = f"its columns are {both}, {rows} rows: {shape}"
         side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twists else None)
         if side == "input":

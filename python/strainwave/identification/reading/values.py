@@ -112,7 +112,8 @@ def _in_si(table: OpenTable, column: Column, unit: Assumed) -> Column:
         what = "command" if column.channel.commanded else column.channel.quantity
         place = f"{table.file} column {quoted(column.name)}"
         hint = as_option("unit", column.name, "counts/16384" if counts(unit.unit) else column.channel.unit)
-        raise ValueError(one_line(f"{place} cannot be the {what}: {error}; give its unit, with {hint}")) from None
+        other = f"name another column, with {as_option('column', what, 'NAME')}, or " if column.unit else ""
+        raise ValueError(one_line(f"{place} cannot be the {what}: {error}; {other}give its unit, with {hint}")) from None
     return replace(found, si=values)
 
 

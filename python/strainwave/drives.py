@@ -1,5 +1,0 @@
-"""Drives by the documents that describe them."""
-
-from strainwave._core import Drive as PositionDrive
-
-__all__ = ["PositionDrive"]
