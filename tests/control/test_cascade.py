@@ -7,6 +7,7 @@ from math import tau
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.simulation.resolution import rounded_down
 
 from tests.control import by_hand
 from tests.control.discrete import DC, PROMPT, RATIO, TIMES, Plant, check, drive
@@ -149,7 +150,7 @@ def test_steps_that_cannot_follow_its_current_loop_are_refused() -> None:
     rate = LAW.current_proportional / DC.inductance
     bound = 2.5 / rate
     command = sw.scenario.constant(0.01, 0.02)
-    with pytest.raises(FloatingPointError, match=f"is too coarse for this drive.*take dt = {bound:.2g} s or less"):
+    with pytest.raises(FloatingPointError, match=f"is too coarse for this drive.*take dt = {rounded_down(bound):g} s or less"):
         sw.simulate(drive(LAW), command, 1.01 * bound)
     assert np.isfinite(sw.simulate(drive(LAW), command, 0.99 * bound)["current"]).all()
     sampled = sw.control.Sampled(law=LAW, period=1e-3)  # holds its voltage: nothing decays by it

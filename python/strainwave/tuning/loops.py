@@ -78,7 +78,7 @@ class LoopMargins:
         >>> import strainwave as sw
         >>> law = sw.cascade("robot-joint", period=1e-3)
         >>> drive = sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3))
-        >>> [axes.get_title() for axes in sw.loop_margins(drive).plot().axes]
+        >>> [axes.get_title(loc="left") for axes in sw.loop_margins(drive).plot().axes]
         ['magnitude', 'phase [°]']
         """
         from strainwave.tuning.loops_plot import margins_figure

@@ -8,7 +8,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT, RUNS, WIDTH
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT, RUNS
 
 
 def test_a_figure_has_the_style_of_the_package_whatever_the_caller_prefers() -> None:
@@ -19,7 +19,7 @@ def test_a_figure_has_the_style_of_the_package_whatever_the_caller_prefers() -> 
             marks.label_axes(axes, "twist", "rad", "time", "s")
         figure.savefig(BytesIO(), format="svg")
         assert mpl.rcParams["font.size"] == 30.0
-    assert figure.get_size_inches().tolist() == [WIDTH, 2.0]
+    assert figure.get_size_inches().tolist() == [FIGURE_WIDTH, 2.0]
     assert (figure.get_suptitle(), axes.get_title(loc="left"), axes.get_xlabel()) == ("cost in $", "twist [mrad]", "time [s]")
     assert axes.xaxis.label.get_size() == 9.0
     assert "2" in {text.get_text() for text in axes.get_yticklabels()}  # mrad

@@ -285,5 +285,5 @@ def test_a_format_whose_package_is_missing_says_what_to_install(tmp_path: Path, 
     for module in [each for each in sys.modules if each.split(".")[0] == "h5py"]:
         monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.setitem(sys.modules, "h5py", None)
-    with pytest.raises(ImportError, match=r"h5py: pip install strainwave\[formats\]$"):
+    with pytest.raises(ImportError, match=r"h5py: pip install 'strainwave\[formats\]'$"):
         open_table(path)

@@ -18,6 +18,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.checks.comparisons import between_files
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.recognise import recognise
+from strainwave.identification.results import picture_plot
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Look, Picture
@@ -257,9 +258,9 @@ def test_the_fitted_loop_is_a_line_through_the_points() -> None:
 def test_what_is_left_of_two_encoders_is_what_orders_and_loads_do_not_explain() -> None:
     given = curves("time")
     left = np.arange(6.0)
-    assert identify_figures.residual_of(given).tolist() == (given["torque"] - given["modelled"]).tolist()
+    assert picture_plot.residual_of(given).tolist() == (given["torque"] - given["modelled"]).tolist()
     with_rest = given.with_column("residual", left, "N.m")
-    assert identify_figures.residual_of(with_rest).tolist() == left.tolist()
+    assert picture_plot.residual_of(with_rest).tolist() == left.tolist()
 
 
 def test_numbers_are_called_what_their_law_calls_them() -> None:

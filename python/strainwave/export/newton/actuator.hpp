@@ -81,7 +81,7 @@ constexpr State at_joint(const Compiled& drive, const Input& u) {
     }
     x.continuous.input_speed = ratio * u.load_rate;
     x.continuous.output_speed = u.load_rate;
-    x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, u, S(0.0)));
+    x.continuous.sensors = drive.sensors.steady_state(drive.measurable(x, x.continuous, u, S(0.0)));
     return drive.consistent(x);
 }
 

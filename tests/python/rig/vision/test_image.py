@@ -183,7 +183,7 @@ MP4 = b"\0\0\0\x1cftypisom" + bytes(20)
 def test_a_video_without_opencv_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", None)
     (tmp_path / "a.mp4").write_bytes(MP4)
-    with pytest.raises(ImportError, match=r"a\.mp4: videos are read by opencv: pip install strainwave\[video\]"):
+    with pytest.raises(ImportError, match=r"a\.mp4: videos are read by opencv: pip install 'strainwave\[video\]'"):
         next(video_images(tmp_path / "a.mp4"))
 
 
