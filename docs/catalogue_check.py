@@ -16,7 +16,7 @@ MIN_END = 1.5  # largest torque of a torsion test over T2, at least, so that K3 
 LOST_MOTION_SHARE = 0.04  # of the rated torque, at which lost motion is measured
 LOST_MOTION_BOUND = 1.0  # arcmin, in tables of the maker (CHA engineering data)
 SPEED, TURNS = 10.0, 2.0  # rad/s of the input, and its revolutions, of the run that measures the kinematic error
-VIBRATION = 1000.0  # rad/s of the output on the spring in that run: far above the error at 20 rad/s, so that it follows
+SPRING_FREQUENCY = 1000.0  # rad/s: eigenfrequency of output and spring. At 20 rad/s the output follows the input
 STARTING, BACKDRIVING, RUNNING = "starting torque", "backdriving torque", "running torque at 3500 rpm"
 RUNNING_SPEED = 3500.0 * 2.0 * pi / 60.0  # rad/s
 RAMP_DURATION, MAX_SHARE = 2.0, 2.0  # s, and largest torque over the printed one, of the run that finds a torque at the start
@@ -91,7 +91,7 @@ def lost_motion(gear: Any, rated: float) -> float:
 
 def kinematic_error(gear: Any) -> float:
     """Return the largest less the smallest error between the shafts [arcmin], of a run without load at constant speed."""
-    load = sw.loads.Inertia(inertia=gear.stiffness.k1 / VIBRATION**2)
+    load = sw.loads.Inertia(inertia=gear.stiffness.k1 / SPRING_FREQUENCY**2)
     drive = sw.Drive(gear=gear, motor=sw.motor.AccelerationSource(), control=sw.control.OpenLoop(), load=load)
     run = sw.simulate(
         drive, sw.scenario.constant(0.0, 2.0 * pi * TURNS / SPEED), initial={"input_speed": SPEED}, sample=1e-3,
@@ -160,7 +160,7 @@ def torque_without_load(gear: Any, figure: str, printed: float) -> float:
     """Return a torque without load [N.m]: the first that turns the input in a slow run, or the steady friction at a speed."""
     if figure == RUNNING:
         return float(gear.friction_input.steady(RUNNING_SPEED))
-    load = sw.loads.Inertia(inertia=gear.stiffness.k1 / VIBRATION**2)
+    load = sw.loads.Inertia(inertia=gear.stiffness.k1 / SPRING_FREQUENCY**2)
     drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(), control=sw.control.OpenLoop(), load=load)
     still, ramp = sw.scenario.constant(0.0, RAMP_DURATION), sw.scenario.ramp(MAX_SHARE * printed / RAMP_DURATION, RAMP_DURATION)
     if figure == BACKDRIVING:

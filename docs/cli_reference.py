@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from strainwave.commands import cli, exit_codes
+from strainwave import exit_codes
+from strainwave.commands import cli
 
 ABOUT = f"""\
 The command line
@@ -23,9 +24,9 @@ to use them.
 
    * - 0
      - The verb has done its work.
-   * - {exit_codes.REFUSED}
+   * - {exit_codes.INPUT_REFUSED}
      - The input cannot be used. One line states what is wrong, where, and what to do. Nothing is written.
-   * - {exit_codes.CONTRADICTED}
+   * - {exit_codes.RESULT_CONTRADICTED}
      - A check fails, a recording contradicts the saved gear, or a recording differs from the baseline: see the verb.
    * - 130
      - Ctrl-C has ended the verb. One line names the files that were written before."""

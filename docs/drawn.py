@@ -10,12 +10,11 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from kept import kept
+from kept import MAX_PROCESSES, kept
 
 ROOT = Path(__file__).resolve().parent.parent
 SHOWN = re.compile(r"(?<![\w/])(?:\.\./)?drawn/([\w-]+)/[\w-]+\.png")  # a picture on a page: drawn/NAME/PICTURE.png
 BLOCK = re.compile(r"^```python\n(?!>>>)(.*?)^```$", re.MULTILINE | re.DOTALL)
-PROCESSES = 2  # side by side; most scripts use all cores for a part of their time
 
 
 def draw(source: Path) -> None:
@@ -26,7 +25,7 @@ def draw(source: Path) -> None:
     scripts = {
         name: example.read_text(encoding="utf-8") if (example := path_of(name)).is_file() else code[name] for name in names
     }
-    with ThreadPoolExecutor(PROCESSES) as pool:
+    with ThreadPoolExecutor(MAX_PROCESSES) as pool:
         for name, folder in zip(names, pool.map(drawn, names, scripts.values()), strict=True):
             shutil.copytree(folder, source / "drawn" / name)
 

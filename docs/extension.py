@@ -1,4 +1,4 @@
-"""What Sphinx does with docstrings of the package; `sw.name` in a page links to the entry of that name."""
+"""Extension of Sphinx: it renders docstrings of the package, and links `sw.name` on a page to its entry."""
 
 from __future__ import annotations
 

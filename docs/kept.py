@@ -12,6 +12,7 @@ import strainwave
 from strainwave import _core
 
 KEPT = Path(__file__).resolve().parent.parent / "build" / "pages"
+MAX_PROCESSES = 2  # scripts at a time; most use all cores for a part of their time
 
 
 def kept(name: str, depends_on: bytes, make: Callable[[Path], None]) -> Path:

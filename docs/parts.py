@@ -1,4 +1,4 @@
-"""What the theory pages show of the parts of a drive: each is put into a small joint, and the joint is run."""
+"""Figures of the parts of a drive on theory pages: each part is simulated in a small joint."""
 
 from __future__ import annotations
 

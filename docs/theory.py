@@ -107,7 +107,7 @@ def numbers(model: Model, facts: Any) -> str:
 
 
 def caption(shown: dict[str, Any]) -> str:
-    """What a figure shows, in the words that make it."""
+    """Return the caption of a figure: the calls that make its models."""
     return "; ".join(f"{escaped(label)} `{call(model)}`".strip() for label, model in shown.items())
 
 
@@ -120,7 +120,7 @@ def call(model: Any) -> str:
 
 
 def unasked(model: Any, field: dict[str, Any]) -> Any:
-    """What a parameter is if it is not given."""
+    """Return the default of a parameter."""
     return getattr(model, field["follows"]) if field["follows"] else field["default"]
 
 

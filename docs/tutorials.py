@@ -19,15 +19,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-from kept import kept
+from kept import MAX_PROCESSES, kept
 
 SCRIPTS = Path(__file__).resolve().parents[1] / "examples" / "tutorials"
 HEAD = re.compile(r"^# %%(?: \[(markdown|console)\])?$", re.MULTILINE)  # of a cell
 COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)$", re.MULTILINE)
 MYST_COMMENT = re.compile(r"^ {0,3}%", re.MULTILINE)
 COMPILED = re.compile(r"^strainwave: compiling a kernel .*\n", re.MULTILINE)  # printed only if no earlier run compiled it
-RESOLUTION = 110  # dots per inch of a picture
-SIDE_BY_SIDE = 2  # tutorials that run at a time
+DOTS_PER_INCH = 110
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ class TutorialError(Exception):
 def write(folder: Path) -> None:
     """Write the page of every tutorial with its pictures and files; raise TutorialError if a cell fails."""
     scripts = sorted(SCRIPTS.glob("[0-9]*.py"))
-    with ThreadPoolExecutor(SIDE_BY_SIDE) as threads:
+    with ThreadPoolExecutor(MAX_PROCESSES) as threads:
         list(threads.map(lambda script: write_page(script, folder), scripts))
 
 
@@ -180,7 +179,7 @@ def drawn(name: str, folder: Path) -> Iterator[str]:
     for number in plt.get_fignums():
         figure = plt.figure(number)
         titles = [figure.get_suptitle(), *(axes.get_title() for axes in figure.axes)]
-        figure.savefig(folder / f"{name}-{number}.png", dpi=RESOLUTION)
+        figure.savefig(folder / f"{name}-{number}.png", dpi=DOTS_PER_INCH)
         plt.close(figure)
         yield f"![{next(filter(None, titles), 'the figure that this code draws')}]({name}-{number}.png)"
 

@@ -107,8 +107,8 @@ _ = panels[-1].set(xlabel="time [s]")
 # * **Record at the same temperature**, or compare after the same time of running: warm grease has less viscous friction.
 # * **Do not give another torque constant than before.** If all torques are changed by one factor, a message says that this is
 #   the sensor or the torque constant, and not the joint.
-# * **If no change explains the error**, a message says so. Then the log is of another joint, or a column or a unit is not as
-#   before.
+# * **If no change explains the error**, a message states that. The log is then of another joint, or a column or unit differs
+#   from the first log.
 #
 # All messages, and what `predict` compares of other files, are in [Compare a later recording with a saved
 # joint](../how-to/predict.md).

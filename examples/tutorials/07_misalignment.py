@@ -55,15 +55,15 @@ left.legend()
 # left. Look at the amplitude of order 2 over the load:
 
 # %%
-SPEED = 0.1  # rad/s of the output: 10 rad/s of the motor
+OUTPUT_SPEED = 0.1  # rad/s of the output: 10 rad/s of the motor
 TORQUE_CONSTANT = healthy.motor.torque_constant
 ratio = healthy.gear.kinematics.ratio
 
 
 def recording(drive, load, duration=10.0, noise=0.0, seed=0):
     """Return a recording of the drive at constant speed, with a torque [N.m] that holds the output back."""
-    start = {"input_speed": SPEED * ratio, "output_speed": SPEED, "torque": load}
-    command = sw.scenario.constant(SPEED, duration + 1.0)
+    start = {"input_speed": OUTPUT_SPEED * ratio, "output_speed": OUTPUT_SPEED, "torque": load}
+    command = sw.scenario.constant(OUTPUT_SPEED, duration + 1.0)
     run = sw.simulate(drive, command, dt=5e-4, sample=2e-3, load_torque=load, initial=start).between(1.0, duration + 1.0)
     noisy = run["current"] + np.random.default_rng(seed).normal(0.0, noise, len(run))
     return run.with_column("current", noisy, "A")
@@ -93,7 +93,7 @@ axes.legend()
 # the load, the duration, the sample rate, and the noise of a sample of the current. Measure the noise at standstill.
 
 # %%
-plan = {"speed": SPEED * abs(ratio), "duration": 10.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}
+plan = {"speed": OUTPUT_SPEED * abs(ratio), "duration": 10.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}
 limits = {load: sw.detection_limit(healthy, load_torque=load, **plan) for load in (0.0, 20.0)}
 for load, limit in limits.items():
     print(f"{load:4.0f} N.m: an error of {1e6 * limit.amplitude:6.1f} µrad is found, insensitive: {limit.insensitive}")

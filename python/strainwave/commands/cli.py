@@ -11,7 +11,7 @@ from typing import Annotated, Any, TextIO
 
 import typer
 
-from strainwave.commands import exit_codes
+from strainwave import exit_codes
 from strainwave.commands.cache import cache
 from strainwave.commands.classify import classify
 from strainwave.commands.compare import compare
@@ -107,14 +107,14 @@ def main() -> None:
             code = app(sys.argv[1:] or ["--help"], standalone_mode=False)
     except MISUSED as error:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
-        code = exit_codes.REFUSED
+        code = exit_codes.INPUT_REFUSED
     except (OverflowError, ZeroDivisionError) as error:
         _print(f"strainwave: a number is too large or too small to compute with: {one_line(str(error))}\n", sys.stderr)
-        code = exit_codes.REFUSED
+        code = exit_codes.INPUT_REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
         reason = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
         _print(f"strainwave: {one_line(with_options(reason, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
-        code = exit_codes.REFUSED
+        code = exit_codes.INPUT_REFUSED
     finally:
         _print(output.getvalue(), sys.stdout)
     sys.exit(code)

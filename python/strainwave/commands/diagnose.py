@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.commands import exit_codes
+from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
@@ -149,7 +149,7 @@ def diagnose(
     print(diagnose_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(written)[:-1])}")
     if any(each.alarms for each in found):
-        raise typer.Exit(exit_codes.CONTRADICTED)
+        raise typer.Exit(exit_codes.RESULT_CONTRADICTED)
 
 
 def _plan(gear: str | None, planned: RecordingPlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:

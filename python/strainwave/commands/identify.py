@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from strainwave.commands import exit_codes
+from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear, paths_in
 from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
@@ -40,7 +40,7 @@ def identify(
     fit = _every_joint if given.joint == ALL else _one_gear
     if fit(gear, opened, given.mapping_of(opened.files), accept, name, out) and not accept:
         print("a gear with a failed check is not written: settle it, or --accept writes it")
-        raise typer.Exit(exit_codes.CONTRADICTED)
+        raise typer.Exit(exit_codes.RESULT_CONTRADICTED)
 
 
 def _one_gear(

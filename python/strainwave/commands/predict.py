@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands import exit_codes
+from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
@@ -42,4 +42,4 @@ def predict(
     print(predict_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     if any(each.contradicts for each in found):
-        raise typer.Exit(exit_codes.CONTRADICTED)
+        raise typer.Exit(exit_codes.RESULT_CONTRADICTED)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands import exit_codes
+from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear
 from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
@@ -48,4 +48,4 @@ def rank(
             failed += failed_lines(check for check in checks_of(start, file) if check.failed)
     print("\n".join([*failed, *lines]).rstrip())
     if failed:
-        raise typer.Exit(exit_codes.CONTRADICTED)
+        raise typer.Exit(exit_codes.RESULT_CONTRADICTED)

@@ -16,6 +16,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import IO
 
+from strainwave import exit_codes
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.members import Population
 from strainwave.dataset.plan import DatasetPlan
@@ -28,7 +29,6 @@ POLL_SECONDS = 0.2
 PROGRESS_SECONDS = 2.0
 MAX_FINISH_SECONDS = 60.0  # that a worker may take to end after the last shard is there
 MAX_DEATHS_WITHOUT_SHARD = 5  # of workers in succession, while no shard was completed
-EXIT_REFUSED = 2  # exit code of a worker for an error that a repeated try does not cure
 MAX_ERROR_BYTES = 4000
 DASK_RETRIES = 5  # of a shard whose worker died
 SLURM_SCRIPT = "slurm.sh"
@@ -131,7 +131,7 @@ def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
             for part, (worker, code) in enumerate(zip(workers, codes, strict=True)):
                 if code is None or board.done >= whole or (code == 0 and None in codes):
                     continue  # at work, or nothing was left for it
-                if code == EXIT_REFUSED:
+                if code == exit_codes.INPUT_REFUSED:
                     raise OSError(f"a worker stopped: {worker.message()}")
                 deaths += 1
                 if deaths > MAX_DEATHS_WITHOUT_SHARD:

@@ -11,7 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import typeset
-from strainwave.drawing.style import FIGURE_WIDTH, HANDLE, LIGHT, LINE, RESOLUTION, RUNS, STYLE, TITLE_LINE
+from strainwave.drawing.style import (
+    DOTS_PER_INCH,
+    FIGURE_WIDTH,
+    LETTERS_PER_HANDLE,
+    LETTERS_PER_LINE,
+    LETTERS_PER_TITLE_LINE,
+    LIGHT,
+    RUNS,
+    STYLE,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,10 +47,10 @@ def new_figure(height: float, title: str = "") -> Iterator[Figure]:
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", STYLE | {"figure.dpi": RESOLUTION}]):
+    with style.context(["default", STYLE | {"figure.dpi": DOTS_PER_INCH}]):
         figure = Figure(figsize=(FIGURE_WIDTH, height))
         if title:
-            figure.suptitle(textwrap.fill(title, TITLE_LINE), x=0.0, ha="left", size="large")
+            figure.suptitle(textwrap.fill(title, LETTERS_PER_TITLE_LINE), x=0.0, ha="left", size="large")
         yield figure
 
 
@@ -89,7 +98,7 @@ def _blocks(chosen: Mask) -> Iterator[slice]:
 
 def label_axes(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
     """Name the quantities of both axes, with the unit prefix that suits their size; that of the vertical axis is its title."""
-    axes.set_title(textwrap.fill(f"{y}{scaled(axes.yaxis, y_unit)}".strip(), LINE))
+    axes.set_title(textwrap.fill(f"{y}{scaled(axes.yaxis, y_unit)}".strip(), LETTERS_PER_LINE))
     if x:
         label_abscissa(axes, x, x_unit)
 
@@ -117,7 +126,7 @@ def line_style(place: int) -> dict[str, Any]:
 def panel_legend(axes: Axes) -> None:
     """Place the legend of one panel of several above it, to the right of its unit."""
     labels = axes.get_legend_handles_labels()[1]
-    columns = max(1, (LINE - UNIT_LETTERS) // (max(map(len, labels)) + HANDLE))
+    columns = max(1, (LETTERS_PER_LINE - UNIT_LETTERS) // (max(map(len, labels)) + LETTERS_PER_HANDLE))
     axes.legend(
         loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.0, borderpad=0.2, columnspacing=1.2
     )
@@ -136,9 +145,9 @@ def scaled(axis: Axis, unit: str) -> str:
 def legend(figure: Figure | SubFigure, axes: Axes, *, below: bool = False) -> None:
     """Place the legend above the drawing, or below it if the figure has a title; as many labels beside each other as fit."""
     handles, labels = axes.get_legend_handles_labels()
-    lines = [textwrap.fill(label, LINE) for label in labels]
+    lines = [textwrap.fill(label, LETTERS_PER_LINE) for label in labels]
     widest = max(len(line) for label in lines for line in label.splitlines())
-    columns = max(1, LINE // (widest + HANDLE))
+    columns = max(1, LETTERS_PER_LINE // (widest + LETTERS_PER_HANDLE))
     place: Literal["outside lower center", "outside upper left"] = "outside lower center" if below else "outside upper left"
     figure.legend(handles, lines, loc=place, ncols=columns, borderpad=0.0, columnspacing=1.2)
 

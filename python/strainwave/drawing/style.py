@@ -24,10 +24,10 @@ RUNS = (  # colours, lines and widths of curves, in turn
     ("model", "-", 2.0), ("measured", "--", 1.5), ("held-out", ":", 1.3), ("earlier", "-.", 1.3),
 )  # fmt: skip
 FIGURE_WIDTH = 4.4  # inches: its letters are as large as those of the page, on a telephone as well as on a desk
-LINE = 48  # letters that fit beside each other in this width
-TITLE_LINE = 50  # letters of a title that fit in this width
-RESOLUTION = 160  # dots per inch of a figure as pixels
-HANDLE = 5  # letters that the line before a label takes
+LETTERS_PER_LINE = 48  # that fit in this width
+LETTERS_PER_TITLE_LINE = 50  # of a title
+DOTS_PER_INCH = 160  # of a figure as pixels
+LETTERS_PER_HANDLE = 5  # width of the line before a label
 
 STYLE = {
     "axes.axisbelow": True,

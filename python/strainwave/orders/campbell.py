@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 MIN_SAMPLES = 16  # of a stretch: its spectrum has 8 frequencies
 MIN_STRETCHES = 4  # of a recording
-OVERLAP = 0.75  # share of a stretch that the next one repeats
+OVERLAP_SHARE = 0.75  # share of a stretch that the next one repeats
 MAX_UNEVEN = 1e-3  # relative difference of two intervals of time that count as equal
 MAX_STRETCH_COUNT = 100_000  # whose spectra are computed
 
@@ -106,7 +106,7 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
         raise ValueError(
             f"stretch = {stretch:g} s has {samples} samples of {interval:g} s; take {MIN_SAMPLES * interval:g} s or more"
         )
-    repeated = int(OVERLAP * samples)
+    repeated = int(OVERLAP_SHARE * samples)
     count = (len(values) - repeated) // (samples - repeated)
     if not MIN_STRETCHES <= count <= MAX_STRETCH_COUNT:
         raise ValueError(

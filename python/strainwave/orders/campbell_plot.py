@@ -14,9 +14,9 @@ from strainwave.drawing import marks
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HEIGHT = 3.8  # inches
+FIGURE_HEIGHT = 3.8  # inches
 DYNAMIC_RANGE = 1e4  # largest over smallest amplitude that a colour shows
-HEADROOM = 1.5  # of the highest eigenfrequency drawn
+MAX_FREQUENCY_RATIO = 1.5  # of the highest eigenfrequency drawn
 LABEL_SHARE = 0.97  # of the way along the line of an order, where its name stands
 
 
@@ -33,7 +33,7 @@ def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Seq
     shown = diagram.frequency <= top
     column = diagram.column.replace("_", " ")
     dashed = f"; dashed: {'eigenfrequency' if len(eigenfrequencies) == 1 else 'eigenfrequencies'}" if eigenfrequencies else ""
-    with marks.new_figure(HEIGHT, f"Campbell diagram of {column}{dashed}") as figure:
+    with marks.new_figure(FIGURE_HEIGHT, f"Campbell diagram of {column}{dashed}") as figure:
         axes = figure.subplots()
         largest = float(diagram.amplitude.max())
         colours = axes.pcolormesh(
@@ -65,5 +65,5 @@ def _top(frequency: Any, speed: float, orders: Sequence[float], eigenfrequencies
     """Return the highest frequency of the axis: above all eigenfrequencies, and what orders reach if there are none."""
     nyquist = float(frequency[-1])
     if eigenfrequencies:
-        return min(nyquist, HEADROOM * max(eigenfrequencies))
+        return min(nyquist, MAX_FREQUENCY_RATIO * max(eigenfrequencies))
     return min(nyquist, max(orders, default=np.inf) * speed / tau)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
 Array = NDArray[np.float64]
-HEIGHT = 4.3  # inches
+FIGURE_HEIGHT = 4.3  # inches
 NINETY_FIVE = 1.959963984540054  # standard deviations about the mean that contain 95 % of a normal distribution
 MAX_POINTS = 600  # of a loop that are drawn
 MAX_INTERVALS = 2.5  # median intervals between two samples that a line joins
@@ -40,7 +40,7 @@ def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
 
 def pictures_figure(pictures: Sequence[Picture], title: str) -> Figure:
     """Return the figure of one picture or several, below each other."""
-    with marks.new_figure(HEIGHT * len(pictures), title) as figure:
+    with marks.new_figure(FIGURE_HEIGHT * len(pictures), title) as figure:
         parts = np.atleast_1d(np.array(figure.subfigures(len(pictures), 1)))
         for part, picture in zip(parts, pictures, strict=True):
             marks.legend(part, draw_picture(part, picture), below=True)

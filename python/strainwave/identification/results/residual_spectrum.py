@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 MAX_SEGMENT = 4096  # samples, of which spectra are averaged
 MIN_SAMPLES = 32
-HEIGHT, PANEL_HEIGHT = 1.0, 2.4  # inches
+HEAD_HEIGHT, PANEL_HEIGHT = 1.0, 2.4  # inches
 
 
 def amplitude_spectra(time: Array, *series: Array) -> tuple[Array, ...]:
@@ -50,7 +50,7 @@ def spectrum_figure(part: RecordFit, title: str) -> Figure:
     log: Any = part.experiment
     if not hasattr(log, "time"):
         raise ValueError("the record has no time: only a log has a spectrum; `plot` shows the residual of a table or a loop")
-    with marks.new_figure(HEIGHT + PANEL_HEIGHT * len(log.channels), title) as figure:
+    with marks.new_figure(HEAD_HEIGHT + PANEL_HEIGHT * len(log.channels), title) as figure:
         axes = figure.subplots(len(log.channels), 1, sharex=True, squeeze=False)[:, 0]
         channels = zip(axes, log.channels, log.units, log.measured, part.residuals, strict=True)
         for axis, channel, unit, measured, residual in channels:
