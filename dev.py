@@ -283,7 +283,7 @@ def complete(made: Path, python: Path) -> None:
     call(PYTHON, "-m", "wheel", "unpack", "--dest", unpacked, made)
     (package,) = unpacked.glob("*/strainwave")
     call(python, "-I", "src/ship.py", package / "kernels")
-    shutil.copytree(OUT / "docs", package / "docs", ignore=shutil.ignore_patterns(".buildinfo", "_sources"))
+    shutil.copytree(OUT / "docs", package / "docs")
     call(PYTHON, "-m", "wheel", "pack", "--dest-dir", made.parent, package.parent)
 
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import degrees, pi
+from math import pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import strainwave as sw
+from strainwave.typeset import ARCMIN_PER_RADIAN
 
 MIN_END = 1.5  # largest torque of a torsion test over T2, at least, so that K3 shows
 LOST_MOTION_SHARE = 0.04  # of the rated torque, at which lost motion is measured
 LOST_MOTION_BOUND = 1.0  # arcmin, in tables of the maker (CHA engineering data)
-SPEED, TURNS = 10.0, 2.0  # rad/s of the input, and its revolutions, of the run that measures the kinematic error
+INPUT_SPEED, INPUT_TURNS = 10.0, 2.0  # rad/s of the input, and its revolutions, of the run that measures the kinematic error
 SPRING_FREQUENCY = 1000.0  # rad/s: eigenfrequency of output and spring. At 20 rad/s the output follows the input
 STARTING, BACKDRIVING, RUNNING = "starting torque", "backdriving torque", "running torque at 3500 rpm"
 RUNNING_SPEED = 3500.0 * 2.0 * pi / 60.0  # rad/s
@@ -36,7 +37,7 @@ class Figure:
 
     Attributes:
         name: of the set
-        printed: by the maker; a bound for what he bounds
+        printed: by the maker; a bound for hysteresis loss, lost motion and accuracy
         simulated: by the package
         assumed: True if the set takes the printed number from a similar gear
     """
@@ -91,17 +92,20 @@ def lost_motion(gear: Any, rated: float) -> float:
 
 def kinematic_error(gear: Any) -> float:
     """Return the largest less the smallest error between the shafts [arcmin], of a run without load at constant speed."""
-    load = sw.loads.Inertia(inertia=gear.stiffness.k1 / SPRING_FREQUENCY**2)
-    drive = sw.Drive(gear=gear, motor=sw.motor.AccelerationSource(), control=sw.control.OpenLoop(), load=load)
-    run = sw.simulate(
-        drive, sw.scenario.constant(0.0, 2.0 * pi * TURNS / SPEED), initial={"input_speed": SPEED}, sample=1e-3,
-        record=["input_angle", "output_angle"],
-    )  # fmt: skip
+    drive = sw.Drive(gear=gear, motor=sw.motor.AccelerationSource(), control=sw.control.OpenLoop(), load=light_load(gear))
+    still = sw.scenario.constant(0.0, 2.0 * pi * INPUT_TURNS / INPUT_SPEED)
+    record = ["input_angle", "output_angle"]
+    run = sw.simulate(drive, still, initial={"input_speed": INPUT_SPEED}, sample=1e-3, record=record)
     return arcmin(np.ptp(run["input_angle"] / gear.kinematics.ratio - run["output_angle"]))
 
 
+def light_load(gear: Any) -> Any:
+    """Return a load so light that its vibration on the spring of a gear is fast."""
+    return sw.loads.Inertia(inertia=gear.stiffness.k1 / SPRING_FREQUENCY**2)
+
+
 def arcmin(angle: float) -> float:
-    return 60.0 * degrees(float(angle))
+    return ARCMIN_PER_RADIAN * float(angle)
 
 
 def figures_of(name: str) -> dict[str, Figure]:
@@ -160,8 +164,7 @@ def torque_without_load(gear: Any, figure: str, printed: float) -> float:
     """Return a torque without load [N.m]: the first that turns the input in a slow run, or the steady friction at a speed."""
     if figure == RUNNING:
         return float(gear.friction_input.steady(RUNNING_SPEED))
-    load = sw.loads.Inertia(inertia=gear.stiffness.k1 / SPRING_FREQUENCY**2)
-    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(), control=sw.control.OpenLoop(), load=load)
+    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(), control=sw.control.OpenLoop(), load=light_load(gear))
     still, ramp = sw.scenario.constant(0.0, RAMP_DURATION), sw.scenario.ramp(MAX_SHARE * printed / RAMP_DURATION, RAMP_DURATION)
     if figure == BACKDRIVING:
         run = sw.simulate(drive, still, load_torque=ramp, sample=1e-3)

@@ -1,4 +1,4 @@
-"""Extension of Sphinx: it renders docstrings of the package, and links `sw.name` on a page to its entry."""
+"""Conversion of docstrings for Sphinx; `sw.name` on a page links to the entry of that name."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ import theory
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 PLACE = "<!-- the pictures of all examples -->"  # on the page gallery.md
 PICTURE = re.compile(r'savefig\("(\w+\.png)"')
-PAGES = {  # that say more, by the number of an example
+PAGES = {  # with more on an example, by its number
     "02": ("reference/catalogue.md",),
     "03": ("how-to/drives.md",),
     "04": ("how-to/drives.md", "reference/gear-files.md"),

@@ -12,14 +12,15 @@ import strainwave
 from strainwave import _core
 
 KEPT = Path(__file__).resolve().parent.parent / "build" / "pages"
+DIGEST_DIGITS = 16  # of the name of a folder
 MAX_PROCESSES = 2  # scripts at a time; most use all cores for a part of their time
 
 
 def kept(name: str, depends_on: bytes, make: Callable[[Path], None]) -> Path:
     """Return the folder that `make` fills; it is called if `depends_on` or the package changed since the last build."""
-    folder = KEPT / f"{name}-{hashlib.sha256(depends_on + package_digest()).hexdigest()[:16]}"
+    folder = KEPT / f"{name}-{hashlib.sha256(depends_on + package_digest()).hexdigest()[:DIGEST_DIGITS]}"
     if not folder.is_dir():
-        for old in KEPT.glob(f"{name}-*"):
+        for old in KEPT.glob(f"{name}-{'[0-9a-f]' * DIGEST_DIGITS}*"):
             shutil.rmtree(old)
         begun = folder.with_suffix(".begun")
         begun.mkdir(parents=True)

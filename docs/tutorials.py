@@ -73,7 +73,7 @@ def run_alone(script: Path, folder: Path) -> None:
 
 
 def supplied_with(script: Path) -> list[Path]:
-    """Return the files beside a tutorial that it names."""
+    """Return the files in the folder of a tutorial that it names."""
     text = script.read_text(encoding="utf-8")
     return [path for path in sorted(script.parent.glob("*.*")) if path.suffix != ".py" and is_named(path.name, text)]
 

@@ -29,7 +29,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 
 # %% [markdown]
 # This log is good for identification: the joint moves both ways, slowly and fast, and through a large angle. A log of your
-# own should do the same for 20 s or more.
+# own should do the same for half a minute or more.
 #
 # ## 2. Identify the joint
 #
@@ -107,7 +107,7 @@ for each in found.states:
 # * **breakaway** has no standard deviation: it was set equal to the Coulomb torque, because no fall of the friction at low
 #   speed was found. A [table of friction](05_which_friction.md) determines it.
 #
-# The report says for each number that is not determined which measurement would.
+# For each number that is not determined, the report lists the measurement that determines it.
 #
 # ## 5. Use the gear
 #

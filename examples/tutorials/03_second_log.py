@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Check a gear against a second log
 #
-# At the end you know whether a joint still is what its gear file says, and if not, what changed. It takes ten minutes. You
+# At the end you know whether a joint still agrees with its gear file, and if not, what changed. It takes ten minutes. You
 # need `strainwave` and an empty folder with the files above.
 #
 # [Tutorial 1](01_robot_log.md) made a gear file from a log. Two questions remain. Does it predict another motion? And half a

@@ -17,7 +17,7 @@
 # | column | meaning |
 # |---|---|
 # | `numbers` | fitted numbers of the law |
-# | `error held out` | each row is predicted from the others; root mean square, ± its standard error |
+# | `error held out` | each tenth of the rows is predicted from the rest; root mean square, ± its standard error |
 # | `residuals together` | how many neighbouring rows are wrong in the same sense; if more than 1, the law lacks something |
 # | `cost` | time of the law in a simulation, for each evaluation |
 #

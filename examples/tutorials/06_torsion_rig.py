@@ -82,7 +82,7 @@ for axes, number in zip(panels, (1, 19), strict=True):
 # ## From photographs to a loop
 #
 # `read_test` finds the markers in each photograph, computes angle and torque, and takes out the friction of the pulleys and
-# the compliance of the rig. (Do not print `test` itself: it contains every marker of every photograph.)
+# the compliance of the rig.
 
 # %%
 test = sw.rig.read_test("torsion-test")
@@ -175,5 +175,5 @@ print(f"friction {mine.friction_input.coulomb:.4f} N.m found, {on_the_rig.fricti
 # ## Where to go on
 #
 # * [A torsion test rig](../how-to/torsion-rig.md): what to build, cameras, uncertainty.
-# * [What a torsion loop says](../how-to/torsion-analysis.md): the definitions of stiffness, hysteresis and lost motion.
+# * [Evaluate a torsion loop](../how-to/torsion-analysis.md): the definitions of stiffness, hysteresis and lost motion.
 # * [Simulate a joint](04_simulate_a_joint.md): what this gear does in a joint.

@@ -144,8 +144,7 @@ def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tutorials: Module
     downloads = re.findall(r"\{download\}`([^`]+)`", page)
     assert downloads[0] == script.name
     assert [name for name in downloads if not (tmp_path / name).is_file()] == []
-    if script.stem in CLAIMS:
-        CLAIMS[script.stem](page)
+    CLAIMS[script.stem](page)
 
 
 def test_the_files_of_tutorials_are_small_text_and_each_is_used(tutorials: ModuleType) -> None:

@@ -16,7 +16,7 @@ struct AccelerationSource {
         .. math:: \dot\omega = u, \qquad \tau = J_{in} u + (T + F_{mesh})\,(1/i - e') + F_{in}
 
         with u the actuation of the controller [rad/s2], and omega the input speed. Angle and speed at the start are initial
-        values of the run; Motion of strainwave.simulation.motion calculates both from a measured angle. The torque tau is a
+        values of the run; InputMotion of strainwave.simulation.motion calculates both from a measured angle. The torque tau is a
         result: the torque that a motor of that inertia must give. The motion of input and output does not depend on inertia
         and friction at the input, nor on friction of the mesh. At instants of rest, set-valued friction of both is reported as
         0.

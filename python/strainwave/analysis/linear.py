@@ -116,14 +116,16 @@ class Linearisation(ComparedByFields):
         """
         from strainwave.analysis.plots import Response, bode_figure
 
-        frequencies = self._frequencies() if frequency is None else np.atleast_1d(arguments.numbers("frequency", frequency))
+        frequencies = (
+            self._drawn_frequencies() if frequency is None else np.atleast_1d(arguments.numbers("frequency", frequency))
+        )
         if frequencies.size == 0 or frequencies.min() <= 0.0:
-            raise ValueError("frequency must hold positive numbers [Hz], one at least; the axis is logarithmic")
+            raise ValueError("frequency must have one positive number [Hz] or more; the axis is logarithmic")
         response = self.response(frequencies, output, input)
         title = f"Linear response of {output.replace('_', ' ')} to {input.replace('_', ' ')}"
         return bode_figure([Response("", frequencies, response)], ratio_of_units(self.units[output], self.units[input]), title)
 
-    def _frequencies(self) -> Array:
+    def _drawn_frequencies(self) -> Array:
         """Return the frequencies at which a response is drawn [Hz]."""
         size = self.eigenfrequencies
         size = size[size > MIN_RELATIVE_POLE * size.max(initial=0.0)] / tau

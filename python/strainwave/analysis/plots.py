@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 BODE_HEIGHT = 4.2  # inches
 PHASE_STEPS = (1.0, 5.0, 15.0, 45.0, 90.0, 180.0, 360.0)  # degrees between two ticks
 MAX_PHASE_TICKS = 6
-MAX_POINTS = 40  # frequencies of a response, each of which is drawn as a point
+MAX_MARKED_FREQUENCIES = 40  # frequencies of a response, each of which is drawn as a point
 BAR_HEIGHT, MARGIN_HEIGHT = 0.24, 1.15  # inches
 MAX_BARS = 12  # parameters that are drawn, the strongest
 
@@ -49,7 +49,7 @@ def bode_figure(responses: Sequence[Response], unit: str, title: str) -> Figure:
     with marks.new_figure(BODE_HEIGHT, title) as figure:
         magnitude, phase = figure.subplots(2, 1, sharex=True)
         for place, (label, frequency, response) in enumerate(responses):
-            points = "o" if len(frequency) <= MAX_POINTS else ""
+            points = "o" if len(frequency) <= MAX_MARKED_FREQUENCIES else ""
             style = {**marks.line_style(place), "marker": points, "label": label}
             magnitude.plot(frequency, np.abs(response), **style)
             phase.plot(frequency, phase_in_degrees(response), **style)

@@ -184,7 +184,7 @@ def _response(
 
 def _check(frequencies: Array, signal: str, dt: float) -> None:
     if frequencies.ndim != 1 or frequencies.size == 0:
-        raise ValueError("frequency must hold positive numbers [Hz], one at least")
+        raise ValueError("frequency must have one positive number [Hz] or more")
     for frequency in frequencies.tolist():
         arguments.number("frequency", frequency, "Hz", "[]", _MIN_FREQUENCY, 1.0 / MIN_DURATION)
         check_instants(1.0 / frequency, dt, "take a higher frequency, or a longer dt")

@@ -201,7 +201,7 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
 def _pushed(drive: Drive, state: Array, freed: Array, inputs: Array) -> Array:
     """`freed` with the shaft let go that an integral of the controller, growing on, pushes until it gives way.
 
-    The input, if it sticks; else the output: that of a position loop is held off its command while the input winds it up.
+    The input, if it sticks; else the output: that of a position loop stays away from its command while the input winds it up.
     """
     layout, pushed, rates = StateLayout(drive), freed.copy(), Rates.of(drive, state, inputs)
     control = layout.places["control"]

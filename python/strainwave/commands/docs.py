@@ -53,7 +53,7 @@ def _package() -> Path:
 
 
 def _stem(page: str) -> str:
-    """Return the part of a page's name that its file has, without characters that a search for files would interpret."""
+    """Return the path of a page below a folder, without characters that a search for files would interpret."""
     from glob import escape
 
-    return escape(page.rpartition("/")[2].removesuffix(".html"))
+    return escape(page.strip("/").removesuffix(".html"))

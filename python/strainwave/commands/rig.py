@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, radians
@@ -228,9 +229,8 @@ def analyse(
     if left := [each for each in there if each not in files]:
         print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
     for each in loop_names(found.loops):
-        print(
-            f"for a gear: strainwave identify {gear or 'GEAR'} {'' if friction is None else f'{friction} '}{target / each}.csv"
-        )
+        words = ["identify", gear or "GEAR", *([] if friction is None else [str(friction)]), f"{target / each}.csv"]
+        print(f"for a gear: strainwave {shlex.join(words)}")
 
 
 @rig.command()

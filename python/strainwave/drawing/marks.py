@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-MAX_STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
-MAX_POINTS = 150  # samples up to which each is drawn as a point
+MAX_CURVE_STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
+MAX_MARKED_SAMPLES = 150  # samples up to which each is drawn as a point
 UNIT_LETTERS = 8  # of the unit that stands to the left of a legend
 MAX_SHORT_LOG_AXIS = 150.0  # ratio of the ends of a logarithmic axis up to which 2 and 5 have numbers, too
-MAX_LINEAR_RATIO = 100.0  # ratio of speeds beyond which their axis is logarithmic
+MAX_LINEAR_SPEED_RATIO = 100.0  # ratio of speeds beyond which their axis is logarithmic
 
 
 @contextmanager
@@ -55,25 +55,25 @@ def new_figure(height: float, title: str = "") -> Iterator[Figure]:
 
 
 def speed_axis(axes: Axes, speed: Array) -> None:
-    """Sets the axis of speeds: logarithmic, for either direction by itself, where they lie far apart."""
+    """Set the axis of speeds: logarithmic if they span more than two decades; each direction has its own branch."""
     slowest, fastest = np.abs(speed[speed != 0.0]).min(), np.abs(speed).max()
-    if fastest > MAX_LINEAR_RATIO * slowest and np.all(speed > 0.0):
+    if fastest > MAX_LINEAR_SPEED_RATIO * slowest and np.all(speed > 0.0):
         axes.set_xscale("log")
-    elif fastest > MAX_LINEAR_RATIO * slowest:
+    elif fastest > MAX_LINEAR_SPEED_RATIO * slowest:
         decades = 10.0 ** np.arange(np.ceil(np.log10(slowest)), np.log10(fastest))
         axes.set_xscale("symlog", linthresh=slowest, linscale=0.3)
         axes.set_xticks([*-decades[::-1], 0.0, *decades])
 
 
 def curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
-    """A line, of a long record drawn by the extremes of short stretches."""
-    axes.plot(*envelope(x, y, MAX_STRETCHES), **style)
+    """Draw a line; a long record is drawn by the extremes of short stretches."""
+    axes.plot(*envelope(x, y, MAX_CURVE_STRETCHES), **style)
 
 
 def residual_curve(axes: Axes, x: Array, residual: Array, color: str) -> None:
-    """Each by itself where there are few, else as a curve."""
+    """Draw a residual: a point for each sample if there are few, else a curve."""
     axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
-    if len(x) <= MAX_POINTS:
+    if len(x) <= MAX_MARKED_SAMPLES:
         axes.vlines(x, 0.0, residual, color=color, linewidth=0.8)
         axes.plot(x, residual, "o", color=color, markersize=2.8)
     else:
@@ -81,7 +81,7 @@ def residual_curve(axes: Axes, x: Array, residual: Array, color: str) -> None:
 
 
 def shade(axes: Axes, x: Array, held_out: Mask) -> None:
-    """Marks what took no part in the fit."""
+    """Shade the samples that took no part in the fit."""
     between = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
     label = "held out"
     for block in _blocks(held_out):
@@ -91,7 +91,7 @@ def shade(axes: Axes, x: Array, held_out: Mask) -> None:
 
 
 def _blocks(chosen: Mask) -> Iterator[slice]:
-    """The stretches of neighbours that are chosen."""
+    """Return the stretches of chosen neighbours."""
     edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
     return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
 
@@ -133,7 +133,7 @@ def panel_legend(axes: Axes) -> None:
 
 
 def scaled(axis: Axis, unit: str) -> str:
-    """Numbers an axis, all to the same digit if it is linear; gives the unit with its prefix."""
+    """Number an axis, all to the same digit if it is linear; return the unit with its prefix."""
     from strainwave.drawing.ticks import Ticks
 
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
@@ -143,7 +143,7 @@ def scaled(axis: Axis, unit: str) -> str:
 
 
 def legend(figure: Figure | SubFigure, axes: Axes, *, below: bool = False) -> None:
-    """Place the legend above the drawing, or below it if the figure has a title; as many labels beside each other as fit."""
+    """Place the legend above the drawing, or below it if the figure has a title, in as many columns as fit."""
     handles, labels = axes.get_legend_handles_labels()
     lines = [textwrap.fill(label, LETTERS_PER_LINE) for label in labels]
     widest = max(len(line) for label in lines for line in label.splitlines())

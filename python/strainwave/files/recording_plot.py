@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 MAX_RATIO_IN_PANEL = 20.0  # of the largest values of two curves; beyond it the smaller one is flat, and gets its own panel
-MAX_ROUNDING = 1e-9  # swing over the largest value of its unit; a curve that swings less is constant but for rounding
+MIN_RELATIVE_SWING = 1e-9  # swing over the largest value of its unit; a curve that swings less is constant but for rounding
 MAX_DRAWABLE = 1e300  # value; the range of an axis, with its margins, must be a number too
-MAX_STRETCHES = 5_000  # of a long curve, each drawn by its extremes
+MAX_RECORDING_STRETCHES = 5_000  # of a long curve, each drawn by its extremes
 MAX_IN_TITLE = 3  # columns that a title names
 PANEL_HEIGHT, MARGIN_HEIGHT = 1.3, 0.7  # inches
 
@@ -45,7 +45,9 @@ def recording_figure(
         for axis, panel in zip(axes, panels, strict=True):
             for place, name in enumerate(panel):
                 style = marks.line_style(place)
-                axis.plot(*marks.envelope(columns[against], columns[name], MAX_STRETCHES), label=in_words(name), **style)
+                axis.plot(
+                    *marks.envelope(columns[against], columns[name], MAX_RECORDING_STRETCHES), label=in_words(name), **style
+                )
             axis.margins(x=0.01)
             marks.label_axes(axis, in_words(panel[0]) if len(panel) == 1 else "", units[panel[0]])
             if len(panel) > 1:
@@ -75,7 +77,7 @@ def _changing(columns: Mapping[str, Array], units: Mapping[str, str], against: s
     for name in names:
         largest[units[name]] = max(largest[units[name]], float(np.abs(columns[name]).max()))
     half = {name: 0.5 * float(columns[name].max()) - 0.5 * float(columns[name].min()) for name in names}
-    return [name for name in names if half[name] > MAX_ROUNDING * largest[units[name]]] or names
+    return [name for name in names if half[name] > MIN_RELATIVE_SWING * largest[units[name]]] or names
 
 
 def _panels(columns: Mapping[str, Array], units: Mapping[str, str]) -> list[list[str]]:

@@ -264,7 +264,6 @@ def check(unit: str) -> str:
     return standard
 
 
-@lru_cache(maxsize=1024)
 def ratio_of_units(unit: str, by: str) -> str:
     """Return the unit of a quantity over another one.
 
@@ -274,6 +273,7 @@ def ratio_of_units(unit: str, by: str) -> str:
     return check(f"({unit})/({by})")
 
 
+@lru_cache(maxsize=1024)
 def _spelling(unit: pint.Unit) -> str:
     from pint.util import to_units_container
 

@@ -166,7 +166,8 @@ def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[
     failed = {each.name for each in results if each.failed}  # a check of these numbers has failed already
     return (
         *(check for each in results for check in each.checks), *_nothing_determined(results),
-        *with_start_set(start, parameters, failed), *gravity_in_ratings(start, parameters), *between_files(parameters, results),
+        *with_start_set(start, parameters, failed), *gravity_in_ratings(start, parameters, failed),
+        *between_files(parameters, results),
     )  # fmt: skip
 
 

@@ -119,7 +119,7 @@ def find_compiler() -> Compiler:
             return compiler
     raise NoCompilerError(
         "there is no C++20 compiler (g++ 12, clang++ 14 or later, or what CXX names); install one, or `pip install "
-        "strainwave[compiler]`"
+        "'strainwave[compiler]'`"
     )
 
 

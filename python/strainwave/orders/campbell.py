@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
+from strainwave.files.units import convert
+from strainwave.orders.turning import evenly
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +23,6 @@ Array = NDArray[np.float64]
 MIN_SAMPLES = 16  # of a stretch: its spectrum has 8 frequencies
 MIN_STRETCHES = 4  # of a recording
 OVERLAP_SHARE = 0.75  # share of a stretch that the next one repeats
-MAX_UNEVEN = 1e-3  # relative difference of two intervals of time that count as equal
 MAX_STRETCH_COUNT = 100_000  # whose spectra are computed
 
 
@@ -36,6 +37,7 @@ class Campbell(ComparedByFields):
         column: its name
         unit: of the amplitude
         speed_column: name of the column of the speed
+        remarks: on uneven and missing times
     """
 
     speed: Array
@@ -44,6 +46,7 @@ class Campbell(ComparedByFields):
     column: str
     unit: str
     speed_column: str
+    remarks: tuple[str, ...] = ()
 
     def plot(self, *, orders: Sequence[float] = (), eigenfrequencies: Sequence[float] = ()) -> Figure:
         """Return the Campbell diagram: the amplitude over speed and frequency, with lines of orders and eigenfrequencies.
@@ -74,14 +77,14 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
     line of an order is wider than it need be.
 
     Args:
-        recording: with `time` in even steps, the column and the speed
+        recording: with `time`, the column and the speed; uneven times are put on an even clock
         column: the name of a column, as "torque"
         speed: the name of the column with the speed of the shaft
         stretch: duration of each stretch [s]; frequencies are resolved to about 2 / `stretch`
 
     Raises:
         TypeError: `recording` is no recording, or a name is no text
-        ValueError: a column is missing, time is uneven, the recording is too short, its speed does not change, or `stretch` has
+        ValueError: a column or the time is missing, the recording is too short, column or speed do not change, or `stretch` has
             fewer than 16 samples
 
     >>> import numpy as np
@@ -99,8 +102,11 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
     from scipy.signal import spectrogram
 
     check_recording("recording", recording)
-    values, turning = recording[column], np.abs(recording.values(speed, "rad/s"))
-    interval = _even_interval(recording.time)
+    record = evenly(recording, [column, speed])
+    if not record.timed:
+        raise ValueError("the recording has no time: a Campbell diagram needs it")
+    values, interval = record.columns[column], record.step
+    turning = np.abs(convert(record.columns[speed], recording.unit(speed), "rad/s"))
     samples = round(arguments.seconds("stretch", stretch) / interval)
     if samples < MIN_SAMPLES:
         raise ValueError(
@@ -113,6 +119,8 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
             f"the recording has {max(count, 0)} stretches of {stretch:g} s, of {MIN_STRETCHES} to {MAX_STRETCH_COUNT} allowed; "
             f"take a {'shorter' if count < MIN_STRETCHES else 'longer'} stretch"
         )
+    if not np.ptp(values) > 0.0:
+        raise ValueError(f"{column} does not change: its spectrum is zero")
     if not np.ptp(turning) > 0.0:
         raise ValueError(f"{speed} does not change: a Campbell diagram needs a run-up or a run-down")
     frequency, _, power = spectrogram(
@@ -123,17 +131,4 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
     means = (sums[starts + samples] - sums[starts]) / samples
     order = np.argsort(means, kind="stable")
     amplitude = np.sqrt(2.0 * power.T[order])
-    return Campbell(means[order], frequency, amplitude, column, recording.unit(column), speed)
-
-
-def _even_interval(time: Array) -> float:
-    """Return the interval of even samples [s]."""
-    steps = np.diff(time)
-    if len(steps) < MIN_SAMPLES:
-        raise ValueError(f"the recording has {len(time)} samples; a Campbell diagram needs {MIN_SAMPLES + 1} or more")
-    mean = float(steps.mean())
-    if np.abs(steps - mean).max() > MAX_UNEVEN * mean:
-        raise ValueError(
-            f"time is uneven: intervals from {steps.min():g} to {steps.max():g} s; put the recording on an even clock first"
-        )
-    return mean
+    return Campbell(means[order], frequency, amplitude, column, recording.unit(column), speed, record.remarks)

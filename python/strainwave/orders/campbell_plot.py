@@ -44,7 +44,7 @@ def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Seq
         axes.set_facecolor("#00224e")  # the darkest of cividis
         bar = figure.colorbar(colours, ax=axes, location="bottom", aspect=40, pad=0.02)
         bar.set_label(f"amplitude [{typeset.unit(diagram.unit)}]" if diagram.unit != "1" else "amplitude")
-        for frequency in eigenfrequencies:
+        for frequency in (each for each in eigenfrequencies if each <= top):
             axes.axhline(frequency, color="white", linestyle="--", linewidth=1.0)
             label = f" {typeset.quantity(frequency, 'Hz')}"
             axes.text(1.0, frequency, label, transform=axes.get_yaxis_transform(), va="center", fontsize="small")

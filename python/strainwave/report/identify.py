@@ -23,7 +23,7 @@ from strainwave.identification.results.combined_parameter import (
 )
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.parameter_state import UNDETERMINED
-from strainwave.identification.results.picture_plot import NINETY_FIVE, residual_of
+from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows, percent
@@ -187,7 +187,7 @@ def _by_effect(found: Identified) -> Iterator[tuple[str, list[dict[str, Any]]]]:
 def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
     taken, same_as = each.estimate, {file.name: file.same_as for file in found.files}
     files = [each.source, *each.others] if len(each.mean_of) > 1 else list(each.others)
-    half = NINETY_FIVE * taken.sigma
+    half = SIGMA_OF_95_PERCENT * taken.sigma
     return {
         "path": taken.path,
         "name": name_of(taken),

@@ -14,7 +14,7 @@ from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.picture_plot import (
-    NINETY_FIVE,
+    SIGMA_OF_95_PERCENT,
     draw_picture,
     loop_points,
     picture_label,
@@ -96,13 +96,13 @@ def comparison(numbers: Sequence[tuple[str, Sequence[EstimateRow]]], name: str) 
 def _reach(rows: Sequence[EstimateRow]) -> float:
     """Return the end of the axis, beyond all values and most of their intervals [%]."""
     values = max(abs(row.off) for row in rows)
-    ends = np.quantile([abs(row.off) + NINETY_FIVE * row.sigma for row in rows], WHOLE_QUANTILE, method="higher")
+    ends = np.quantile([abs(row.off) + SIGMA_OF_95_PERCENT * row.sigma for row in rows], WHOLE_QUANTILE, method="higher")
     return 1.15 * max(values, float(ends), 1e-6)
 
 
 def _interval(axes: Axes, row: EstimateRow, place: int) -> None:
     mark, colour, filled = LOOKS[row.look]
-    half = NINETY_FIVE * row.sigma
+    half = SIGMA_OF_95_PERCENT * row.sigma
     axes.plot([row.off - half, row.off + half], [place, place], "-", color=LIGHT[colour], linewidth=1.4, solid_capstyle="butt")
     style: dict[str, Any] = {"markerfacecolor": LIGHT[colour] if filled else "none", "markeredgecolor": LIGHT[colour]}
     axes.plot([row.off], [place], mark, color=LIGHT[colour], markersize=4.4, **style)

@@ -17,7 +17,7 @@ from strainwave.rig.influence.cycle import Cycle
 from strainwave.rig.influence.influence import CatalogueRow, Sweep
 from strainwave.rig.influence.series import FACTORS, QUANTITIES, Series
 from strainwave.rig.influence.trend import Trend
-from strainwave.typeset import ARCMIN_PER_RADIAN, quantity
+from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, quantity
 from strainwave.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def preload_figure(sweep: Sweep, peak: float, friction: float) -> str:
 
 def temperature_figure(sweep: Sweep) -> str:
     """Area and slopes of the loop at the input over the temperature."""
-    celsius = sweep.levels - 273.15
+    celsius = sweep.levels - ZERO_CELSIUS
 
     def draw(figure: Figure) -> None:
         area, slopes = figure.subplots(2, 1, sharex=True)
@@ -144,7 +144,7 @@ def temperature_figure(sweep: Sweep) -> str:
 def series_figure(series: Series, trends: Sequence[Trend], factor: str) -> str:
     """Each measured quantity over a factor, what the other factors did to it taken out, with its trend."""
     x, quantities = series.factors[factor], {name: _alone(series, trends, factor, name) for name in series.quantities}
-    shown = x - 273.15 if factor == "temperature" else x
+    shown = x - ZERO_CELSIUS if factor == "temperature" else x
     units = list(dict.fromkeys(series.units))
 
     def draw(figure: Figure) -> None:

@@ -30,7 +30,7 @@ from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.sides import FRICTION_TAKEN_OUT
 from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO
 from strainwave.rig.reading.evaluation import Evaluation
-from strainwave.typeset import ARCMIN_PER_DEGREE, fixed, number
+from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, fixed, number
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:
@@ -124,7 +124,9 @@ def setting(found: Evaluation) -> dict[str, str]:
         facts["Duration"] = _duration(max(times) - min(times))
     temperatures = [value for loop in loops if loop.temperature is not None for value in loop.temperature.tolist()]
     if temperatures:
-        facts["Temperature"] = f"{fixed(min(temperatures) - 273.15, 1)} to {fixed(max(temperatures) - 273.15, 1)} °C"
+        facts["Temperature"] = (
+            f"{fixed(min(temperatures) - ZERO_CELSIUS, 1)} to {fixed(max(temperatures) - ZERO_CELSIUS, 1)} °C"
+        )
     if found.rig is not None:
         facts["Rig"] = found.rig.name
     corrected = [remark for loop in loops for remark in loop.remarks if remark.startswith(FRICTION_TAKEN_OUT)]
@@ -153,7 +155,7 @@ def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
     widths = [row.hysteresis for row in rows]
     at_output = ""
     if (ratio := ratio_of(found)) is not None and (known := [each for each in widths if each is not None]):
-        low, high = (ARCMIN_PER_DEGREE * degrees(pick(each.value for each in known)) / ratio for pick in (min, max))
+        low, high = (ARCMIN_PER_RADIAN * (pick(each.value for each in known)) / ratio for pick in (min, max))
         at_output = f" Divided by the ratio of {number(ratio)}: {_range(low, high, 3)}′ at the output."
     yield _card("Hysteresis", widths, scale, unit, f"Widest separation of the branches at equal torque.{at_output}")
     energy = [each.area for each in found.analyses]

@@ -104,7 +104,7 @@ def _times(factor: float) -> tuple[Callable[[ArrayLike], ArrayLike], Callable[[A
 
 def _branch(axes: Axes, branch: DrawnRegime) -> None:
     colour = LIGHT[COLOURS.get(branch.name, "ink")]
-    few = len(branch.angle) <= marks.MAX_POINTS
+    few = len(branch.angle) <= marks.MAX_MARKED_SAMPLES
     axes.plot(
         branch.angle, branch.torque, color=colour, linewidth=1.3, marker="o" if few else "", markersize=2.6, label=branch.name
     )

@@ -18,7 +18,7 @@ from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.result import Result, student
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.evaluation import Evaluation
-from strainwave.typeset import ARCMIN_PER_DEGREE
+from strainwave.typeset import ARCMIN_PER_DEGREE, ARCMIN_PER_RADIAN
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -29,7 +29,7 @@ FALLING = ("positive_unloading", "negative_loading")
 
 def angle_unit(loop: Loop) -> tuple[str, float]:
     """Return the unit of angles of the loaded shaft as printed, and the factor to it: degrees, at the output arcminutes."""
-    return ("°", degrees(1.0)) if loop.side == "input" else ("′", ARCMIN_PER_DEGREE * degrees(1.0))
+    return ("°", degrees(1.0)) if loop.side == "input" else ("′", ARCMIN_PER_RADIAN)
 
 
 def _names(loop: Loop) -> tuple[str, str]:

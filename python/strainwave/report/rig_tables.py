@@ -20,7 +20,7 @@ from strainwave.rig.analysis.stiffness import closure_of_secants, soft_parts
 from strainwave.rig.reading.evaluation import Evaluation, budgets
 from strainwave.rig.torque.budget import Budget
 from strainwave.rig.virtual.printed import PEAK_TORQUE, TABLE_2
-from strainwave.typeset import ARCMIN_PER_DEGREE, fixed, number
+from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number
 
 OF_REGIMES = tuple(name.replace("_", " ") for name in NAMES)  # how remarks on one regime begin
 BAND = (0.1, 0.2)  # N.m: where document T saw its soft spot
@@ -49,7 +49,7 @@ def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]
         cells = [stated(getattr(row, name)) for name in NAMES]
         cells.append(stated(row.hysteresis, scale))
         if ratio is not None:
-            cells.append(stated(row.hysteresis, ARCMIN_PER_DEGREE * degrees(1.0) / ratio))
+            cells.append(stated(row.hysteresis, ARCMIN_PER_RADIAN / ratio))
         rows.append((label, cells))
     heads = [f"{name.replace('_', ' ').capitalize()} [N·m/rad]" for name in NAMES]
     heads.append(f"Total hysteresis [{unit}]")
@@ -98,7 +98,7 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
     unit, scale = rig_plates.angle_unit(analysis.loop)
 
     def angle(name: str, words: str, found: Result | None) -> tuple[str, str, Stated, Stated, str]:
-        at_output = stated(found, ARCMIN_PER_DEGREE * degrees(1.0) / ratio) if ratio else Stated("", "")
+        at_output = stated(found, ARCMIN_PER_RADIAN / ratio) if ratio else Stated("", "")
         return name, words, stated(found, scale), at_output, unit
 
     wide = analysis.hysteresis

@@ -135,7 +135,7 @@ class Ensemble(ComparedByFields):
             raise ValueError(f"names is empty; there are {listed(self.columns)}")
         if len(self.failures) == len(self):
             raise ValueError(f"none of the {len(self)} members has a result; the first failed: {self.failures[0]}")
-        return ensemble_figure(self.time, self.columns, self.units, drawn, len(self.failures))
+        return ensemble_figure(self.time, self.columns, self.units, drawn)
 
     @staticmethod
     def read(folder: str | Path) -> Ensemble:

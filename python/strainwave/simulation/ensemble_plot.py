@@ -22,18 +22,15 @@ LEGEND_HEIGHT = 0.3  # inch
 MAX_INSTANTS = 2_000  # that are drawn; of more every n-th
 
 
-def ensemble_figure(
-    time: Array, columns: Mapping[str, Array], units: Mapping[str, str], names: Sequence[str], failures: int
-) -> Figure:
+def ensemble_figure(time: Array, columns: Mapping[str, Array], units: Mapping[str, str], names: Sequence[str]) -> Figure:
     """Return the figure of some outputs, as `Ensemble.plot` describes it."""
     step = -(-len(time) // MAX_INSTANTS)
-    members = len(columns[names[0]])
-    title = f"{in_a_sentence([in_words(name) for name in names])} of {members - failures} members"
+    ran = ~np.isnan(columns[names[0]][:, 0])
+    title = f"{in_a_sentence([in_words(name) for name in names])} of {ran.sum()} members"
     with marks.new_figure(MARGIN_HEIGHT + LEGEND_HEIGHT + PANEL_HEIGHT * len(names), title[0].upper() + title[1:]) as figure:
         axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
         for axis, name in zip(axes, names, strict=True):
-            values = columns[name][:, ::step]
-            values = values[~np.isnan(values[:, 0])]
+            values = columns[name][ran, ::step]
             for low, high, label, opacity in BANDS:
                 edges = np.quantile(values, (low, high), axis=0)
                 style = {"facecolor": LIGHT["measured"], "alpha": opacity, "linewidth": 0.0}

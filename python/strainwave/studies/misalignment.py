@@ -322,7 +322,7 @@ def swept(ramp: ActuatorRamp, law: Any) -> SweepLevels:
 
 
 def effect(ramp: ActuatorRamp, runs: Ensemble, number: int) -> dict[str, float]:
-    """Return the differences of a run from the straight one; names as the columns of `Levels.table`."""
+    """Return the differences of a run from the straight one; names as the columns of `SweepLevels.table`."""
     straight, run = (ramp.settled(runs.member(each)) for each in (0, number))
     found = {"error_swing": swing(run["kinematic_error"])}
     columns = {"input_angle": run["input_angle"], "error": run["kinematic_error"]}

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Compensation, Drive, arguments, compensation, control
+from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.tuning.cascade import Plant, Setting, observer_of, tuned_law
 from strainwave.tuning.linear_plant import HeldPlant, LinearPlant
@@ -30,8 +31,8 @@ MAX_JUMP = 0.5  # of half a turn of the loop, or of the logarithm of its size, f
 MAX_POLE_RADIUS = 1.0 + 1e-7  # of a loop that is stable: a free angle has 1
 
 
-@dataclass(frozen=True)
-class Margins:
+@dataclass(frozen=True, eq=False)
+class Margins(ComparedByFields):
     """Stability margins of a loop.
 
     Attributes:
@@ -51,8 +52,8 @@ class Margins:
     crossover: float
     gain_at: float = field(repr=False)
     phase_at: float = field(repr=False)
-    frequency: Array = field(repr=False, compare=False)
-    loop: Complex = field(repr=False, compare=False)
+    frequency: Array = field(repr=False)
+    loop: Complex = field(repr=False)
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from strainwave.typeset import number
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MAX_FACTOR = 30.0  # of the frequencies of the margins, down and up, that is drawn
-MAX_SIZE = 1e3  # magnitude that is drawn, and its inverse
+MAX_FREQUENCY_FACTOR = 30.0  # of the frequencies of the margins, down and up, that is drawn
+MAX_MAGNITUDE = 1e3  # magnitude that is drawn, and its inverse
 PHASE_MARGIN = 20.0  # degrees between the curves and the edge
 
 
@@ -33,7 +33,9 @@ def margins_figure(margins: Mapping[str, Any]) -> Figure:
     magnitude.axhline(1.0, color=LIGHT["muted"], linewidth=0.8)
     phase.axhline(-180.0, color=LIGHT["muted"], linewidth=0.8)
     ends = [at / tau for each in margins.values() for at in (each.gain_at, each.phase_at) if isfinite(at)]
-    low, high = min(ends, default=1.0) / MAX_FACTOR, min(max(ends, default=1.0) * MAX_FACTOR, loops[0].frequency[-1])
+    low, high = loops[0].frequency[0], loops[0].frequency[-1]
+    if ends:
+        low, high = min(ends) / MAX_FREQUENCY_FACTOR, min(max(ends) * MAX_FREQUENCY_FACTOR, high)
     for place, each in enumerate(margins.values()):
         colour, log_frequency = marks.line_style(place)["color"], np.log(each.frequency)
         for mark, at in (("^", each.gain_at), ("o", each.phase_at)):
@@ -46,9 +48,12 @@ def margins_figure(margins: Mapping[str, Any]) -> Figure:
     angles = np.concatenate([phase_in_degrees(loop.response)[rows] for loop, rows in zip(loops, shown, strict=True)])
     sizes = np.abs(np.concatenate([loop.response[rows] for loop, rows in zip(loops, shown, strict=True)]))
     magnitude.set_xlim(low, high)
-    magnitude.set_ylim(max(float(sizes.min()), 1.0 / MAX_SIZE), min(float(sizes.max()), MAX_SIZE))
+    magnitude.set_ylim(max(float(sizes.min()), 1.0 / MAX_MAGNITUDE), min(float(sizes.max()), MAX_MAGNITUDE))
     phase.set_ylim(float(angles.min()) - PHASE_MARGIN, float(angles.max()) + PHASE_MARGIN)
     set_phase_ticks(phase)
+    for axis in (magnitude.xaxis, magnitude.yaxis):
+        marks.set_log_ticks(axis)
+    marks.label_abscissa(phase, "frequency", "Hz")
     return figure
 
 

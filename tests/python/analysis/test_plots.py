@@ -33,7 +33,7 @@ def test_frequencies_that_are_not_given_contain_all_poles() -> None:
     sizes = linear.eigenfrequencies[linear.eigenfrequencies > 1e-3] / (2.0 * np.pi)
     assert x[0] <= sizes.min()
     assert x[-1] >= sizes.max()
-    with pytest.raises(ValueError, match="frequency must hold positive numbers"):
+    with pytest.raises(ValueError, match="frequency must have one positive number"):
         linear.plot([0.0, 1.0])
 
 

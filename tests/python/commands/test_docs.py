@@ -14,8 +14,8 @@ from tests.python.command import refused, strainwave
 
 @pytest.fixture
 def opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Put three pages into the package, and return what the browser is asked to open."""
-    for name in ("index.html", "search.html", "how-to/identify.html"):
+    """Put pages into the package, and return what the browser is asked to open."""
+    for name in ("index.html", "search.html", "how-to/identify.html", "reference/identify.html"):
         page = tmp_path / "package" / "docs" / name
         page.parent.mkdir(parents=True, exist_ok=True)
         page.touch()
@@ -31,6 +31,7 @@ def opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         ((), "index.html"),
         (("identify",), "how-to/identify.html"),
         (("how-to/identify.html",), "how-to/identify.html"),
+        (("reference/identify",), "reference/identify.html"),
         (("lost motion*",), "search.html?q=lost%20motion%2A"),
     ],
 )

@@ -134,7 +134,7 @@ def test_it_imports_nothing_that_takes_long() -> None:
 def test_a_core_that_does_not_load_ends_with_exit_code_1_and_what_to_do(tmp_path: Path) -> None:
     package = tmp_path / "strainwave"
     package.mkdir()
-    for name in ("__init__.py", "__main__.py", "drives.py"):
+    for name in ("__init__.py", "__main__.py"):
         shutil.copy(Path(sw.__file__).with_name(name), package)
     command = [sys.executable, "-S", "-m", "strainwave", "doctor"]  # without an editable package
     done = subprocess.run(command, env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)

@@ -88,7 +88,7 @@ def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None
 
 
 def with_loss_under_load(model: MotionModel) -> MotionModel | None:
-    """Return the model with a loss under load, equal in all quadrants: four losses are not separable from the inertia."""
+    """Return the model with a loss under load, equal in all quadrants: four are not separable from inertia and gravity."""
     if LOSSES[0] in model.free:
         return None
     lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))

@@ -31,7 +31,7 @@ MAX_CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit: that
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
 SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
 MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
-MAX_GRAVITY_OF_RATING = 3.0  # times the largest torque in the ratings of the start set, as that of buckling
+MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
 # Standard deviation of a part from run to run, in logarithms.
 REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
 REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
@@ -84,13 +84,15 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     )  # fmt: skip
 
 
-def gravity_in_ratings(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[Check]:
-    """Yield the check that the gravity of a load is no more than a gear of the size of the start set can carry."""
+def gravity_in_ratings(
+    start: GearSet, parameters: Sequence[CombinedParameter], failed: Collection[str] = ()
+) -> Iterator[Check]:
+    """Yield the check that a gear of the size of the start set can carry the load. Files with a failed check take no part."""
     allowed = max((each.value for each in start.ratings.values() if each.unit == "N.m"), default=0.0)
     if allowed == 0.0:
         return
     for each in parameters:
-        if each.estimate.path == "load.gravity_torque" and each.estimate.unit == "N.m":
+        if each.estimate.path == GRAVITY and each.estimate.unit == "N.m" and each.source not in failed:
             share = each.estimate.value / allowed
             yield Check(
                 "gravity within the ratings", each.source, share, MAX_GRAVITY_OF_RATING, "1", share > MAX_GRAVITY_OF_RATING,

@@ -217,7 +217,7 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
     together = correlation_length(found.fit.residuals[0])
     if together > MAX_CORRELATION_LENGTH:
         yield (
-            f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
+            f"the residual between the encoders is correlated over {together:.0f} samples: the gear or its load has something "
             "that the model lacks, and its numbers may be off by more than their uncertainty"
         )
     if DELAY not in estimates:

@@ -40,7 +40,7 @@ class Log(Kind):
         if not measured(columns, "time") and "rate" not in mapping.constants:
             return False
         drove = measured(columns, "torque", "current", "voltage") or any(column.channel.commanded for column in columns)
-        return bool(drove and measured(columns, "angle", "speed")) and not is_loaded_in_steps(columns)
+        return bool(drove and measured(columns, "angle", "speed")) and not is_loaded_in_steps(columns, mapping)
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torques, currents, remarks = _efforts(columns)

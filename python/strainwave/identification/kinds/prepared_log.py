@@ -146,7 +146,8 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         gear = gear.replace(input_inertia=0.0)
     elif inertia is None:
         remarks.append(
-            "the inertia of the motor is not known: load.inertia is that of the load and the motor, times the ratio squared"
+            "the inertia of the motor is not known: load.inertia is that of the load, "
+            "plus that of the motor times the ratio squared"
         )
     elif "motor_inertia" in constants:
         remarks.append(

@@ -58,7 +58,7 @@ class Torsion(Kind):
         if not angles or not torques:
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
-        if np.ptp(angle) > MAX_TWIST and (column.at_joint or mapping.side == "output"):
+        if _exceeds_twist(column, mapping):
             raise UndecidedError(
                 f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists: samples of a log whose rate is "
                 "needed, with --constant rate=HZ; or, if it is a torsion loop all the same, --kind torsion"
@@ -133,12 +133,17 @@ class Torsion(Kind):
         )
 
 
-def is_loaded_in_steps(columns: Sequence[Column]) -> bool:
+def is_loaded_in_steps(columns: Sequence[Column], mapping: FileMapping) -> bool:
     """True for a spring that a rig loads in steps, with the time of each: a log has more rows in a second, or turns."""
     times, angles, torques = (measured(columns, quantity) for quantity in ("time", "angle", "torque"))
     if not times or len(angles) != 1 or len(torques) != 1 or measured(columns, "speed", "current", "voltage"):
         return False
-    return in_steps(times[0].si, angles[0].si, torques[0].si)
+    return not _exceeds_twist(angles[0], mapping) and in_steps(times[0].si, angles[0].si, torques[0].si)
+
+
+def _exceeds_twist(angle: Column, mapping: FileMapping) -> bool:
+    """True for the angle of a joint that moves further than a gear twists."""
+    return bool(np.ptp(angle.si) > MAX_TWIST and (angle.at_joint or mapping.side == "output"))
 
 
 def in_steps(time: Array, angle: Array, torque: Array) -> bool:

@@ -12,14 +12,14 @@ from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.results.parameter_state import ParameterState
-from strainwave.identification.results.picture_plot import NINETY_FIVE
+from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 UNCOMPARED = re.compile(r"\[|phase")  # elements of a sequence fitted anew, and phases, whose size means nothing
 ROW_HEIGHT, MARGIN_HEIGHT = 0.26, 1.35  # inches
-MAX_LINEAR_RATIO = 5.0  # of the largest over the smallest ratio; beyond it the axis is logarithmic
+MAX_LINEAR_VALUE_RATIO = 5.0  # of the largest over the smallest ratio; beyond it the axis is logarithmic
 MIN_SHARE_OF_AXIS = 0.1  # of an interval that reaches zero or less, where a logarithmic axis ends
 
 
@@ -38,7 +38,7 @@ def over_start_figure(states: Sequence[ParameterState], start: GearSet, name: st
     if not rows:
         raise ValueError(f"no identified number has a value in {start.name}: there is nothing to compare")
     ratio = np.array([each.value / each.start for each in rows])
-    half = NINETY_FIVE * np.nan_to_num([each.sigma / abs(each.start) for each in rows])
+    half = SIGMA_OF_95_PERCENT * np.nan_to_num([each.sigma / abs(each.start) for each in rows])
     with marks.new_figure(MARGIN_HEIGHT + ROW_HEIGHT * len(rows), f"{name} over {start.name}") as figure:
         axes, places = figure.subplots(), np.arange(len(rows))
         spread = np.array([_spread(start, each.path) for each in rows])
@@ -47,7 +47,7 @@ def over_start_figure(states: Sequence[ParameterState], start: GearSet, name: st
             style: dict[str, Any] = {"height": 0.8, "color": LIGHT["rule"], "label": "spread of individual gears"}
             axes.barh(places[stated], 2.0 * spread[stated], left=1.0 - spread[stated], **style)
         axes.axvline(1.0, color=LIGHT["muted"], linewidth=0.9, label=start.name)
-        if ratio.min() > 0.0 and ratio.max() > MAX_LINEAR_RATIO * ratio.min():
+        if ratio.min() > 0.0 and ratio.max() > MAX_LINEAR_VALUE_RATIO * ratio.min():
             axes.set_xscale("log")
             half = np.minimum(half, (1.0 - MIN_SHARE_OF_AXIS) * ratio)
         axes.errorbar(

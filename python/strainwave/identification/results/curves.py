@@ -112,17 +112,10 @@ def curves_of_shafts(fit: Fit) -> Recording:
 def pictures_of_channels(fit: Fit) -> tuple[Picture, ...]:
     """Return a picture over time of each channel of a run."""
     part = fit.parts[0]
-    log: Any = part.experiment
-    held_out = (~part.training).astype(float)
+    unknown = np.full(part.predicted.shape[1], np.inf)
     return tuple(
-        Picture(
-            Recording(
-                {"time": log.time, channel: measured, "modelled": modelled, "held_out": held_out},
-                {"time": "s", channel: unit, "modelled": unit, "held_out": "1"},
-            ),
-            title=channel.replace("_", " "),
-        )
-        for channel, unit, measured, modelled in zip(log.channels, log.units, log.measured, part.predicted, strict=True)
+        Picture(_curves(part, place, unknown), title=channel.replace("_", " "))
+        for place, channel in enumerate(part.experiment.channels)
     )
 
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 FIGURE_HEIGHT = 4.3  # inches
-NINETY_FIVE = 1.959963984540054  # standard deviations about the mean that contain 95 % of a normal distribution
-MAX_POINTS = 600  # of a loop that are drawn
+SIGMA_OF_95_PERCENT = 1.959963984540054  # standard deviations about the mean that contain 95 % of a normal distribution
+MAX_LOOP_POINTS = 600  # of a loop that are drawn
 MAX_INTERVALS = 2.5  # median intervals between two samples that a line joins
 MAX_BAND_BLOCKS = 200  # stretches of a band over time
 ABSCISSAE = {"twist": "twist", "small_angle": "angle of the input"}  # of loops, in words
@@ -83,7 +83,7 @@ def table_points(axes: Axes, curves: Recording) -> NDArray[np.intp]:
 def loop_points(axes: Axes, curves: Recording) -> None:
     """Draw the measured points of a loop, and the fitted loop in the order measured."""
     over, torque = curves.names[:2]
-    rows = np.unique(np.linspace(0, len(curves) - 1, MAX_POINTS).astype(int))
+    rows = np.unique(np.linspace(0, len(curves) - 1, MAX_LOOP_POINTS).astype(int))
     x = curves[over][rows]
     axes.plot(x, curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
     axes.plot(x, curves["modelled"][rows], color=LIGHT["model"], linewidth=0.9, label="model")
@@ -142,7 +142,7 @@ def _broken(x: Array, *series: Array) -> tuple[Array, ...]:
         if len(x) > 1
         else np.zeros(0, int)
     )
-    if len(x) + len(gaps) > 4 * marks.MAX_STRETCHES:
+    if len(x) + len(gaps) > 4 * marks.MAX_CURVE_STRETCHES:
         return x, *series
     return np.insert(x, gaps, x[gaps]), *(np.insert(each, gaps, np.nan) for each in series)
 
@@ -155,11 +155,11 @@ def _sigma(curves: Recording, order: NDArray[np.intp] | None = None) -> Array | 
 
 def _bands(axes: Axes, x: Array, residual: Array, sigma: Array | None) -> None:
     """Draw the limits of 95 % of the residuals, if they are normal, and the interval of the model."""
-    level = NINETY_FIVE * float(np.sqrt(np.mean(residual**2)))
+    level = SIGMA_OF_95_PERCENT * float(np.sqrt(np.mean(residual**2)))
     for side in (-level, level):
         axes.axhline(side, color=LIGHT["earlier"], linestyle="--", linewidth=0.9)
     if sigma is not None:
-        where, half = zip(*_blocks(x, NINETY_FIVE * sigma), strict=True)
+        where, half = zip(*_blocks(x, SIGMA_OF_95_PERCENT * sigma), strict=True)
         band = np.array(half)
         axes.fill_between(where, -band, band, facecolor=LIGHT["model"], alpha=0.35, linewidth=0.0)
 

@@ -89,9 +89,9 @@ class Prediction(ComparedByFields):
         """
         from strainwave.identification.results.picture_plot import pictures_figure
 
-        if self.picture is None:
+        if (picture := self.picture) is None:
             raise ValueError(f"{self.name} cannot be drawn: {self.refused}")
-        return pictures_figure([self.picture], f"{self.name}, predicted by {self.gear}")
+        return pictures_figure([picture], f"{self.name}, predicted by {self.gear}")
 
     @property
     def contradicts(self) -> bool:

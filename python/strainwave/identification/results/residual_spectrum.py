@@ -1,4 +1,4 @@
-"""Spectrum of the residual of a log, beside that of what was measured."""
+"""Spectra of the residual of a log and of its measurement."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ class Result:
     """A number with its standard deviation and its interval of 95 %.
 
     Errors that two tests on one rig share, such as that of the radius of its disk, shift both results alike. `random` excludes
-    them and serves to compare two tests; `sigma` includes them and bounds the distance from the true value.
+    them and serves to compare two tests; `sigma` includes them: the standard deviation from the true value.
 
     Attributes:
         value: the number, in `unit`

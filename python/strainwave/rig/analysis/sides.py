@@ -18,7 +18,7 @@ from strainwave.rig.loop import COLUMNS, Loop, Side
 
 Array = NDArray[np.float64]
 
-FRICTION_TAKEN_OUT = "friction of the wave generator, taken out: "  # how the remark on it begins
+FRICTION_TAKEN_OUT = "friction of the wave generator, taken out: "  # begins the remark; reports find it by this
 
 
 def referred(loop: Loop, ratio: float, side: Side) -> Loop:

@@ -108,7 +108,7 @@ def stiffness_of(regime: Regime, loop: Loop, freedom: float = np.inf) -> Stiffne
         return None
     torque, angle, angle_sigma, torque_sigma = _columns(regime)
     line = fit_line(angle, torque, angle_sigma, torque_sigma)
-    regression = _told(line.slope, line.sigma, loop, freedom, by_angle=line.share_x > 0.5)
+    regression = _stiffness_result(line.slope, line.sigma, loop, freedom, by_angle=line.share_x > 0.5)
     low, high = segments.stretch(segments.softest)
     return Stiffness(
         regime.name,
@@ -144,7 +144,7 @@ def shared(stiffness: float, loop: Loop) -> float:
     return abs(stiffness) * hypot(loop.angle_scale, loop.torque_scale, stiffness * loop.compliance_sigma)
 
 
-def _told(stiffness: float, random: float, loop: Loop, freedom: float, *, by_angle: bool) -> Result:
+def _stiffness_result(stiffness: float, random: float, loop: Loop, freedom: float, *, by_angle: bool) -> Result:
     """A stiffness; where errors of the angle make its error, it is the compliance that is spread normally."""
     of_rig = shared(stiffness, loop)
     if not by_angle or stiffness <= 0.0:
@@ -173,7 +173,9 @@ def _secant(regime: Regime, loop: Loop, freedom: float) -> Result:
     of_angle = hypot(float(regime.angle_sigma[peak]), float(regime.angle_sigma[zero]))
     of_peak = float(loop.torque_sigma[regime.rows[peak]])
     of_torque = hypot(of_peak * compliance, float(regime.torque_sigma[zero]) * at_zero)
-    found = _told(1.0 / compliance, hypot(of_angle, of_torque) / abs(rise) / compliance**2, loop, freedom, by_angle=True)
+    found = _stiffness_result(
+        1.0 / compliance, hypot(of_angle, of_torque) / abs(rise) / compliance**2, loop, freedom, by_angle=True
+    )
     moved = compliance + at_zero if regime.name.endswith("unloading") else compliance - at_zero
     friction = abs(moved / rise) * loop.friction_sigma
     if not friction or compliance <= 0.0:
@@ -189,7 +191,7 @@ def _softest(segments: Segments, loop: Loop, freedom: float) -> Result:
     if compliance <= 0.0:
         return result(np.inf, UNIT)
     random = float(segments.compliance_sigmas[number]) / compliance**2
-    return _told(1.0 / compliance, random, loop, freedom, by_angle=True)
+    return _stiffness_result(1.0 / compliance, random, loop, freedom, by_angle=True)
 
 
 def _end(segments: Segments, torque: float, loop: Loop) -> Result:

@@ -67,7 +67,7 @@ class Masses:
 
 @dataclass(frozen=True)
 class Camera:
-    """Distortion of a plane target by its picture; the defaults describe an undistorted one.
+    """Distortion of lengths in the picture of a plane target; the defaults describe an undistorted picture.
 
     Args:
         aspect: width of a pixel over its height [1]

@@ -71,7 +71,7 @@ def evaluate(
     remarks: Sequence[str] = (),
     deviations: Sequence[str] | None = None,
 ) -> Evaluation:
-    """Analyses the loops of a test, and compares positions and units.
+    """Analyse the loops of a test, and compare positions and units.
 
     Args:
         loops: one or more

@@ -38,7 +38,7 @@ class Deviation:
 
 
 def check(steps: Sequence[Step], plan: Plan | Sequence[Step]) -> list[Deviation]:
-    """Holds a record against its plan: of each position and unit, the order of masses that needs the fewest changes.
+    """Compare a record with its plan: for each position and unit, the order of masses that needs the fewest changes.
 
     Args:
         steps: as recorded
@@ -91,7 +91,7 @@ def _of_place(planned: Sequence[Step], made: Sequence[Step]) -> Iterator[Deviati
     while end and changes[end - 1][0] == "skipped":
         end -= 1
     for kind, row, place in changes[:end]:
-        yield from _told(kind, planned, made, row, place)
+        yield from _deviation_in_words(kind, planned, made, row, place)
     if end < len(changes):
         missing = [planned[row].number for _, row, _ in changes[end:]]
         rest = (
@@ -102,7 +102,7 @@ def _of_place(planned: Sequence[Step], made: Sequence[Step]) -> Iterator[Deviati
     yield from _of_peaks(planned, made, finished=end == len(changes))
 
 
-def _told(kind: str, planned: Sequence[Step], made: Sequence[Step], row: int, place: int) -> Iterator[Deviation]:
+def _deviation_in_words(kind: str, planned: Sequence[Step], made: Sequence[Step], row: int, place: int) -> Iterator[Deviation]:
     """A change in words; `row` and `place` are those that it begins with in plan and record."""
     if kind == "skipped":
         step = planned[row]

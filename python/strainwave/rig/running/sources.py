@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class PictureSource(Protocol):
-    """Gives pictures of the target, one after the other."""
+    """Source of pictures of the target, one after the other."""
 
     def take(self, folder: Path) -> Path | None:
         """Put a new picture into a folder and return its path; None if there is none yet."""

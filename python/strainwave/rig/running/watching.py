@@ -118,7 +118,7 @@ def torque_of_masses(rig: Rig, step: Step) -> float:
 
 @dataclass
 class Reader:
-    """Reads the angle of pictures while a test is guided: from the first photograph of their position and unit.
+    """Reader of the angle of pictures while a test is guided: from the first photograph of their position and unit.
 
     While the first step of a position comes to rest, its first picture counts as 0.
 
