@@ -176,7 +176,7 @@ def print_slowest(what: str, seconds: dict[str, float]) -> None:
 
 
 def lint(options: Sequence[str]) -> int:
-    prepare(["lint", "test"])
+    prepare(["lint", "test", "docs"])  # types of Sphinx, of which the pages' extension is a subclass
     sources = [file for folder in ("include", "src", "tests") for file in sorted((ROOT / folder).rglob("*.[ch]pp"))]
     checks: tuple[tuple[str | Path, ...], ...] = (
         (BIN / "ruff", "check", "."),
