@@ -16,7 +16,7 @@ from strainwave.identification.identify import Identified
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult
-from strainwave.messages import with_options
+from strainwave.messages import listed, with_options
 from strainwave.report.errors import share_held_out
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.identify import identify_report
@@ -161,6 +161,8 @@ def identify_summary(found: Identified) -> Iterator[str]:
     yield from lines_of([*found.parameters, *_in_combination(found)])
     passed = [check for check in found.checks if check.name == AGREEMENT and not check.failed and check.message]
     yield from (f"{check.source}: {check.message}" for check in passed)
+    if refused := [file.name for file in found.files if file.refused]:
+        yield f"\nNOT USED, {len(refused)} of {len(found.files)} files, for the reasons above: {listed(refused)}"
 
 
 def failed_lines(failed: Iterable[Check]) -> Iterator[str]:

@@ -25,7 +25,7 @@ MAX_LINES = 4  # of the spectrum of a residual, on a terminal
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 
 
-def verdict(found: Prediction) -> str:
+def verdict_sentence(found: Prediction) -> str:
     """Return in one sentence whether a recording agrees with a saved gear, and what changed."""
     if found.refused:
         return f"{found.name} cannot be predicted: {found.refused}"
@@ -35,8 +35,10 @@ def verdict(found: Prediction) -> str:
         result = f"{found.name} contradicts {found.gear}: error {of}, {share} of what varies, where {allowed} is allowed"
         cause = f"; {_changes(found)}" if found.changed else "; no change of friction, zero or load explains it"
         return f"{result}{cause}."
-    result = f"{found.name} agrees with {found.gear}: error {of}, {share} of what varies, of {allowed} allowed"
-    return f"{result}; {f'yet {_changes(found)}' if found.changed else _nothing_changed(found)}."
+    error = f"error {of}, {share} of what varies, of {allowed} allowed"
+    if found.changed:
+        return f"{found.name} differs from {found.gear}, within the allowed error: {_changes(found)}; {error}."
+    return f"{found.name} agrees with {found.gear}: {error}; {_nothing_changed(found)}."
 
 
 def _changes(found: Prediction) -> str:
@@ -65,7 +67,7 @@ def predict_summary(found: Sequence[Prediction]) -> str:
 
 
 def _lines(found: Prediction) -> Iterator[str]:
-    yield verdict(found)
+    yield verdict_sentence(found)
     if found.refused:
         return
     for name, size, share in _errors(found):
@@ -117,7 +119,7 @@ def _section(found: Prediction, anchor: str) -> dict[str, Any]:
     return {
         "name": found.name,
         "anchor": anchor,
-        "verdict": verdict(found),
+        "verdict": verdict_sentence(found),
         "refused": bool(found.refused),
         "failed": [check for check in found.checks if check.failed],
         "errors": [] if found.refused else _errors(found),
@@ -143,11 +145,11 @@ def predict_files(found: Sequence[Prediction], gear_set: GearSet, provenance: Pr
 def _json(found: Prediction) -> dict[str, Any]:
     names = (
         "name", "gear", "kind", "channel", "unit", "error", "varies", "relative", "plain", "allowed", "samples",
-        "error_with_changes", "contradicts", "refused", "remarks",
+        "error_with_changes", "verdict", "refused", "remarks",
     )  # fmt: skip
     return {
         **{name: getattr(found, name) for name in names},
-        "verdict": verdict(found).replace(NO_BREAK_SPACE, " "),
+        "summary": verdict_sentence(found).replace(NO_BREAK_SPACE, " "),
         "changes": [{**asdict(each), "significant": each.significant} for each in found.changes],
         "lines": [line_numbers(each) for each in found.lines],
         "checks": [asdict(check) for check in found.checks],

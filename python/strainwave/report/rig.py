@@ -27,7 +27,6 @@ from strainwave.report.rig_tables import (
 from strainwave.rig.analysis.analysis import table
 from strainwave.rig.analysis.lost_motion import LOST_MOTION
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.sides import FRICTION_TAKEN_OUT
 from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO
 from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, fixed, number
@@ -129,11 +128,8 @@ def setting(found: Evaluation) -> dict[str, str]:
         )
     if found.rig is not None:
         facts["Rig"] = found.rig.name
-    corrected = [remark for loop in loops for remark in loop.remarks if remark.startswith(FRICTION_TAKEN_OUT)]
-    if corrected:
-        facts["Friction taken out"] = ", ".join(
-            dict.fromkeys(sentence(each.removeprefix(FRICTION_TAKEN_OUT)).rstrip(".") for each in corrected)
-        )
+    if corrections := dict.fromkeys(correction for each in found.analyses for correction in each.loop.corrections):
+        facts["Corrections"] = " ".join(map(sentence, corrections))
     return facts
 
 
@@ -187,7 +183,7 @@ def unknown(found: Evaluation) -> list[str]:
     facts: dict[str, list[str]] = {}
     for label, analysis in zip(found.labels, found.analyses, strict=True):
         for remark in analysis.remarks:
-            if not remark.startswith((*OF_REGIMES, FRICTION_TAKEN_OUT)):  # these stand with the loop and in the setting
+            if not remark.startswith(OF_REGIMES):  # these stand with the loop
                 facts.setdefault(remark, []).append(label)
     every = len(found.analyses)
     lines = [remark if len(labels) == every else f"{', '.join(labels)}: {remark}" for remark, labels in facts.items()]

@@ -44,6 +44,7 @@ class Loop(ComparedByFields):
         unit: which specimen
         input_friction: whether friction of the wave generator is in the torque; as at the input, the output held, if None
         remarks: what a reader of the result must know, in words
+        corrections: changes of the readings since they were measured, in words
 
     Raises:
         ValueError: series differ in length, there are fewer than two points, or a number is not finite
@@ -69,6 +70,7 @@ class Loop(ComparedByFields):
     unit: str = ""
     input_friction: bool = False
     remarks: tuple[str, ...] = ()
+    corrections: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -89,6 +91,7 @@ class Loop(ComparedByFields):
         unit: str = "",
         input_friction: bool | None = None,
         remarks: Sequence[str] = (),
+        corrections: Sequence[str] = (),
     ) -> None:
         arguments.one_of("side", side, COLUMNS)
         n = len(arguments.numbers("angle", angle))
@@ -110,6 +113,7 @@ class Loop(ComparedByFields):
                 raise ValueError(f"{key} = {shortened(text)} must be one line of text")
         object.__setattr__(self, "input_friction", side == "input" if input_friction is None else bool(input_friction))
         object.__setattr__(self, "remarks", tuple(remarks))
+        object.__setattr__(self, "corrections", tuple(corrections))
 
     def __len__(self) -> int:
         return len(self.angle)

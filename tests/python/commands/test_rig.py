@@ -210,8 +210,8 @@ def test_friction_from_a_table_is_taken_out(tmp_path: Path) -> None:
     result = strainwave("rig", "analyse", LOOP, "--gear", GEAR, "--friction", "friction.csv", folder=tmp_path)
     assert result.returncode == 0, result.stderr
     setting, _, limits = result.stdout.partition("not determined, or contradictory:")
-    assert "Friction taken out: ±0.02 N·m at the input (friction table" in setting
-    assert "taken out:" not in limits
+    assert "Corrections: Friction of the wave generator, ±0.02 N·m at the input, is subtracted (friction table" in setting
+    assert "is subtracted" not in limits
     analysed = tmp_path / "out" / "rig" / "loop-0deg.csv"
     assert Recording.read(analysed)["input_torque"] == pytest.approx(Recording.read(LOOP)["input_torque"])
     command = next(line for line in result.stdout.splitlines() if line.startswith("for a gear: "))

@@ -286,6 +286,7 @@ def test_one_bad_file_does_not_stop_the_command_and_only_bad_files_do(tmp_path: 
     done = strainwave("identify", "hfuc-20-80", good, bad, "--out", "out", folder=tmp_path)
     assert done.returncode == 0
     assert "NOT USED: its suffix is .csv, but it is a picture (PNG)" in done.stdout
+    assert "\n\nNOT USED, 1 of 2 files, for the reasons above: photo.csv\n" in done.stdout
     done = strainwave("identify", "hfuc-20-80", bad, "--out", "out2", folder=tmp_path)
     assert done.returncode == 2
     assert "Traceback" not in done.stdout + done.stderr

@@ -14,7 +14,7 @@ import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Covariance
 from strainwave.identification.results.changes import PartChange
-from strainwave.report.predict import verdict
+from strainwave.report.predict import verdict_sentence
 
 from tests.arms import Joint, Recorder, fourier, rtde, run
 from tests.python.command import refused, strainwave
@@ -76,7 +76,8 @@ def test_friction_scaled_by_1_3_is_reported_as_that_and_contradicts(folder: Path
 def test_viscous_friction_scaled_by_1_5_is_found_within_what_the_result_allows(folder: Path) -> None:
     found = predicted(folder, "thick.csv")
     viscous = change(found, "viscous friction")
-    assert not found.contradicts
+    assert found.verdict == "differs"
+    assert "differs from gear of joint 1 of first, within the allowed error: viscous friction is 1." in verdict_sentence(found)
     assert [each.name for each in found.changed] == ["viscous friction"]
     assert viscous.value == pytest.approx(1.5, abs=0.1)
 
@@ -86,7 +87,7 @@ def test_another_torque_constant_is_told_from_another_joint(folder: Path) -> Non
     found = predicted(folder, "scaled.csv")
     assert found.common_scale is not None
     assert found.common_scale[0] == pytest.approx(1.15, abs=0.02)
-    assert "all torques are 1.1" in verdict(found)
+    assert "all torques are 1.1" in verdict_sentence(found)
     assert predicted(folder, "worn.csv").common_scale is None
 
 
@@ -146,7 +147,7 @@ def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_cont
     assert "; dry friction is 1.3" in both.stdout
     assert "plain least squares on this file" in both.stdout
     numbers = json.loads((folder / "both" / "results.json").read_text())["files"]
-    assert [each["contradicts"] for each in numbers] == [False, True]
+    assert [each["verdict"] for each in numbers] == ["agrees", "contradicts"]
     page = (folder / "both" / "report.html").read_text()
     assert page.count("<svg") == 2
     assert "contradicts" in page

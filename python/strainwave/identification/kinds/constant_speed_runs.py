@@ -311,7 +311,7 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     name, after = f"friction over the angle of {listed(names)}", known
     if not measured:
         remarks.append("no other file determines friction: the gear takes this law, valid at the angles and speeds measured")
-        after = known.with_law(found.law, sigmas, listed(names))
+        after = known.with_parts({"friction_input": found.law}, sigmas, listed(names))
     elif waves and sliding.name != "cyclic":
         after = _modulated(known, waves, listed(names))
         remarks.append("the gear takes its waves around the friction that other files determine, relative to its mean")
@@ -386,4 +386,4 @@ def _modulated(known: GearSoFar, waves: dict[int, tuple[float, float, float]], n
     path = f"gear.friction_input.{'law.' if warm else ''}"
     sigmas = {f"{path}amplitude[{i}]": each for i, each in enumerate(sigma)}
     sigmas |= {f"{path}phase[{i}]": each / size for i, (each, size) in enumerate(zip(sigma, amplitude, strict=True))}
-    return known.with_law(law.replace(law=around) if warm else around, sigmas, name)
+    return known.with_parts({"friction_input": law.replace(law=around) if warm else around}, sigmas, name)

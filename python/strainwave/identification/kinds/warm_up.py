@@ -74,7 +74,7 @@ def with_fall(known: GearSoFar, found: Warming, result: FileResult) -> tuple[Gea
     )
     at = _celsius(found.reference_temperature)
     assumed = f"the friction of the gear is taken to hold at {at}, its dry and viscous part to fall alike"
-    return known.with_law(warmer, {estimate.path: estimate.sigma}, result.name), (assumed,)
+    return known.with_parts({"friction_input": warmer}, {estimate.path: estimate.sigma}, result.name), (assumed,)
 
 
 def _celsius(temperature: float) -> str:

@@ -88,14 +88,31 @@ class GearSoFar:
         return replace(self, gear_set=gear_set, determined=self.determined | own, determined_by=determined_by)
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> GearSoFar:
-        """Return the same with parts of the gear that a file of this name determines."""
+        """Return the same with parts of the gear that a file determines; numbers that it takes over keep their source.
+
+        Args:
+            parts: the new laws, by name
+            sigmas: standard deviations of the numbers that the file determines, by path; infinite for one that it does not
+            name: of the file
+        """
+        before, values = self.gear_set.sources, gear_numbers(self.gear_set.gear)
+        known = {plain(each): each for each in before}
         gear = self.gear_set.gear.replace(**parts)
-        sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
+        numbers = gear_numbers(gear)
+        sources = {path: entry for path, entry in before.items() if not is_of(path, parts)}
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
-        for path in (path for path in gear_numbers(gear) if is_of(path, parts)):
-            known = path in sigmas and np.isfinite(sigmas[path])
-            sources[path] = Entry(source=f"identified from {one_line(name)}", uncertainty=sigmas[path] if known else None)
-            determined_by |= {path: name} if known else {}
+        for path in (path for path in numbers if is_of(path, parts)):
+            old = known.get(plain(path), "")
+            if np.isfinite(sigmas.get(path, np.inf)):
+                sources[path] = Entry(source=f"identified from {one_line(name)}", uncertainty=sigmas[path])
+                determined_by[path] = name
+            elif path in sigmas:
+                sources[path] = Entry(source=f"fitted but not identified: {one_line(name)} does not determine it")
+            elif old and values.get(old) == numbers[path]:
+                sources[path] = before[old]
+                determined_by |= {path: self.determined_by[old]} if old in self.determined_by else {}
+            else:
+                sources[path] = Entry(source=f"assumed with the parameters that {one_line(name)} determines")
         gear_set = replace(self.gear_set, gear=gear, sources=sources)
         return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
 
@@ -121,31 +138,8 @@ class GearSoFar:
             outer, depth = outer.law, depth + 1
         for each in reversed(around):
             law = each.replace(law=law)
-        return self.with_law(
-            law, {f"gear.friction_input.{'law.' * depth}{each}": sigma for each, sigma in sigmas.items()}, name
-        )
-
-    def with_law(self, law: Any, sigmas: Mapping[str, float], name: str) -> GearSoFar:
-        """Return the same with another law of the input's friction; numbers that it takes over keep their source.
-
-        Args:
-            law: the new one
-            sigmas: standard deviations of the numbers that the file determines, by path
-            name: of the file
-        """
-        before, values = self.gear_set.sources, {path: value for path, (value, _) in gear_numbers(self.gear_set.gear).items()}
-        known = {plain(each): each for each in before}
-        after = self.with_parts({"friction_input": law}, sigmas, name)
-        sources, determined_by = dict(after.gear_set.sources), dict(after.determined_by)
-        for path, (value, _) in gear_numbers(after.gear_set.gear).items():
-            if path.startswith("gear.friction_input.") and path not in sigmas:
-                old = known.get(plain(path), "")
-                kept = old and values.get(old) == value
-                sources[path] = (
-                    before[old] if kept else Entry(source=f"assumed with the parameters that {one_line(name)} determines")
-                )
-                determined_by |= {path: self.determined_by[old]} if kept and old in self.determined_by else {}
-        return replace(after, gear_set=replace(after.gear_set, sources=sources), determined_by=determined_by)
+        named = {f"gear.friction_input.{'law.' * depth}{each}": sigma for each, sigma in sigmas.items()}
+        return self.with_parts({"friction_input": law}, named, name)
 
 
 def is_of(path: str, parts: Collection[str]) -> bool:

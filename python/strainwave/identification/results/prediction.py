@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
 MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own files
+
+Verdict = Literal["agrees", "differs", "contradicts", "refused"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +94,13 @@ class Prediction(ComparedByFields):
         if (picture := self.picture) is None:
             raise ValueError(f"{self.name} cannot be drawn: {self.refused}")
         return pictures_figure([picture], f"{self.name}, predicted by {self.gear}")
+
+    @property
+    def verdict(self) -> Verdict:
+        """`contradicts` if the error is larger than allowed, `differs` if only a part changed significantly, else `agrees`."""
+        if self.refused:
+            return "refused"
+        return "contradicts" if self.contradicts else "differs" if self.changed else "agrees"
 
     @property
     def contradicts(self) -> bool:

@@ -182,7 +182,7 @@ def _shortened(loop: Loop) -> Loop:
     words = f"{n} points are evaluated as the means of {MAX_POINTS} stretches"
     return replace(
         loop, angle=angle, torque=torque, angle_sigma=angle_sigma, torque_sigma=torque_sigma, time=time,
-        temperature=temperature, remarks=(*loop.remarks, words),
+        temperature=temperature, corrections=(*loop.corrections, words),
     )  # fmt: skip
 
 

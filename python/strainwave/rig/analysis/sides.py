@@ -18,8 +18,6 @@ from strainwave.rig.loop import COLUMNS, Loop, Side
 
 Array = NDArray[np.float64]
 
-FRICTION_TAKEN_OUT = "friction of the wave generator, taken out: "  # begins the remark; reports find it by this
-
 
 def referred(loop: Loop, ratio: float, side: Side) -> Loop:
     """A loop as it would have been measured at the other shaft, of a gear that only divides and multiplies.
@@ -54,7 +52,7 @@ def referred(loop: Loop, ratio: float, side: Side) -> Loop:
         torque_sigma=loop.torque_sigma * size,
         friction_sigma=loop.friction_sigma * size,
         compliance_sigma=loop.compliance_sigma / size**2,
-        remarks=(*loop.remarks, f"measured at the {loop.side}, referred to the {side} by the ratio {ratio:g}"),
+        corrections=(*loop.corrections, f"measured at the {loop.side}, referred to the {side} by the ratio {ratio:g}"),
     )
 
 
@@ -87,13 +85,13 @@ def without_friction(loop: Loop, friction: Value) -> Loop:
     torque = _behind_play(loop.torque, held, start)
     if segment(loop).closed:
         torque = _behind_play(loop.torque, held, float(torque[-1]))
-    remark = f"{FRICTION_TAKEN_OUT}±{held:.3g} N.m at the input"
+    correction = f"friction of the wave generator, ±{held:.3g} N.m at the input, is subtracted"
     return replace(
         loop,
         torque=torque,
         friction_sigma=float(np.hypot(loop.friction_sigma, friction.sigma)),
         input_friction=False,
-        remarks=(*loop.remarks, f"{remark} ({friction.source})" if friction.source else remark),
+        corrections=(*loop.corrections, f"{correction} ({friction.source})" if friction.source else correction),
     )
 
 

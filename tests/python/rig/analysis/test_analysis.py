@@ -210,7 +210,7 @@ def test_of_a_log_of_millions_of_points_the_means_of_stretches_are_evaluated() -
     angle = plain.angle + 1e-3 * np.random.default_rng(1).standard_normal(len(plain))
     found = analyse(Loop(angle, plain.torque, side="input", name="log", angle_sigma=1e-3))
     assert len(found.loop) == 100_000
-    assert f"{len(plain)} points are evaluated as the means of 100000 stretches" in found.remarks
+    assert f"{len(plain)} points are evaluated as the means of 100000 stretches" in found.loop.corrections
     assert found.area is not None
     assert found.area.value == pytest.approx(0.3063483432, rel=1e-4)
     soft = found.stiffnesses[1].softest

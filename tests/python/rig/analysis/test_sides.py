@@ -66,7 +66,7 @@ def test_friction_told_by_a_table_leaves_the_loop_of_the_gear() -> None:
     alone = without_friction(at_input, Value(held, 0.01, "a table"))
     assert alone.torque == pytest.approx(np.insert(gear, [1, turn + 1], gear[[0, turn]]), abs=1e-12)
     assert alone.friction_sigma == 0.01
-    assert "at the input (a table)" in alone.remarks[-1]
+    assert "at the input, is subtracted (a table)" in alone.corrections[-1]
     whole, without = analyse(at_input), analyse(alone)
     assert whole.area is not None
     assert without.area is not None
