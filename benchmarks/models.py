@@ -7,6 +7,7 @@
 All models that the package has are measured. *Law*: time of one evaluation along a path of 100 000 points, all in one call.
 *Drive*: time of a step of 0.2 ms of a drive of which this is the only part that is not the simplest, run for one second of
 ramp and reversals. *Ratio*: to the drive of the simplest parts. All are the shortest of many runs, in rounds over all models.
+Set STRAINWAVE_KERNELS=off: else the drives that run longest compile a kernel, and are compared with others that have none.
 *State*: what a step hands on to the next, as compiled for one gear in double precision.
 """
 
@@ -80,6 +81,8 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     "load_dependent": [{f"{way}_{sense}": 0.2 for way in ("driving", "backdriving") for sense in ("forward", "reverse")}],
     "cyclic": [{"law": LUGRE, "order": [1, 2], "amplitude": [0.2, 0.2], "phase": [0, 0]}],
     "thermal": [{"law": LUGRE, "dry_fall": 0.01, "viscous_fall": 0.02}],
+    "asymmetric": [{"law": LUGRE, "dry_asymmetry": 0.1, "viscous_asymmetry": 0.1}],
+    "angle_speed_map": [{"speed": np.geomspace(0.1, 100.0, 4), "level": np.full(48, 0.03)}],
     "linear": [{"k": 1.2e4}],
     "piecewise": [{"k1": 1.2e4, "k2": 6e3}],
     "three_segment": [{"k1": 1.2e4, "k2": 1.8e4, "k3": 2.1e4, "t1": 10.0, "t2": 40.0}],
@@ -128,13 +131,19 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     "noisy": [{"amplitude": 1e-5, "bandwidth": 500.0}],
     "quantised": [{"resolution": 1e-3}],
     "thermal_softening": [{"stiffness_fall": 3e-4}],
+    "sampled": [{"law": sw.control.PID(proportional=2.0, derivative=0.05, limit=48.0)}],
+    "periodic": [{"order": [2], "amplitude": [0.05], "phase": [0.0]}],
+    "lost_motion_map": [{"angle": [0.0, 1.0], "forward": [1e-4, 2e-4], "backward": [-1e-4, -2e-4]}],
+    "adaptive_fourier": [{"order": [1, 2]}],
+    "twist_identification": [{"order": [1, 2]}],
 }
 
 SIMPLEST = sw.Drive(
     gear=sw.Gear(
-        kinematics=sw.kinematics.PlainRatio(reduction=100.0),
+        kinematics=sw.kinematics.StrainWave(),
         stiffness=sw.stiffness.Linear(k=1.2e4),
         damping=10.0,
+        input_inertia=1e-5,
         friction_input=sw.friction.Viscous(viscous=5e-5),
         friction_output=sw.friction.Viscous(viscous=0.5),
     ),
@@ -204,7 +213,7 @@ def placed(whole: Any, model: Any, within: tuple[type, ...] = ()) -> Any | None:
         for kind in kinds:
             if kind in within:
                 continue
-            part = getattr(whole, field["name"]) if not field["options"] else usual(kind, {})
+            part = getattr(whole, field["name"]) if not field["options"] else usual(kind, SUITED.get(kind.name, [{}])[0])
             found = placed(part, model, (*within, kind))
             if found is not None:
                 return whole.replace(**{field["name"]: found})
