@@ -35,7 +35,7 @@ LOWEST, HIGHEST = 0.3, 3.0  # limits of MuJoCo's search, over the truth: it asks
 NOISE = {"input_angle": 1e-3, "output_angle": 1e-5}  # rad
 ROUNDS = 3
 COLUMNS = (
-    Column("drive beside MuJoCo", words=True, long=True),
+    Column("drive against MuJoCo", words=True, long=True),
     Column("off the truth [σ]"),
     Column("off the truth [%]"),
     Column("time of all cores [s]"),
