@@ -29,7 +29,7 @@ class Example(NamedTuple):
 
 
 # Of a kernel that is compiled now, or was in an earlier run of the tests.
-ANNOUNCEMENT = re.compile(r"^strainwave: compiling a kernel .*\n", re.MULTILINE)
+ANNOUNCEMENT = re.compile(r"^strainwave: (?:compiling a kernel |\d+ of \d+ shards).*\n", re.MULTILINE)
 
 
 def examples(page: Path) -> list[Example]:
