@@ -27,6 +27,13 @@ class Agreement:
         time: when it is that large [s]
         correlation: Pearson's coefficient; None where one of them does not change
         samples: how many were compared
+
+    >>> import strainwave as sw
+    >>> units = {"time": "s", "torque": "N.m"}
+    >>> measured = sw.Recording({"time": [0.0, 1.0, 2.0], "torque": [0.0, 10.0, 20.0]}, units)
+    >>> (agreement,) = sw.compare(measured, measured.with_column("torque", [0.0, 10.4, 20.3], "N.m"))
+    >>> round(agreement.rms, 3), round(agreement.largest, 3), agreement.unit, agreement.time
+    (0.289, 0.4, 'N.m', 1.0)
     """
 
     name: str

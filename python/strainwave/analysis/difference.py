@@ -24,6 +24,12 @@ class Difference:
         path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", or of a rating
         first, second: the numbers, or the models' names; None where one of them does not have it
         unit: of the numbers, empty for names
+
+    >>> import strainwave as sw
+    >>> gear = sw.load("csg-25-100")
+    >>> (difference,) = sw.compare(gear, gear.replace({"stiffness.k1": 0.8 * gear.stiffness.k1}))
+    >>> difference.path, round(difference.change, 3)
+    ('gear.stiffness.k1', -0.2)
     """
 
     path: str

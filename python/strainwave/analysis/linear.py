@@ -56,6 +56,11 @@ class Linearisation(ComparedByFields):
         inputs: names
         outputs: names, those of a recording's columns
         units: unit of each name
+
+    >>> import strainwave as sw
+    >>> linear = sw.linearise(sw.Drive(control=sw.control.PID(proportional=2.0, derivative=0.05)))
+    >>> linear.eigenfrequencies.round(1), linear.damping_ratios.round(2)  # rad/s; two real poles, and the spring of the gear
+    (array([  21. ,  440.4, 1040.6, 1040.6]), array([1.  , 1.  , 0.02, 0.02]))
     """
 
     A: Array

@@ -56,6 +56,16 @@ class FrequencyResponse(ComparedByFields):
         periods: count until the motion was periodic, shape (k,)
         input: name of the input with the sine
         units: unit of the input and of each output
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
+    >>> drive = sw.Drive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
+    >>> answer = sw.frequency_response(drive, [1.0, 10.0], amplitude=0.01)
+    >>> (20.0 * np.log10(abs(answer["output_angle"]))).round(1)  # dB
+    array([-0.3, -4.2])
+    >>> np.degrees(np.angle(answer["output_angle"])).round(1)
+    array([ -8.6, -28.8])
     """
 
     frequency: Array

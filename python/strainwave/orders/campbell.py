@@ -38,6 +38,15 @@ class Campbell(ComparedByFields):
         unit: of the amplitude
         speed_column: name of the column of the speed
         remarks: on uneven and missing times
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> time = np.arange(0.0, 20.0, 1e-3)
+    >>> columns = {"time": time, "input_speed": 10.0 * time, "torque": 3.0 * np.sin(10.0 * time**2)}  # order 2
+    >>> diagram = sw.campbell(sw.Recording(columns, {"time": "s", "input_speed": "rad/s", "torque": "N.m"}), "torque")
+    >>> fast = diagram.amplitude[-1]  # of the stretch at the highest speed
+    >>> round(float(diagram.speed[-1]), 1), round(float(diagram.frequency[fast.argmax()]), 1), diagram.unit
+    (197.5, 62.0, 'N.m')
     """
 
     speed: Array
@@ -81,6 +90,9 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
         column: the name of a column, as "torque"
         speed: the name of the column with the speed of the shaft
         stretch: duration of each stretch [s]; frequencies are resolved to about 2 / `stretch`
+
+    Returns:
+        Amplitudes [unit of the column] over speed [rad/s] and frequency [Hz], shape (stretches, frequencies).
 
     Raises:
         TypeError: `recording` is no recording, or a name is no text

@@ -39,6 +39,14 @@ class Orders(ComparedByFields):
         residual: root mean square of what is neither mean, drift nor one of these orders [unit]
         revolutions: whole ones that were used
         unit: of the column
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> theta = np.linspace(0.0, 20.0 * np.pi, 2000)
+    >>> columns = {"input_angle": theta, "torque": 0.5 + 0.03 * np.sin(2 * theta) + 0.01 * np.sin(4 * theta)}
+    >>> found = sw.order_amplitudes(sw.Recording(columns, {"input_angle": "rad", "torque": "N.m"}), "torque", [2, 4])
+    >>> found.amplitude.round(6), round(found.mean, 6), found.unit, found.revolutions
+    (array([0.03, 0.01]), 0.5, 'N.m', 10)
     """
 
     order: Array
@@ -58,6 +66,11 @@ class BearingOrders(NamedTuple):
         outer_ring: a ball passes a point of the outer ring [1]
         inner_ring: a ball passes a point of the inner ring [1]
         ball: a ball turns about itself [1]; a fault of it meets a ring twice as often
+
+    >>> import strainwave as sw
+    >>> orders = sw.bearing_orders(balls=9, ball_diameter=7.94, pitch_diameter=39.04)
+    >>> round(30.0 * orders.outer_ring, 1)  # Hz of a fault of the outer ring, at 30 revolutions per second
+    107.5
     """
 
     cage: float
@@ -135,7 +148,7 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
 
     The last whole revolutions are resampled over the angle. Mean and linear drift are taken out, and a Hann window is laid over
     the rest. An order that is a multiple of 1 / revolutions then shows its full amplitude, and half of it at both neighbours;
-    one between two lines shows up to 15 % less. `orders` gives the amplitudes of known orders without a window.
+    one between two lines shows up to 15 % less. `order_amplitudes` gives those of known orders without a window.
 
     Args:
         recording: with a shaft that turns one way
@@ -148,7 +161,7 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: as `orders`; or `highest` is less than one line
+        ValueError: as `order_amplitudes`; or `highest` is less than one line
 
     >>> import strainwave as sw
     >>> theta = np.linspace(0.0, 40 * np.pi, 4001)
@@ -204,6 +217,9 @@ def bearing_orders(
         pitch_diameter: of the circle on which the centres of the balls lie
         contact_angle: [rad], 0 of a deep groove bearing
         outer_speed: speed of the outer ring over that of the inner [1]
+
+    Returns:
+        Orders [1]: events per revolution of the shaft. A frequency [Hz] is an order times the revolutions per second.
 
     Raises:
         TypeError: an argument is not of its kind

@@ -63,6 +63,15 @@ class Ripple(ComparedByFields):
             to be found)
         curves: angle, series, smooth part, residual, and time where it is known
         remarks: what to know of these numbers, in words
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> q = 1.5 * np.sin(np.linspace(0.0, 20.0, 4000))
+    >>> torque = 4.0 * np.sign(np.gradient(q)) + 0.25 * np.cos(200 * q) + np.random.default_rng(3).normal(0.0, 0.3, len(q))
+    >>> record = sw.Recording({"output_angle": q, "torque": torque}, {"output_angle": "rad", "torque": "N.m"})
+    >>> found = sw.ripple(record, "torque")
+    >>> [round(line.order) for line in found.lines], round(found.resolution, 1), found.concluded
+    ([200], 2.1, (100, 101))
     """
 
     column: str
@@ -110,6 +119,10 @@ def ripple(
         rate: samples per second of a recording without time [Hz]
         false_alarm: largest probability of a line by noise alone, over all lines tested together
         other_angles: columns with the angles of other joints that move, by the name of the joint
+
+    Returns:
+        The lines with their orders [1] and amplitudes [unit of the column], the spectrum, and the ratios that explain the
+        lines.
 
     Raises:
         TypeError: an argument is not of its kind
