@@ -232,6 +232,9 @@ class GearSet:
     def replace(self, **changes: Any) -> GearSet:
         """The same with the named members changed; `sources` and `ratings` are replaced as a whole.
 
+        Raises:
+            TypeError, ValueError: as the class
+
         >>> found = Entry("fitted to a friction table", uncertainty=2e-3)
         >>> gear_set = GearSet.read("hfuc-25-100")
         >>> changed = gear_set.replace(
@@ -259,6 +262,10 @@ class GearSet:
             source: where they come from, one line of text; a number that equals its default has another one, as in `of`
             motor, control, load, sensors, thermal, meter: as the set has them; what is not given stays
 
+        Raises:
+            TypeError: a part is of another family
+            ValueError: `source` is no line of text
+
         >>> import strainwave as sw
         >>> disc = sw.loads.Inertia(inertia=2.0)
         >>> whole = GearSet.read("hfuc-25-100").with_parts(motor=sw.motor.DC(resistance=0.3), load=disc, source="data sheet")
@@ -284,6 +291,7 @@ class GearSet:
 
         Raises:
             ValueError: the path does not end in .toml.
+            OSError: the file cannot be written
 
         >>> import tempfile
         >>> gear_set = GearSet.read("hfuc-25-100")
@@ -362,6 +370,7 @@ def save(model: GearSet | Gear | Drive | FittedModel, path: str | Path, **naming
     Raises:
         ValueError: the path does not end in .toml, or as `GearSet.of`
         TypeError: name and source are missing, or given for a set which has its own, or as `GearSet.of`
+        OSError: the file cannot be written
 
     >>> import tempfile, strainwave as sw
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -21,7 +21,16 @@ Array = NDArray[np.float64]
 
 
 class RatingWarning(UserWarning):
-    """A simulation exceeded what the ratings of its gear set, or of the file its gear was loaded from, allow."""
+    """A simulation exceeded what the ratings of its gear set, or of the file its gear was loaded from, allow.
+
+    >>> import warnings
+    >>> import strainwave as sw
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     run = sw.simulate(sw.GearSet.read("robot-joint"), sw.scenario.step(2.0, duration=0.1))
+    >>> print(str(caught[1].message).partition(" (")[0])
+    Robot joint: peak torque: 266.2 N.m exceeds the limit of 204 N.m, first at t = 0.0096 s
+    """
 
 
 MAX_REMEMBERED = 100  # gears that were loaded last
@@ -39,6 +48,12 @@ class RatingCheck:
         time: when it was exceeded for the first time [s]; None where it was not, where the limit is one of a mean, or
             where the recording has no time
         recording: title of the recording
+
+    >>> import strainwave as sw
+    >>> run = sw.Recording({"time": [0.0, 0.1, 0.2], "torque": [0.0, -129.0, 60.0]}, {"time": "s", "torque": "N.m"})
+    >>> check = sw.check_ratings(sw.GearSet.read("csg-20-100"), run)[0]
+    >>> check.name, check.reached, check.limit.value, check.exceeded, check.time
+    ('peak_torque', 129.0, 107.0, True, 0.1)
     """
 
     name: str

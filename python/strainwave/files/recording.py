@@ -328,7 +328,11 @@ class Recording:
     ) -> Recording:
         """Read a Parquet file; units come from its field metadata, its column names (as in `from_csv`) or `units`.
 
-        Args, Raises: as `from_csv`.
+        Args:
+            path, columns, units: as of `from_csv`
+
+        Raises:
+            ValueError: as `from_csv`
         """
         from strainwave.files.parquet_table import open_parquet
         from strainwave.files.tables import read_table

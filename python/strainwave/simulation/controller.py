@@ -36,6 +36,15 @@ class Observation(NamedTuple):
         current: of the motor [A]
         torque: transmitted by the gear, at the output [N.m]
         low, high: the least and the largest actuation that the motor can follow now, in its unit; ±1.8e308 if it has no limits
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> def limited(seen):  # the drive turns its output against its input
+    ...     voltage = -60.0 * (seen.command - seen.output_angle) - 0.02 * seen.input_speed
+    ...     return min(max(voltage, seen.low), seen.high)
+    >>> run = sw.simulate_controlled(drive, limited, sw.scenario.step(amplitude=0.2, duration=0.5), period=1e-3)
+    >>> round(float(run["output_angle"][-1]), 3)
+    0.198
     """
 
     time: float

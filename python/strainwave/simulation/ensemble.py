@@ -66,7 +66,17 @@ RUN_MEMBERS: dict[Backend, Callable[..., Any]] = {
 
 
 class EnsembleWarning(UserWarning):
-    """Members of an ensemble could not be run to their end."""
+    """Members of an ensemble could not be run to their end.
+
+    >>> import warnings
+    >>> import strainwave as sw
+    >>> drive, voltage = sw.Drive(load=sw.loads.Inertia(inertia=0.01)), sw.scenario.step(5.0, duration=0.1)
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", sw.EnsembleWarning)
+    ...     runs = sw.simulate_many(drive, voltage, {"gear.stiffness.k": [1e4, 1e12]})  # too stiff for the step
+    >>> list(runs.failures), runs.failures[1].split(":")[0]
+    ([1], 'dt = 0.0002 s is too coarse for this drive')
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +89,12 @@ class Ensemble(ComparedByFields):
         units: the unit of each
         parameters: what the members differ in, each of shape (members,)
         failures: why a member has no result, by its number
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> runs = sw.simulate_many(drive, sw.scenario.step(5.0, duration=0.1), {"load.inertia": [0.01, 0.1, 1.0]})
+    >>> runs["torque"].shape, abs(runs["torque"]).max(axis=1).round(2), runs.units["torque"]
+    ((3, 501), array([ 3.33, 14.79, 27.58]), 'N.m')
     """
 
     time: Array
@@ -98,7 +114,12 @@ class Ensemble(ComparedByFields):
         return len(next(iter(self.columns.values())))
 
     def member(self, number: int) -> Recording:
-        """One member's run; `ValueError` with the reason if it has none."""
+        """Return the run of one member.
+
+        Raises:
+            TypeError: the number is not whole
+            ValueError: there is no such member, or it has no result; the message gives the reason
+        """
         arguments.whole("member", number, 0)
         if number >= len(self):
             raise ValueError(f"member {number} is not among the {len(self)} members, which count from 0")

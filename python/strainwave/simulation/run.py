@@ -40,6 +40,13 @@ class Run(Recording):
     Attributes:
         end: the state at the end, from which another simulation can start
         method: how steps were taken, in words
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> run = sw.simulate(drive, sw.scenario.constant(5.0, duration=0.1))
+    >>> further = sw.simulate(drive, sw.scenario.constant(0.0, duration=0.1), start=run.end)
+    >>> [round(float(each["output_speed"][0]), 3) for each in (run, further)], run.unit("output_speed")
+    ([0.0, -1.066], 'rad/s')
     """
 
     end: State

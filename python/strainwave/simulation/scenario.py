@@ -41,6 +41,11 @@ class Wave:
         frequency: f, at t = 0 [Hz]
         sweep: g, the rise of the frequency [Hz/s]
         phase: phi [rad]
+
+    >>> import strainwave as sw
+    >>> (wave,) = sw.scenario.chirp(1.0, start_frequency=2.0, stop_frequency=10.0, duration=4.0).waves
+    >>> wave.frequency, wave.sweep  # Hz at the start, Hz per second
+    (2.0, 2.0)
     """
 
     amplitude: float
@@ -65,6 +70,11 @@ class Scenario:
     Raises:
         ValueError: the duration is shorter than 1e-30 s, a number is not finite, the pieces are out of order, or the command or
             its rate grows beyond all numbers within the duration.
+
+    >>> import strainwave as sw
+    >>> command = sw.scenario.ramp(2.0, duration=1.0) + sw.scenario.sine(0.1, frequency=5.0, duration=1.0)
+    >>> command.value([0.05, 1.0]).round(3), round(float(command.rate(0.0)), 3)
+    (array([0.2, 2. ]), 5.142)
     """
 
     duration: float
@@ -132,7 +142,11 @@ class Scenario:
         return self._at(time, before=False)[1]
 
     def value_before(self, time: ArrayLike) -> Array:
-        """Left limit of the command at `time` [s]; at 0 the value there."""
+        """Left limit of the command at `time` [s]; at 0 the value there.
+
+        Raises:
+            ValueError: a time is not in [0, duration]
+        """
         return self._at(time, before=True)[0]
 
     @cached_property
