@@ -51,6 +51,16 @@ class Identified(ComparedByFields):
             log that determines its load best, their covariance, and the errors of this drive on each file. A file with a failed
             check changes nothing of it, unless it was accepted
         checks: consistency checks of all files, and of files with each other and with the start set
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> speed = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
+    >>> columns = {"speed": speed, "torque": 0.05 + 3e-4 * speed + 1e-4 * np.array([1, -1, 0, 1, -1, 1, 0])}
+    >>> found = sw.identify("hfuc-25-100", {"friction": sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"})})
+    >>> for each in found.parameters:
+    ...     print(each.estimate.path, f"{each.estimate.value:.3g} ± {each.estimate.sigma:.1g} {each.estimate.unit}")
+    gear.friction_input.coulomb 0.05 ± 6e-05 N.m
+    gear.friction_input.viscous 0.0003 ± 6e-07 N.m.s/rad
     """
 
     start: GearSet

@@ -23,7 +23,15 @@ _warned: set[str] = set()  # in this process: each reason is given once
 
 
 class KernelWarning(UserWarning):
-    """Kernels are not used, for the reason given; the general code gives the same numbers, more slowly."""
+    """Kernels are not used, for the reason given; the general code gives the same numbers, more slowly.
+
+    >>> import warnings
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", sw.KernelWarning)  # on a machine without a compiler
+    ...     run = sw.simulate(drive, sw.scenario.step(5.0, duration=0.1))
+    """
 
 
 def kernel_file(kernel: Kernel, announce: Callable[[], None] = lambda: None) -> Path | None:

@@ -51,6 +51,12 @@ class Compilation:
     Args:
         drive: the laws of the drive, without those that every drive has by default
         jobs: the jobs, in the order of `JOBS`
+
+    >>> import strainwave as sw
+    >>> print(sw.compile(sw.load("position-drive"), jobs=["simulate"]))  # doctest: +SKIP
+    control PID, kinematics PlainRatio, friction_input Coulomb, friction_output Coulomb
+    job                  compiled    faster
+    simulate               1.75 s     6.4 x
     """
 
     drive: str

@@ -173,6 +173,10 @@ def plan_experiments(
         commands: for motion, by name: from rest, what the drive's control takes; shares of them are tried
         sample: distance of the samples of a run [s]
 
+    Returns:
+        The measurements with their settings and durations [s], and the standard deviation of each parameter before and after
+        them.
+
     Raises:
         TypeError: an argument is not of its kind
         ValueError: an unknown path or kind of experiment, no limit where one is needed, time for too many measurements,

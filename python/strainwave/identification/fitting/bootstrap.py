@@ -47,7 +47,12 @@ class Bootstrap(ComparedByFields):
         return np.asarray(np.std(self.values, axis=0, ddof=1))
 
     def interval(self, path: str, confidence: float = 0.95) -> tuple[float, float]:
-        """Return the interval that contains this share of the draws, with as many on either side of it (percentiles)."""
+        """Return the interval that contains this share of the draws, with as many on either side of it (percentiles).
+
+        Raises:
+            ValueError: there is no such estimate, or `confidence` lies outside of (0, 1)
+            TypeError: `path` is no text, or `confidence` no number
+        """
         path, confidence = arguments.text("path", path), arguments.number("confidence", confidence, low=0.0, high=1.0)
         if path not in self.paths:
             raise ValueError(f"there is no estimate of {quoted(path)}; there are {listed(self.paths)}")
@@ -69,6 +74,9 @@ def bootstrap(
         draws: count of fits, 20 or more; each starts where `found` ended
         seed: of the random numbers
         progress: is called with the count of draws done, and of all
+
+    Returns:
+        The estimates of each draw that could be fitted, shape (draws, p), in the order and units of `found.estimates`.
 
     Raises:
         TypeError: `found` is no fit

@@ -31,6 +31,17 @@ class Combination(ComparedByFields):
         value: of the formula
         sigma: its standard deviation
         unit: its unit; empty where parameters of different units multiply
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.1))
+    >>> voltage = sw.scenario.sine(5.0, frequency=2.0, duration=0.5)
+    >>> run = sw.simulate(drive, voltage, sample=1e-2, record=["command", "input_angle"])
+    >>> noise = 1e-2 * np.random.default_rng(0).normal(size=len(run))
+    >>> log = run.with_column("input_angle", run["input_angle"] + noise, "rad")
+    >>> (combination,) = sw.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
+    >>> combination.formula, round(1e6 * combination.value), round(1e6 * combination.sigma, 2)  # 1e-6 kg.m2
+    ('motor.inertia + 0.0001 load.inertia', 20, 0.04)
     """
 
     paths: tuple[str, ...]
@@ -63,6 +74,9 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
     Args:
         found: result of `fit`; parameters that are 0 take no part
         max_relative_sigma: relative standard deviation above which a direction counts as open
+
+    Returns:
+        One combination for each open direction; none if the fit determines every parameter by itself.
 
     Raises:
         TypeError: `found` is no fit

@@ -85,6 +85,18 @@ class Fit(ComparedByFields):
         plan: the unknowns and their priors
         loss: name of the loss function
         evaluations: count of the runs of the model
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> speed = np.linspace(1.0, 50.0, 60)
+    >>> torque = 0.02 + 3e-4 * speed + 1e-4 * np.random.default_rng(0).normal(size=60)
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.01, breakaway=0.01))
+    >>> print(sw.fit(gear, table, ["friction_input.coulomb", "friction_input.viscous"]).summary())
+    parameter                                           start          value      sigma  unit
+    friction_input.coulomb                               0.01     0.01997928    2.7e-05  N.m
+    friction_input.viscous                                  0   0.0003011159    9.9e-07  N.m.s/rad
+    residual of torque: 8.83e-05 N.m rms
     """
 
     model: Any

@@ -48,6 +48,16 @@ class Minima(ComparedByFields):
         ends: that of the least cost first; that of the given fit is among them
         units: of the free parameters, by path
         lower: True if another start led to a lower cost
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> law = sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4)
+    >>> speed = np.linspace(1.0, 50.0, 60)
+    >>> torque = law.steady(speed) + 1e-4 * np.random.default_rng(0).normal(size=60)
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> found = sw.minima(sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb"]), starts=3)
+    >>> len(found.ends), found.ends[0].starts, found.rivals, found.lower
+    (1, 4, (), False)
     """
 
     best: Fit
@@ -90,6 +100,9 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
         found: result of `fit`
         starts: count of other initial values; each takes about as long as the fit did
         seed: of the random numbers
+
+    Returns:
+        The best fit, and each minimum with the number of starts that ended there.
 
     Raises:
         TypeError: `found` is no fit

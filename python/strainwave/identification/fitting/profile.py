@@ -72,6 +72,9 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
         path: of a free parameter, or an unknown of the measurement, as the estimates name it
         confidence: of the interval
 
+    Returns:
+        The values tried [unit of the parameter] and the cost at each, shape (n,), and the interval.
+
     Raises:
         TypeError: `found` is no fit
         ValueError: the fit has no such unknown

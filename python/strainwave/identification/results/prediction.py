@@ -48,6 +48,16 @@ class Prediction(ComparedByFields):
         checks: that of the error; failed if the recording contradicts the gear
         remarks: assumptions and limits, in short sentences
         refused: why the recording cannot be predicted; empty if it can
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, viscous=3e-4))
+    >>> speed = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
+    >>> torque = 1.2 * gear.friction_input.steady(speed)  # 20 % more friction than saved
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> (found,) = sw.predict(gear, {"friction": table})
+    >>> round(found.error, 4), round(found.allowed, 4), found.unit, found.contradicts
+    (0.0139, 0.0121, 'N.m', True)
     """
 
     name: str
