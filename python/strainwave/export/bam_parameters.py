@@ -39,8 +39,17 @@ def bam(gear_set: GearSet, *, actuator: str = DEFAULT_ACTUATOR, max_torque: floa
         actuator: a name that BAM has; it determines the control law there
         max_torque: largest torque at the output [N.m]; by default the peak torque of the ratings
 
+    Returns:
+        The file `bam.json`, its numbers with their units, the loss in the friction, and the laws left out.
+
     Raises:
         ValueError: the motor is not known, or takes a torque
+
+    >>> import strainwave as sw
+    >>> found = sw.export.bam(sw.GearSet.read("robot-joint"))
+    >>> value, unit = found.numbers["friction_base"]
+    >>> list(found.files), round(value, 2), unit
+    (['bam.json'], 9.0, 'N.m')
     """
     elements = GearElements.of_set(gear_set, max_torque)
     constant = None if gear_set.motor is None else torque_constant(gear_set.motor)
@@ -101,8 +110,20 @@ def read_bam(path: Path, ratio: float) -> GearSet:
         path: of the file
         ratio: of the gear, which BAM does not state [1]
 
+    Returns:
+        The set, in SI units, with friction and inertia at the input; its `note` names what was left out.
+
     Raises:
         ValueError: the file cannot be read, is no parameter file, or has friction that the laws of this package do not have
+
+    >>> import pathlib, tempfile
+    >>> import strainwave as sw
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "joint.json")
+    ...     _ = path.write_text(sw.export.bam(sw.GearSet.read("robot-joint")).files["bam.json"])
+    ...     joint = sw.export.read_bam(path, ratio=100.0)
+    >>> joint.name, round(joint.gear.friction_input.coulomb, 4)  # N.m at the input
+    ('joint', 0.09)
     """
     ratio = abs(arguments.ratio("ratio", ratio))
     text = read_text(path, MAX_BYTES)

@@ -91,6 +91,9 @@ def mujoco_plugin(
         step: largest internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the library, of the plugin after "strainwave.", and prefix of the actuator
 
+    Returns:
+        The library and the model `gear.xml`, the loss in a run, and the laws left out.
+
     Raises:
         TypeError, ValueError: an argument is not of its kind, there is no inertia, or the robot has no such hinge
         ImportError: MuJoCo is not installed, or older than 4.0

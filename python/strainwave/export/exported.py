@@ -22,6 +22,14 @@ class Exported:
         left_out: laws of the gear that the form has no place for, in words
         remarks: what to do with the files and numbers, and what was assumed
         table: columns of numbers, written as <kind>.csv
+
+    >>> import strainwave as sw
+    >>> found = sw.export.joint(sw.GearSet.read("csg-20-100"))
+    >>> value, unit = found.numbers["frictionloss"]
+    >>> sorted(found.files), round(value, 2), unit
+    (['joint.urdf', 'joint.xml'], 4.61, 'N.m')
+    >>> found.left_out[1]
+    'torsion: 3.99 mrad at 107 N.m'
     """
 
     kind: str

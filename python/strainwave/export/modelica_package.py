@@ -54,6 +54,9 @@ def modelica(
         step: largest internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the package and the library
 
+    Returns:
+        The files of the package by their path, and the loss by the period.
+
     Raises:
         TypeError, ValueError: an argument is not of its kind
         NoCompilerError: there is no compiler

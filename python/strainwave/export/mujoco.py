@@ -59,6 +59,9 @@ def mjcf(
         seed: of the draw
         name: of the gear, and prefix of joints, tendons and actuators
 
+    Returns:
+        The text of the MJCF file, the losses of each law and of a run, and the laws left out.
+
     Raises:
         ValueError: neither a torque nor a rating is given, there is no inertia, or the robot has no such hinge
 

@@ -24,6 +24,9 @@ def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joi
         max_torque: largest torque at the output [N.m]; by default the peak torque of the ratings
         name: of the joint
 
+    Returns:
+        The texts of the files by their path, and the numbers in them with their units.
+
     Raises:
         ValueError: neither a torque nor a rating is given, or the name is none of ROS
 

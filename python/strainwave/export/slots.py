@@ -187,6 +187,9 @@ def slot(
         temperature: of the gear [K]
         members, seed: number of drawn gears, of whose friction scales are judged, and seed of the draw
 
+    Returns:
+        The numbers with their units, the loss of each, and the table of a slot that takes one.
+
     Raises:
         TypeError: `drive` is none
         ValueError: the set lacks what the slot needs, or a number is out of its range

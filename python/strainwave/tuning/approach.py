@@ -32,6 +32,11 @@ class LostMotion:
         width: separation of both branches of the loop at the load torque, at the output [rad]
         extent: whole twist of the loop, from one end of the torque to the other, at the output [rad]
         ratio: size of the ratio of the gear, input over output [1]
+
+    >>> import strainwave as sw
+    >>> lost = sw.lost_motion(sw.rig.printed_gear(0), swing=36.0)  # N.m of friction and inertia at the output
+    >>> [round(1e3 * angle, 1) for angle in (lost.width, lost.extent, lost.overshoot())]  # mrad at the output
+    [8.8, 10.4, 12.4]
     """
 
     load_torque: float
@@ -82,6 +87,9 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
         load_torque: constant torque of the load, positive if it holds the output back [N.m]
         swing: what the load takes besides, either way: friction of its own, inertia times acceleration [N.m]
 
+    Returns:
+        Width and extent of the loop, as angles of the output [rad] and of the input.
+
     Raises:
         TypeError: `gear` is no gear
         ValueError: a number is out of its range, no twist yields the torque, or neither friction of the output nor `swing` lets
@@ -129,6 +137,11 @@ class PositioningPath:
         command: angle of the output over time [rad]
         targets: in the order of their visits [rad], shape (n,)
         rests: time at the end of the rest at each target [s], shape (n,)
+
+    >>> import strainwave as sw
+    >>> path = sw.positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
+    >>> path.rests.round(3), path.command.value(path.rests).round(6)
+    (array([0.875, 2.246]), array([0.2, 0.1]))
     """
 
     command: Scenario
@@ -166,6 +179,9 @@ def positioning_path(
         start: angle of the output at the begin [rad]
         from_above: True to arrive from above, so in falling motion
         sample: longest piece of the command [s]
+
+    Returns:
+        The command [rad] over time, and the time at the end of the rest at each target [s], shape (n,).
 
     Raises:
         TypeError: an argument is not of its kind

@@ -62,6 +62,11 @@ class Compensated:
         over_compensation: cascade and chosen controller where the drive has less of an effect than the model, for each effect
         conditions: both at other speeds, load inertias and temperatures, on the gears drawn anew
         remarks: what was assumed
+
+    >>> import strainwave as sw
+    >>> found = sw.compensate("robot-joint", members=3, travel=0.05)  # doctest: +SKIP
+    >>> found.chosen.candidate.effects, round(found.gain, 2), round(found.margins.modulus, 2)  # doctest: +SKIP
+    (('torsion',), 0.47, 0.59)
     """
 
     gear_set: GearSet
@@ -132,6 +137,10 @@ def compensate(
         members: number of drawn gears
         seed: of the draw
         progress: called with what is done next
+
+    Returns:
+        The controller chosen, its gain over the cascade, and the figures of all candidates. If no compensation gains, the
+        cascade is chosen.
 
     Raises:
         TypeError: `drive` is no drive

@@ -63,6 +63,13 @@ class LoopMargins:
     Attributes:
         speed: of the speed loop, with the observer, while the position loop is open
         position: of the position loop around it
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> law = sw.control.PositionSpeed(position_gain=50.0, speed_proportional=3.0, speed_integral=150.0)
+    >>> margins = sw.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
+    >>> round(float(np.degrees(margins.speed.phase))), round(margins.speed.crossover), round(margins.modulus, 2)
+    (57, 1076, 0.51)
     """
 
     speed: Margins
@@ -96,8 +103,15 @@ def loop_margins(drive: Drive) -> LoopMargins:
 
     Source: AstromWittenmark1997, section 3.3 (loops with delay and hold), AstromMurray2008, section 9.3 (margins).
 
+    Args:
+        drive: with motor, load and such a controller
+
+    Returns:
+        Of both loops gain margin [1], phase margin [rad], modulus margin [1] and crossover [rad/s].
+
     Raises:
         ValueError: the drive has no `control.Sampled` of a `PositionSpeed`, or its load or motor is refused by `compensate`
+        TypeError: `drive` is no drive
 
     >>> import strainwave as sw
     >>> drive = sw.load("robot-joint")
@@ -133,8 +147,12 @@ def cascade(
         period, delay: of the controller [s]
         encoder: "input" or "output", on which the position loop closes
 
+    Returns:
+        The law, for a `control.Sampled` of the same period and delay.
+
     Raises:
         ValueError: as `compensate`; or no setting has that margin
+        TypeError: `drive` is no drive
 
     >>> law = cascade("robot-joint", period=1e-3, delay=5e-4)
     >>> faster = cascade("robot-joint", period=2.5e-4)

@@ -100,6 +100,14 @@ class PredictiveController:
         gains: of the states and the actuation before, where no limit acts
         states: names of those states
         unsolved: number of periods since the begin in which the solver ran out of iterations
+
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), damping=5.0)
+    >>> joint = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
+    >>> controller = sw.predictive(joint, error=1e-3, effort=0.5)
+    >>> run = sw.simulate_controlled(controller.drive, controller, sw.scenario.step(0.1, 0.05), period=controller.period)
+    >>> controller.states, controller.unsolved
+    (('input_angle', 'input_speed', 'transmission_error', 'output_speed'), 0)
     """
 
     def __init__(self, plant: Plant, program: Program, model: PredictiveModel, preview: Scenario | None, share: float) -> None:
@@ -146,6 +154,9 @@ class PredictiveController:
 
         Returns:
             the folder
+
+        Raises:
+            OSError: the folder cannot be written
         """
         from strainwave.tuning.predictive_c import write_c
 
@@ -298,6 +309,9 @@ def predictive(
         torque_limit: largest torque of the gear, at the output [N.m]
         bandwidth: of the estimate of the bias [rad/s]; 0 for none
         preview: the command, if it is known beforehand; otherwise it is continued at its rate
+
+    Returns:
+        The controller, a function for `simulate_controlled`; its `drive` is the drive to simulate.
 
     Raises:
         ImportError: osqp is not installed

@@ -106,6 +106,11 @@ class PulsePlan:
         max_width: of a pulse [s]
         rest: after each pulse [s]
         actuation_per_torque: what the motor takes per torque: [A/(N.m)] or [1]
+
+    >>> import strainwave as sw
+    >>> plan = sw.plan_pulses("position-drive", 0.005)
+    >>> [round(1e3 * width) for width in plan.widths], round(plan.torque, 3), round(plan.friction, 3)  # ms, N.m, N.m
+    ([95], 0.153, 0.074)
     """
 
     gear_set: GearSet
@@ -132,7 +137,11 @@ class PulsePlan:
         return pulse_travel(abs(self.torque), 1.0, self.inertia, self.friction) / ratio
 
     def pulses(self, widths: Sequence[float], sense: float = 1.0) -> Scenario:
-        """Return a train of pulses of some widths [s], each followed by the rest; against the travel if `sense` is -1."""
+        """Return a train of pulses of some widths [s], each followed by the rest; against the travel if `sense` is -1.
+
+        Raises:
+            ValueError: a width is not positive
+        """
         ends = np.cumsum([width + self.rest for width in widths])
         begins = np.append(0.0, ends[:-1])
         edges = np.column_stack((begins, begins + widths)).ravel()
@@ -159,6 +168,9 @@ def plan_pulses(
         torque: of a pulse at the input, beyond breakaway [N.m]; twice the breakaway if not given
         max_width: of a pulse [s]
         rest: after each pulse [s]
+
+    Returns:
+        Torque at the input [N.m] and widths [s] of the pulses, shape (n,), and the numbers of the drive that they follow from.
 
     Raises:
         TypeError: an argument is not of its kind
@@ -211,6 +223,11 @@ class PulsedMove:
         widths: of the pulses, negative against the travel [s], shape (n,)
         angles: of the output at rest, from the begin, first 0, then after each pulse [rad], shape (n + 1,)
         end: state at the end, from which another move can start
+
+    >>> import strainwave as sw
+    >>> move = sw.position_by_pulses(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4)
+    >>> move.reached, (1e3 * move.angles).round(2)  # mrad of the output: at the start, and after each pulse
+    (True, array([0.  , 2.55, 5.03]))
     """
 
     travel: float
@@ -265,6 +282,9 @@ def position_by_pulses(
         max_pulses: number of measured pulses after which the move ends, reached or not
         start: where the drive starts, as `end` of another move; untwisted at rest if not given
         drive: that is moved in truth, with parts of the same models as `plan.drive`, which it is if not given
+
+    Returns:
+        Widths of the pulses [s], shape (n,), the angle of the output at rest after each [rad], and the state at the end.
 
     Raises:
         TypeError: an argument is not of its kind
@@ -346,6 +366,11 @@ class PulseRepeatability:
         errors: of the output at rest after the last pulse [rad], shape (members,)
         pulses: number of pulses, shape (members,)
         reached: share of the drives whose error is within the tolerance
+
+    >>> import strainwave as sw
+    >>> found = sw.pulse_repeatability(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
+    >>> found.pulses, (1e3 * found.errors).round(2)  # mrad of the output
+    (array([2, 4, 2, 4, 2]), array([ 0.04,  0.1 , -0.06, -0.07,  0.03]))
     """
 
     errors: Array
@@ -394,6 +419,10 @@ def pulse_repeatability(
         max_pulses: number of measured pulses after which a move ends
         members: number of drawn drives
         seed: of the draw
+
+    Returns:
+        Error of the output [rad] and number of pulses of each drive, shape (members,), and the share that reached the
+        tolerance.
 
     Raises:
         TypeError, ValueError: as `position_by_pulses`

@@ -98,9 +98,13 @@ def regulator(
         disturbance_rate: standard deviation by which the constant torque changes in 1 s [N.m/s^(1/2)]; the limit if not
             given. A larger one takes disturbances away faster
 
+    Returns:
+        A `StateFeedback`, or a `StateSpace` with encoder="input". Its actuation is a current [A] or a torque [N.m].
+
     Raises:
         ValueError: as `compensate`; or the loop is not stable with this delay; or the drive has states that its encoders do
             not measure, or more than a `StateSpace`
+        TypeError: `drive` is no drive
 
     >>> law = regulator("robot-joint", error=1e-3)
     >>> law.input_angle != 0.0 and law.output_angle != 0.0

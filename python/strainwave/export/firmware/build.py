@@ -44,6 +44,14 @@ class Firmware:
         inputs, state, outputs: names of the numbers of the structs in C, in their order
         scalar: type of all numbers
         period: time from one step to the next [s]; 0 if the time does not matter
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> law = sw.control.PositionSpeed(position_gain=30.0, speed_proportional=0.1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     written = sw.export.firmware(sw.Drive(control=sw.control.Sampled(law=law)), folder)
+    >>> written.header.name, written.outputs, written.period
+    ('controller.hpp', ('voltage',), 0.001)
     """
 
     header: Path
@@ -81,6 +89,9 @@ def firmware(
         scalar: "float" or "double"
         period: time between steps of the drive or of a friction [s]; by default that of a simulation, 0.2 ms or shorter. It
             must divide period and delay of a sampled controller in the drive. A controller as part has its own
+
+    Returns:
+        The paths of the files, and the names of inputs, state and outputs of a step.
 
     Raises:
         TypeError, ValueError: an argument is not of its kind, or a number of the part is too large for a float

@@ -85,6 +85,9 @@ def fmu(
         step: internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the model and the file; by default that of the gear set
 
+    Returns:
+        The file `<name>.fmu` as bytes, and the difference to `sw.simulate` if it could be computed.
+
     Raises:
         TypeError, ValueError: an argument is not of its kind, or no step follows the bristles of the drive
         ImportError: the package fmpy, which contains the headers of FMI, is not installed

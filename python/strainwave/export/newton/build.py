@@ -71,6 +71,9 @@ def newton(
         gpu: include code for GPUs, if the package nvidia-cuda-nvrtc is installed; to compile it takes 10 to 30 s
         compare: state the difference to `sw.simulate`, if newton and warp-lang are installed
 
+    Returns:
+        The files of the package by their path, and the difference to `sw.simulate` if it could be computed.
+
     Raises:
         TypeError, ValueError: an argument is not of its kind, or no step follows the bristles of the drive
         CompileError: the code does not compile for a GPU
