@@ -119,7 +119,7 @@ class Loop(ComparedByFields):
         return len(self.angle)
 
     def recording(self) -> Recording:
-        """The loop as `sw.identify` and `sw.fit` take it: input_angle and input_torque, or twist and torque."""
+        """The loop as `sw.identify` and `sw.fit` take it: input_angle and input_torque, or twist and torque [rad], [N.m]."""
         angle, torque = COLUMNS[self.side]
         columns, units = {angle: self.angle, torque: self.torque}, {angle: "rad", torque: "N.m"}
         if self.time is not None and np.all(np.diff(self.time) > 0.0):

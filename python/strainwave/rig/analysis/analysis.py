@@ -70,6 +70,16 @@ class LoopAnalysis(ComparedByFields):
         catalogue: comparison with the figures of a gear set
         errors_stated: whether the loop came with errors; else these are of the scatter about straight stretches
         remarks: what a reader must know, in words
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> angle = np.radians([0.0, -4.5, -59.0, -54.5, 0.0])
+    >>> loop = sw.rig.Loop(angle, [0.36, 0.0, -0.36, 0.0, 0.36], side="input", name="example", angle_sigma=1e-4)
+    >>> found = sw.rig.analyse(loop)
+    >>> print(found.stiffness_by("positive_unloading", "secant"))
+    4.584 N.m/rad (4.568 to 4.6)
+    >>> print(found.area)
+    0.3142 J (0.314 to 0.3143)
     """
 
     loop: Loop
@@ -101,7 +111,11 @@ class LoopAnalysis(ComparedByFields):
         return next((each for each in self.stiffnesses if each.name == name), None)
 
     def stiffness_by(self, name: RegimeName, definition: Definition) -> Result | None:
-        """Stiffness of a regime by one definition [N.m/rad]."""
+        """Stiffness of a regime by one definition [N.m/rad].
+
+        Raises:
+            ValueError: there is no such definition
+        """
         arguments.one_of("definition", definition, DEFINITIONS)
         found = self.stiffness(name)
         if found is None:
@@ -118,6 +132,16 @@ class LoopSummary:
         unit: which specimen
         positive_unloading, negative_loading, negative_unloading, positive_loading: stiffness [N.m/rad]
         hysteresis: widest separation at equal torque [rad]
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> angle = np.radians([0.0, -4.5, -59.0, -54.5, 0.0])
+    >>> loop = sw.rig.Loop(angle, [0.36, 0.0, -0.36, 0.0, 0.36], side="input", name="example", angle_sigma=1e-4)
+    >>> (row,) = sw.rig.table([sw.rig.analyse(loop)])
+    >>> print(row.positive_unloading)
+    4.584 N.m/rad (4.568 to 4.6)
+    >>> print(row.negative_loading)
+    0.3785 N.m/rad (0.3784 to 0.3786)
     """
 
     position: float
@@ -138,6 +162,9 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
         loop: a loop, or a part of one, in the order measured
         gear_set: the gear, to compare with its catalogue figures
         rated_torque: of the gear at the loaded shaft [N.m]; that of the set if not given
+
+    Returns:
+        Stiffness of each regime [N.m/rad], widths [rad], energy lost in a cycle [J] and more, each with its interval of 95 %.
 
     Raises:
         ValueError: the loop cannot be one, see `segment`; or it gives energy
@@ -328,6 +355,12 @@ def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") 
     Args:
         analyses: of the loops, in the order of the rows
         definition: of the stiffness
+
+    Returns:
+        A row for each loop: its four stiffnesses [N.m/rad] and its hysteresis [rad].
+
+    Raises:
+        ValueError: there is no such definition
 
     >>> import numpy as np
     >>> angle = np.radians([0.0, -4.5, -59.0, -54.5, 0.0])

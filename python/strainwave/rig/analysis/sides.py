@@ -31,6 +31,9 @@ def referred(loop: Loop, ratio: float, side: Side) -> Loop:
         ratio: of the gear, as `gear.kinematics.ratio`, not 0
         side: the shaft to refer it to
 
+    Raises:
+        ValueError: the ratio is 0 or not finite, or `side` is no shaft
+
     >>> at_input = Loop([0.0, 0.5, 0.0], [0.0, 0.2, 0.1], side="input", name="example")
     >>> at_output = referred(at_input, 100.0, "output")
     >>> at_output.angle.tolist(), at_output.torque.tolist()

@@ -105,6 +105,14 @@ def words_on_band(stiffness: Stiffness, low: float, high: float, multiple: float
         stiffness: of the regime
         low, high: sizes of torque, 0 <= low < high
         multiple: what is called soft [1]
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> torque = np.concatenate([np.linspace(0.36, -0.36, 20), np.linspace(-0.36, 0.36, 20)[1:]])
+    >>> angle = torque / 0.5 + 2e-3 * np.random.default_rng(1).normal(size=len(torque))
+    >>> found = sw.rig.analyse(sw.rig.Loop(angle, torque, side="input", name="loop", angle_sigma=2e-3))
+    >>> print(sw.rig.words_on_band(found.stiffness("positive_unloading"), 0.1, 0.2))
+    positive unloading, 0.1 to 0.2 N.m: no soft spot, 1.00 to 1.02 times the compliance of the regime's regression
     """
     sign = 1.0 if stiffness.name.startswith("positive") else -1.0
     inside = (sign * stiffness.local.torque >= low) & (sign * stiffness.local.torque <= high)

@@ -275,6 +275,9 @@ def soft_parts(stiffnesses: Sequence[float], width: float, torque: float) -> tup
     Returns:
         the part of negative loading, and that of positive loading
 
+    Raises:
+        ValueError: there are not four stiffnesses, or one of them or the torque is not positive
+
     >>> [round(part, 3) for part in soft_parts([4.51, 0.31, 4.85, 0.30], float(np.radians(50.5)), 0.36)]
     [0.292, 0.283]
     """

@@ -27,6 +27,13 @@ class Value:
 
     Raises:
         ValueError: a number is not finite, the deviation is negative, or the source is no line of text
+
+    >>> import strainwave as sw
+    >>> bench = sw.rig.Rig("bench", "input", disk_radius=sw.rig.Value(0.1, 5e-5, "calliper"))
+    >>> print(sw.rig.torque_budget(bench, sw.rig.Step(1, mass_positive=0.35)))
+    torque: 0.3432 ± 0.00072 N.m (0.21 %)
+      gravity              0.0007    94 %  common
+      radius of the disk   0.00017    6 %  common
     """
 
     value: float
@@ -51,6 +58,12 @@ class Masses:
 
     Raises:
         ValueError: the mass is not positive, or there is none of them
+
+    >>> import strainwave as sw
+    >>> plates = sw.rig.Masses(mass=0.05, count=8, sigma=1e-5, source="scale")
+    >>> bench = sw.rig.Rig("bench", "input", disk_radius=sw.rig.Value(0.1), masses=(plates,))
+    >>> round(sw.rig.plan(bench, peak=0.3, positions=[0.0]).peak, 4)  # N.m, by 300 g
+    0.2942
     """
 
     mass: float
@@ -80,6 +93,16 @@ class Camera:
 
     Raises:
         ValueError: a number is out of its range
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> camera, random = sw.rig.Camera(tilt=0.2, tilt_direction=0.5), np.random.default_rng(1)
+    >>> scene = sw.rig.Scene(size=(320, 240), radius=20.0, distance=150.0, camera=camera)
+    >>> pictures = [sw.rig.as_image(f"{turn}.png", sw.rig.render(scene, np.radians(turn), random)) for turn in (0, 60)]
+    >>> for each in (sw.rig.Camera(), camera):  # without and with the tilt, degrees
+    ...     print(np.degrees(sw.rig.measure_angles(pictures, camera=each).angle[1]).round(1))
+    61.0
+    60.0
     """
 
     aspect: float = 1.0

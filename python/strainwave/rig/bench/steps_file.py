@@ -84,6 +84,14 @@ def write_steps(steps: Sequence[Step], path: str | Path) -> None:
     Raises:
         ValueError: there are no steps, or their numbers do not increase
         OSError: the file cannot be written
+
+    >>> import pathlib, tempfile
+    >>> import strainwave as sw
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     sw.rig.write_steps([sw.rig.Step(1, mass_positive=0.35, image="001.png")], folder)
+    ...     print(pathlib.Path(folder, "steps.csv").read_text(), end="")
+    number,mass_positive [kg],mass_negative [kg],image
+    1,0.35,0.0,001.png
     """
     if not steps:
         raise ValueError("there are no steps to write")

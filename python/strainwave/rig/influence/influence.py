@@ -148,6 +148,12 @@ class Influence(ComparedByFields):
         shares: of the compliance of a staged gear by its parts: flexspline, bearing, mesh, circular spline
         series: what was measured
         trends: what it shows
+
+    >>> import strainwave as sw
+    >>> from strainwave.rig.influence.influence import influence
+    >>> found = influence(sw.GearSet.read("csg-25-100"))
+    >>> found.torque, round(found.lossless["gear"], 3)
+    (87.0, 2.104)
     """
 
     gear_set: GearSet
@@ -188,10 +194,6 @@ def influence(
     Raises:
         ValueError: the set has no rated torque and none is given; friction at the input holds all of the torque; or as
             `cycle` and `analyse_series`
-
-    >>> found = influence(GearSet.read("csg-25-100"))
-    >>> found.torque, round(found.lossless["gear"], 3)
-    (87.0, 2.104)
     """
     gear = gear_set.gear
     torque = positive("torque", _rated(gear_set) if torque is None else torque, "N.m")

@@ -141,8 +141,17 @@ def _column(name: str, values: Sequence[float] | Array, n: int) -> Array:
 def analyse_series(series: Series) -> list[Trend]:
     """Test each measured quantity for a dependence on each factor that was varied.
 
+    Returns:
+        A trend for each quantity and each factor that was varied.
+
     Raises:
         ValueError: nothing was varied, or there are too few measurements for a test
+
+    >>> import strainwave as sw
+    >>> series = sw.rig.Series({"temperature": [283.0, 293.0, 303.0, 313.0]}, {"friction": [1.25, 1.01, 0.79, 0.66]})
+    >>> (trend,) = sw.rig.analyse_series(series)
+    >>> trend.significant, round(100.0 * trend.slope.value, 2)  # percent per kelvin
+    (True, -2.16)
     """
     if not series.varied:
         raise ValueError(f"in {series.name or 'the series'} nothing was varied: {listed(series.factors)} stayed the same")
@@ -159,6 +168,9 @@ def read_series(path: str | Path) -> Series:
     Columns are those of `FACTORS`, which were varied, and of `QUANTITIES`, which were measured, each with its unit in brackets
     as `torque_max [N.m]`; `unit` names the specimen. With a column `file`, which names a file with the points of the loop in
     the folder of the table, area, width and stiffnesses are taken from it. Other columns are refused, but for `note`.
+
+    Returns:
+        Factors and quantities in SI units, shape (n,).
 
     Raises:
         ValueError: a file cannot be read, a column or a number in it is wrong, or a unit is none of its quantity

@@ -62,6 +62,12 @@ class Trend:
             times as many as Holm's method asks for, over all quantities; not a number where no condition was repeated
         together_with: factors that were varied along with this one, so that the effect may be theirs
         points: how many measurements
+
+    >>> import strainwave as sw
+    >>> series = sw.rig.Series({"torque_max": [0.1, 0.2, 0.3, 0.4]}, {"area": [1.0, 4.1, 8.8, 16.3]})
+    >>> (trend,) = sw.rig.analyse_series(series)
+    >>> trend.law, round(trend.slope.value, 2), round(trend.slope.half_width, 2), trend.significant
+    ('power', 2.0, 0.11, True)
     """
 
     factor: str

@@ -58,6 +58,17 @@ class TorsionTest(ComparedByFields):
         hashes: SHA-256 of each photograph, by its name
         remarks: what went wrong or was left out, in words
         deviations: where the record departs from the plan in the folder; None where there is no plan
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> masses = [0.3, 0.0, -0.3, 0.0, 0.3]  # kg, on the positive pans or on the negative ones
+    >>> steps = [sw.rig.Step(n, max(mass, 0.0), max(-mass, 0.0), angle=mass / 4.0) for n, mass in enumerate(masses, 1)]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     sw.rig.write_rig(sw.rig.Rig("bench", "input", disk_radius=sw.rig.Value(0.1)), f"{folder}/rig.toml")
+    ...     sw.rig.write_steps(steps, folder)
+    ...     test = sw.rig.read_test(folder)
+    >>> test.loops[0].torque.round(3), test.loops[0].angle
+    (array([ 0.294,  0.   , -0.294,  0.   ,  0.294]), array([ 0.075,  0.   , -0.075,  0.   ,  0.075]))
     """
 
     folder: Path
@@ -96,9 +107,21 @@ def read_test(
         camera: instead of that of the rig
         progress: is called with the name of each photograph before it is read
 
+    Returns:
+        The steps, the angles of the photographs [rad], and a loop for each position, unit and cycle.
+
     Raises:
         ValueError: rig or steps cannot be read, a photograph lies outside of the folder, the reference is none of the
             test, or no step has torque and angle
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     sw.rig.write_rig(sw.rig.Rig("bench", "input", disk_radius=sw.rig.Value(0.1)), f"{folder}/rig.toml")
+    ...     sw.rig.write_steps([sw.rig.Step(1, mass_positive=0.3, angle=0.075), sw.rig.Step(2, angle=0.0)], folder)
+    ...     test = sw.rig.read_test(folder)
+    >>> len(test.steps), test.loops[0].torque.round(3)
+    (2, array([0.294, 0.   ]))
     """
     folder = Path(folder)
     rig = load(inside(folder, RIG)) if rig is None else rig

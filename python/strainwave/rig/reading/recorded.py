@@ -40,6 +40,9 @@ def read_loop(
         units: units of columns whose header has none
         position, unit: of the loop
 
+    Returns:
+        Angle [rad] and torque [N.m] at that side, shape (n,).
+
     Raises:
         ValueError: the file cannot be read, lacks a column or has both sides
 

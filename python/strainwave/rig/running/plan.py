@@ -101,6 +101,9 @@ def plan(
         units: the specimens
         cycles: how many follow each other without a pause
 
+    Returns:
+        The steps with their masses [kg] and tasks, and the peak torque that the masses reach [N.m].
+
     Raises:
         ValueError: the rig has no masses, or not enough of them, or a torque is not positive
 

@@ -27,6 +27,12 @@ class Deviation:
         kind: how
         step: number of the step in the record, or in the plan where the record has none; 0 where it is no single step
         words: what was found, in one line
+
+    >>> import strainwave as sw
+    >>> made = sw.rig.plan(sw.rig.load("couple-rig"), positions=[0.0])
+    >>> (deviation,) = sw.rig.check([step for step in made.steps if step.number != 4], made)
+    >>> deviation.kind, deviation.step
+    ('skipped', 4)
     """
 
     kind: Kind

@@ -72,7 +72,7 @@ class Budget:
         return hypot(*(each.sigma for each in self.contributions))
 
     def of_kind(self, kind: Kind) -> float:
-        """Standard deviation that the contributions of a kind give."""
+        """Standard deviation that the contributions of a kind give, in `unit`."""
         return hypot(*(each.sigma for each in self.contributions if each.kind == kind))
 
     def share(self, contribution: Contribution) -> float:
@@ -100,6 +100,9 @@ def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
         rig: which rig
         step: what lies on the pans
         angle: reading of the angle of the disk [rad]
+
+    Returns:
+        The contributions to the standard deviation of the torque [N.m], the largest first.
 
     Raises:
         ValueError: as `arm`
@@ -131,6 +134,9 @@ def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget, scale: fl
         sigma: standard deviation of a reading [rad]
         torque: the budget of the torque there
         scale: standard deviation of what all readings share, relative to the angle, as `Angles.scale` [1]
+
+    Returns:
+        The contributions to the standard deviation of the angle [rad], the largest first.
 
     >>> from strainwave.rig import load, Step
     >>> rig = load("couple-rig")
@@ -165,6 +171,9 @@ def stiffness_budget(
         angle: reading of the angle in the middle of the regime [rad]
         angle_sigma: standard deviation of a reading [rad]
         angle_scale: of what all readings share, relative to the angle, as `Angles.scale` [1]
+
+    Returns:
+        The contributions to the standard deviation of the stiffness [N.m/rad], the largest first.
 
     Raises:
         ValueError: the steps have one torque, the stiffness is not positive, or as `arm`

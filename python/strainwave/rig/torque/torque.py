@@ -39,6 +39,12 @@ class Torque(ComparedByFields):
         sigma: standard deviation of each torque by itself [N.m]
         scale: of what all torques share, relative to the torque [1]
         friction_sigma: of the friction of the pulleys [N.m]
+
+    >>> import strainwave as sw
+    >>> bench = sw.rig.Rig("bench", "input", sw.rig.Value(0.1), pulley_torque=sw.rig.Value(0.01))
+    >>> torque = sw.rig.torque_of([sw.rig.Step(1, mass_positive=0.3), sw.rig.Step(2, mass_positive=0.2)], bench)
+    >>> torque.cords.round(3), torque.shaft.round(3), torque.sense
+    (array([0.294, 0.196]), array([0.284, 0.206]), array([ 1., -1.]))
     """
 
     cords: Array

@@ -57,6 +57,16 @@ class VirtualTest(ComparedByFields):
         elastic: torque of the gear's springs at that shaft, what its friction holds taken off, too [N.m]
         twist: of the gear, at its output [rad]
         mass_positive, mass_negative: true totals on the pans [kg]
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> bench = sw.rig.Rig("bench", "input", disk_radius=sw.rig.Value(0.1), pulley_torque=sw.rig.Value(0.01))
+    >>> steps = [sw.rig.Step(1, mass_positive=0.35), sw.rig.Step(2, mass_positive=0.3)]
+    >>> gear, scene = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4)), sw.rig.Scene(size=(160, 120), radius=12.0, distance=70.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     test = sw.rig.simulate_test(gear, bench, steps, folder=folder, scene=scene)
+    >>> test.applied.round(4), test.shaft.round(4)  # the pulleys hold 0.01 N.m either way
+    (array([0.3432, 0.2942]), array([0.3332, 0.3042]))
     """
 
     folder: Path

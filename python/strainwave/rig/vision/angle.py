@@ -44,6 +44,9 @@ def measure_angles(
         dark: whether markers are darker than the ground; either if None
         progress: is called with the name of each image as it begins
 
+    Returns:
+        Angles [rad], positive against the clock, and their standard deviations, shape (images with an angle,), and remarks.
+
     Raises:
         OSError: there is no such folder or video
         ValueError: no image gives an angle; the reference is none of them, or gives none; a number is out of its range

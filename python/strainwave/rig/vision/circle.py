@@ -33,6 +33,12 @@ class Circle(ComparedByFields):
         covariance: of x, y and radius, shape (3, 3), from the scatter of the points about the circle, all independent and
             alike; infinite for three points, which no circle misses
         rms: root of the mean squared distance of the points from the circle
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> circle = sw.rig.geometric([1.01, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, -0.99])
+    >>> round(circle.radius, 3), round(circle.rms, 3), round(float(np.sqrt(circle.covariance[2, 2])), 3)
+    (1.0, 0.005, 0.005)
     """
 
     x: float
@@ -47,6 +53,9 @@ def kasa(x: Series, y: Series) -> Circle:
 
     Args:
         x, y: of the points, three or more, not all on a line
+
+    Returns:
+        Centre and radius in the unit of the points, and their covariance.
 
     Raises:
         ValueError: too few points, or all on a line
@@ -63,7 +72,11 @@ def kasa(x: Series, y: Series) -> Circle:
 def pratt(x: Series, y: Series) -> Circle:
     """Pratt's circle: Kåsa's squares over 4 r^2, which makes them those of the distances, to first order.
 
-    Arguments and errors are those of `kasa`.
+    Args:
+        x, y: as of `kasa`
+
+    Raises:
+        ValueError: as `kasa`
 
     >>> round(pratt([1.0, 0.0, -1.0], [0.0, 1.0, 0.0]).radius, 12)
     1.0
@@ -83,7 +96,11 @@ def pratt(x: Series, y: Series) -> Circle:
 def taubin(x: Series, y: Series) -> Circle:
     """Taubin's circle: Kåsa's squares over the mean squared gradient.
 
-    Arguments and errors are those of `kasa`.
+    Args:
+        x, y: as of `kasa`
+
+    Raises:
+        ValueError: as `kasa`
 
     >>> round(taubin([1.0, 0.0, -1.0], [0.0, 1.0, 0.0]).radius, 12)
     1.0
@@ -100,7 +117,13 @@ def taubin(x: Series, y: Series) -> Circle:
 def geometric(x: Series, y: Series) -> Circle:
     """The circle with the least sum of squared distances: the most likely one if noise is normal and the same all round.
 
-    Gauss-Newton from Taubin's circle, damped where a step does not help. Arguments and errors are those of `kasa`.
+    Gauss-Newton from Taubin's circle, damped where a step does not help.
+
+    Args:
+        x, y: as of `kasa`
+
+    Raises:
+        ValueError: as `kasa`
 
     >>> fit = geometric([5, 4, 1, -3, -5, -4, 0, 3], [0.1, 3, 4.95, 4, 1.02, -3, -4.97, -4.04])
     >>> round(fit.x, 8), round(fit.y, 8), round(fit.radius, 8)

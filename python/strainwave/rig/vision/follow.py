@@ -43,6 +43,14 @@ class Angles(ComparedByFields):
         centre: about which the shaft turned [px], x and y, and the rms distance of the markers from their circles;
             None if the turn is too small to determine it
         remarks: what holds for all images and makes the angles doubtful
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> scene, random = sw.rig.Scene(size=(320, 240), radius=20.0, distance=150.0), np.random.default_rng(1)
+    >>> pictures = [sw.rig.as_image(f"{turn}.png", sw.rig.render(scene, np.radians(turn), random)) for turn in (0, 5, 10)]
+    >>> angles = sw.rig.measure_angles(pictures)
+    >>> np.degrees(angles.angle).round(2), angles.reference, bool(np.degrees(angles.sigma).max() < 1e-3)
+    (array([ 0.,  5., 10.]), '0.png', True)
     """
 
     frames: tuple[Frame, ...]
@@ -280,8 +288,20 @@ def camera_seen(frames: Iterable[Frame]) -> Camera:
     Args:
         frames: of images in which both markers are found
 
+    Returns:
+        A camera with that tilt and its direction [rad], otherwise undistorted.
+
     Raises:
         ValueError: there is none
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> askew = sw.rig.Scene(size=(320, 240), radius=20.0, distance=150.0, camera=sw.rig.Camera(tilt=0.2, tilt_direction=0.5))
+    >>> random = np.random.default_rng(1)
+    >>> pictures = [sw.rig.as_image(f"{n}.png", sw.rig.render(askew, 0.3 * n, random)) for n in range(3)]
+    >>> camera = sw.rig.camera_seen(sw.rig.measure_angles(pictures).frames)
+    >>> round(camera.tilt, 2), round(camera.tilt_direction, 2)
+    (0.2, 0.5)
     """
     sights = [_Sight.of(frame, PERFECT) for frame in frames if frame.markers is not None]
     if not sights:

@@ -37,6 +37,12 @@ class Image(ComparedByFields):
         grey: brightness, of the full scale, shape (height, width); the first row is the upper one
         sha256: of the bytes of the file, or of the frame
         taken: time by the file, or None
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> image = sw.rig.as_image("001.png", np.full((480, 640), 51, np.uint8))  # 51 of 255
+    >>> image.grey.shape, round(float(image.grey.max()), 3)
+    ((480, 640), 0.2)
     """
 
     name: str
@@ -52,10 +58,22 @@ def read_image(path: str | Path) -> Image:
 
     The bytes determine the format, not the name. The memory it takes stays below 1 GB.
 
+    Returns:
+        Grey values of the full scale [1], shape (height, width), with the SHA-256 of the file and its time.
+
     Raises:
         OSError: there is no such file, or it cannot be read
         ValueError: it is no regular file, contains no picture, a damaged one, one of less than 16 pixels a side or of more
             than 67 million in all
+
+    >>> import pathlib, tempfile
+    >>> import strainwave as sw
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "001.pgm")
+    ...     _ = path.write_bytes(b"P5 32 16 255 " + bytes([51] * 512))  # 51 of 255
+    ...     image = sw.rig.read_image(path)
+    >>> image.name, image.grey.shape, round(float(image.grey.max()), 3)
+    ('001.pgm', (16, 32), 0.2)
     """
     path = Path(path)
     try:
@@ -158,7 +176,13 @@ def as_image(name: str, pixels: NDArray[Any]) -> Image:
     """An array of pixels as an image: uint8 or uint16, shape (height, width), or (height, width, 3) in colour.
 
     Raises:
-        TypeError, ValueError: of another type or shape
+        TypeError: the pixels are of another type
+        ValueError: they are of another shape, less than 16 a side, or more than 67 million in all
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> sw.rig.as_image("001.png", np.full((480, 640, 3), 255, np.uint8)).grey.shape  # a white picture in colour
+    (480, 640)
     """
     array = np.asarray(pixels)
     if array.dtype not in (np.uint8, np.uint16):

@@ -43,6 +43,14 @@ class Marker:
         short_direction: of the shorter axis, from x towards the top of the image [rad]
         ratio_sigma: standard deviation of the ratio, along the axes and between them [1]
         clipped: share of the pixels inside or outside of the edge that are at an end of the scale [1]
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> scene = sw.rig.Scene(size=(320, 240), radius=20.0, distance=150.0)
+    >>> image = sw.rig.as_image("001.png", sw.rig.render(scene, 0.0, np.random.default_rng(1)))
+    >>> marker = sw.rig.find_markers(image.grey)[0]
+    >>> round(marker.x, 2), round(marker.y, 2), round(marker.radius, 2), marker.dark
+    (84.5, 119.5, 20.01, True)
     """
 
     x: float
@@ -83,6 +91,9 @@ def find_markers(
         radius: the smallest and the largest that a marker may have [px]; from 6 px to half the picture if None
         dark: whether markers are darker than the ground; either if None
         camera: what it does to lengths
+
+    Returns:
+        Centres and radii [px] with their covariance; none if there are no markers.
 
     Raises:
         ValueError: a radius out of order; a camera that cannot have taken this picture; more than 1000 spots of this size
