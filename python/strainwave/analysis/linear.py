@@ -151,6 +151,12 @@ class Linearisation(ComparedByFields):
 
         Raises:
             ValueError: there is no such input or output, or a frequency is not finite or that of an undamped pole
+
+        >>> import numpy as np
+        >>> import strainwave as sw
+        >>> linear = sw.linearise(sw.Drive(control=sw.control.PID(proportional=2.0, derivative=0.05)))
+        >>> abs(linear.response([1.0, 10.0])).round(2)  # gain of the position loop at 1 Hz and at 10 Hz
+        array([0.97, 0.59])
         """
         frequencies = arguments.numbers("frequency", frequency)
         if not np.isfinite(frequencies).all():

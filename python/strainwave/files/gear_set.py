@@ -199,6 +199,11 @@ class GearSet:
 
         Raises:
             ValueError: no such name or file, or what is wrong in it, with file, table and key.
+
+        >>> import strainwave as sw
+        >>> gear_set = sw.GearSet.read("hfuc-25-100")
+        >>> round(gear_set.gear.stiffness.k1), gear_set.motor  # N.m/rad; a catalogue of gears has no motors
+        (26700, None)
         """
         path = _file(name_or_path)
         with gear_file.at(f"{path}"):

@@ -99,7 +99,13 @@ class Recording:
         return len(next(iter(self.columns.values())))
 
     def keys(self) -> KeysView[str]:
-        """Names of the columns, so that ``dict(recording)`` is a dictionary of them."""
+        """Names of the columns, so that ``dict(recording)`` is a dictionary of them.
+
+        >>> import strainwave as sw
+        >>> run = sw.Recording({"time": [0.0, 0.1], "torque": [1.0, 2.0]}, {"time": "s", "torque": "N.m"})
+        >>> list(dict(run))
+        ['time', 'torque']
+        """
         return self.columns.keys()
 
     def __iter__(self) -> Iterator[tuple[float, ...]]:
@@ -248,6 +254,14 @@ class Recording:
 
         Raises:
             OSError: the file cannot be written
+
+        >>> import tempfile
+        >>> import strainwave as sw
+        >>> run = sw.Recording({"time": [0.0, 0.1], "torque": [1.0, 2.0]}, {"time": "s", "torque": "N.m"})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     run.to_parquet(f"{folder}/run.parquet")
+        ...     sw.Recording.from_parquet(f"{folder}/run.parquet") == run
+        True
         """
         import pyarrow
         from pyarrow.parquet import write_table
@@ -276,6 +290,14 @@ class Recording:
 
         Raises:
             ValueError: the file cannot be read, its suffix is not known, or a number, a unit or the time in it is wrong
+
+        >>> import tempfile
+        >>> import strainwave as sw
+        >>> run = sw.Recording({"time": [0.0, 0.1], "torque": [1.0, 2.0]}, {"time": "s", "torque": "N.m"})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     run.to_csv(f"{folder}/run.csv")
+        ...     sw.Recording.read(f"{folder}/run.csv", columns={"time": "time", "load": "torque"})
+        <Recording: 2 samples from 0 s to 0.1 s; time [s], load [N.m]>
         """
         from strainwave.files.tables import open_table, read_table
 
@@ -287,6 +309,14 @@ class Recording:
 
         Raises:
             ValueError: the file cannot be read, or its suffix is not known.
+
+        >>> import tempfile
+        >>> import strainwave as sw
+        >>> run = sw.Recording({"time": [0.0, 0.1], "speed": [0.0, 900.0]}, {"time": "s", "speed": "rpm"})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     run.to_csv(f"{folder}/run.csv")
+        ...     sw.Recording.header(f"{folder}/run.csv")
+        ('time', 'speed')
         """
         from strainwave.files.tables import open_table
 
@@ -356,6 +386,11 @@ class Recording:
         Raises:
             ValueError: a column is missing, there is no column to draw, or a value lies beyond 1e300
             TypeError: a name is no text
+
+        >>> import strainwave as sw
+        >>> run = sw.Recording({"time": [0.0, 0.1], "torque": [1.0, 2.0]}, {"time": "s", "torque": "N.m"})
+        >>> run.plot().get_suptitle()
+        'Torque over time'
         """
         from strainwave.files.recording_plot import recording_figure
 

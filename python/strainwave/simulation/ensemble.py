@@ -164,6 +164,15 @@ class Ensemble(ComparedByFields):
 
         Raises:
             ValueError: the folder holds no ensemble, an unfinished one, or damaged files, which the message names
+
+        >>> import tempfile
+        >>> import strainwave as sw
+        >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     _ = sw.simulate_to(f"{folder}/runs", drive, sw.scenario.step(5.0, duration=0.1), {"load.inertia": [0.01, 0.02]})
+        ...     runs = sw.Ensemble.read(f"{folder}/runs")
+        >>> runs["torque"].shape
+        (2, 501)
         """
         files = EnsembleFolder.open(Path(folder))
         missing = [part for part in files.parts() if not files.has(part)]
