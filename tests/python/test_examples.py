@@ -10,9 +10,11 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import pytest
+import strainwave as sw
 
 from tests.python.command import strainwave
 
@@ -113,6 +115,14 @@ def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Pa
 def test_the_examples_in_docstrings_run(path: Path) -> None:
     module = importlib.import_module(".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__"))
     assert doctest.testmod(module).failed == 0
+
+
+@pytest.mark.parametrize("room", [sw, sw.export, sw.rig], ids=lambda room: str(room.__name__))
+def test_every_public_function_and_class_has_an_example(room: ModuleType) -> None:
+    compiled = {"PassivityWarning"}  # an exception made in C++, which has a text alone
+    public = [name for name in room.__all__ if callable(getattr(room, name)) and name not in compiled]
+    assert public
+    assert [name for name in public if ">>>" not in (getattr(room, name).__doc__ or "")] == []
 
 
 def test_an_example_that_shows_something_else_fails(tmp_path: Path) -> None:

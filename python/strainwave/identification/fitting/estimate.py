@@ -25,6 +25,16 @@ class Estimate(ComparedByFields):
             deviation if samples are many; infinite if the data do not determine it
         at_limit: True if the fit ended at a limit of the parameter
         freedom: independent samples beyond the number of unknowns [1]
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> speed = np.linspace(1.0, 50.0, 60)
+    >>> torque = 0.02 + 3e-4 * speed + 1e-4 * np.random.default_rng(0).normal(size=60)
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.01, breakaway=0.01, viscous=3e-4))
+    >>> (estimate,) = sw.fit(gear, table, ["friction_input.coulomb"]).estimates
+    >>> round(estimate.value, 5), [round(end, 5) for end in estimate.interval()], estimate.unit
+    (0.02001, [0.01998, 0.02004], 'N.m')
     """
 
     path: str

@@ -40,6 +40,16 @@ class PartChange:
         unit: of both
         unchanged: `value` of the saved gear
         smallest: difference from it that matters; a smaller one is none, however sure
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, viscous=3e-4))
+    >>> speed = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
+    >>> torque = 1.2 * gear.friction_input.steady(speed) + 1e-4 * np.array([1, -1, 0, 1, -1, 1, 0])
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> change = sw.predict(gear, {"friction": table})[0].changed[0]
+    >>> change.name, round(change.value, 3), change.significant
+    ('dry friction', 1.2, True)
     """
 
     name: str
