@@ -16,7 +16,7 @@ from strainwave.export.elements import GearElements, friction_losses
 from strainwave.export.exported import Exported
 from strainwave.export.joint_numbers import left_out_if_rigid
 from strainwave.files.budget import read_text
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, one_line, quoted
 from strainwave.tuning.cascade import torque_constant
 
@@ -29,13 +29,15 @@ STRIBECK_EXPONENT = 2.0  # of the laws of this package; other ones are refused
 LOAD_TERMS = "load_friction_"  # how the names of friction that grows with the load begin
 
 
-def bam(gear_set: GearSet, *, actuator: str = DEFAULT_ACTUATOR, max_torque: float | None = None) -> Exported:
+def bam(
+    drive: GearSet | Drive | Gear | str | Path, *, actuator: str = DEFAULT_ACTUATOR, max_torque: float | None = None
+) -> Exported:
     """Return the parameter file of BAM for a joint, with the loss in the friction.
 
     Model M2 is exact for a Stribeck or LuGre friction of the input in steady motion, M1 for a Coulomb friction.
 
     Args:
-        gear_set: with a motor that has a torque constant
+        drive: a drive or a set of one, with a motor that has a torque constant, or the name or path of a file
         actuator: a name that BAM has; it determines the control law there
         max_torque: largest torque at the output [N.m]; by default the peak torque of the ratings
 
@@ -46,11 +48,12 @@ def bam(gear_set: GearSet, *, actuator: str = DEFAULT_ACTUATOR, max_torque: floa
         ValueError: the motor is not known, or takes a torque
 
     >>> import strainwave as sw
-    >>> found = sw.export.bam(sw.GearSet.read("robot-joint"))
+    >>> found = sw.export.bam("robot-joint")
     >>> value, unit = found.numbers["friction_base"]
     >>> list(found.files), round(value, 2), unit
     (['bam.json'], 9.0, 'N.m')
     """
+    gear_set = gear_set_of(drive)
     elements = GearElements.of_set(gear_set, max_torque)
     constant = None if gear_set.motor is None else torque_constant(gear_set.motor)
     if constant is None:
@@ -103,7 +106,7 @@ def _reason(error: Exception) -> str:
     return str(error)[:MAX_REASON_LENGTH]
 
 
-def read_bam(path: Path, ratio: float) -> GearSet:
+def read_bam(path: str | Path, ratio: float) -> GearSet:
     """Return gear and motor of a parameter file of BAM.
 
     Args:
@@ -125,7 +128,7 @@ def read_bam(path: Path, ratio: float) -> GearSet:
     >>> joint.name, round(joint.gear.friction_input.coulomb, 4)  # N.m at the input
     ('joint', 0.09)
     """
-    ratio = abs(arguments.ratio("ratio", ratio))
+    path, ratio = Path(path), abs(arguments.ratio("ratio", ratio))
     text = read_text(path, MAX_BYTES)
     try:
         content = json.loads(text)

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, twist_at_largest
 from strainwave.export.exported import Exported
 from strainwave.export.mujoco import DEFAULT_TIMESTEP, friction_attributes
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
 
 Array = NDArray[np.float64]
 
+DIGITS = 12  # of the numbers, less than the last of a double, which products of decimals miss
 
-def joint(gear_set: GearSet, *, max_torque: float | None = None, name: str = "gear") -> Exported:
+
+def joint(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None = None, name: str = "gear") -> Exported:
     """Return the numbers of a rigid joint: MuJoCo's attributes, and dynamics and transmission of URDF.
 
     Numbers: `armature`, inertia of the input at the output; `frictionloss` and `damping`, dry and viscous friction of the whole
     gear at the output; `stiffness` and `stiffness_damping` of the gear, for a joint with a spring between motor and link.
 
     Args:
-        gear_set: the gear, with its motor if that is known
+        drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: largest torque at the output [N.m]; by default the peak torque of the ratings
         name: of the default class and of the robot
 
@@ -34,10 +38,11 @@ def joint(gear_set: GearSet, *, max_torque: float | None = None, name: str = "ge
         ValueError: neither a torque nor a rating is given
 
     >>> import strainwave as sw
-    >>> found = joint(sw.GearSet.read("csg-20-100"))
+    >>> found = joint("csg-20-100")
     >>> round(found.numbers["frictionloss"][0], 3), sorted(found.files)
     (4.611, ['joint.urdf', 'joint.xml'])
     """
+    gear_set = gear_set_of(drive)
     elements = GearElements.of_set(gear_set, max_torque)
     numbers = _numbers(elements)
     values = {key: repr(value) for key, (value, _) in numbers.items()}
@@ -88,13 +93,14 @@ def _numbers(elements: GearElements) -> dict[str, tuple[float, str]]:
     ratio = abs(elements.ratio)
     bristle = elements.at_input.bristle
     dry = elements.at_input.dry + (0.0 if bristle is None else float(bristle.coulomb))
-    return {
+    numbers = {
         "armature": (elements.input_inertia * ratio**2, "kg.m2"),
         "frictionloss": (dry * ratio + elements.at_output.dry, "N.m"),
         "damping": (elements.at_input.viscous * ratio**2 + elements.at_output.viscous, "N.m.s/rad"),
         "stiffness": (elements.max_torque / twist_at_largest(elements), "N.m/rad"),
         "stiffness_damping": (elements.damping, "N.m.s/rad"),
     }
+    return {key: (float(f"{value:.{DIGITS}g}"), unit) for key, (value, unit) in numbers.items()}
 
 
 def _mujoco_default(numbers: Mapping[str, tuple[float, str]], name: str) -> str:

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
-from strainwave import arguments, loads, motor
+from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, quoted
 from strainwave.tuning.drawn import drawn_gears
 
@@ -37,7 +38,7 @@ Element = ElementTree.Element
 
 
 def mjcf(
-    gear_set: GearSet,
+    drive: GearSet | Drive | Gear | str | Path,
     *,
     max_torque: float | None = None,
     load_inertia: float | None = None,
@@ -50,7 +51,7 @@ def mjcf(
     """Return a gear as MJCF, alone with an inertia or behind a joint of a robot, with its losses.
 
     Args:
-        gear_set: the gear, with motor and load if these are known
+        drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: at the output, up to which the torsion is fitted [N.m]; by default the peak torque of the ratings
         load_inertia: at the output about its axis [kg.m²]; by default that of the load
         into: text of the MJCF file of a robot; a model with an inertia alone if not given
@@ -66,12 +67,13 @@ def mjcf(
         ValueError: neither a torque nor a rating is given, there is no inertia, or the robot has no such hinge
 
     >>> import strainwave as sw
-    >>> found = mjcf(sw.GearSet.read("csg-20-100"), load_inertia=1.2)
+    >>> found = mjcf("csg-20-100", load_inertia=1.2)
     >>> [loss.quantity for loss in found.losses if loss.rms_share > 1e-9]
     ['transmission error of a run', 'motor torque of a run']
     >>> found.left_out[0].split(";")[0]
     'kinematic error: 58.2 urad at the output'
     """
+    gear_set = gear_set_of(drive)
     elements = GearElements.of_set(gear_set, max_torque)
     if (into is None) != (joint is None):
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")

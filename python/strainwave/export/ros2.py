@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from importlib import resources
+from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements
 from strainwave.export.exported import Exported
 from strainwave.export.joint_numbers import joint, remark_on_rotor
 from strainwave.export.names import checked_name
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
 
 
-def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joint") -> Exported:
+def ros2(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None = None, name: str = "joint") -> Exported:
     """Return parameters of a joint for ros2_control, and a node that simulates its drive.
 
     `joint_limits.yaml` has limits, and the viscous friction as feed-forward of a joint_trajectory_controller with effort
@@ -20,7 +22,7 @@ def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joi
     it simulates.
 
     Args:
-        gear_set: the gear, with its motor if that is known
+        drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: largest torque at the output [N.m]; by default the peak torque of the ratings
         name: of the joint
 
@@ -31,10 +33,11 @@ def ros2(gear_set: GearSet, *, max_torque: float | None = None, name: str = "joi
         ValueError: neither a torque nor a rating is given, or the name is none of ROS
 
     >>> import strainwave as sw
-    >>> sorted(ros2(sw.GearSet.read("csg-20-100"), name="elbow").files)
+    >>> sorted(ros2("csg-20-100", name="elbow").files)
     ['drive_node.py', 'elbow.ros2_control.xml', 'elbow_limits.yaml']
     """
     checked_name(name, "ROS")
+    gear_set = gear_set_of(drive)
     found = joint(gear_set, max_torque=max_torque)
     elements = GearElements.of_set(gear_set, max_torque)
     numbers = {key: found.numbers[key] for key in ("frictionloss", "damping", "armature")}

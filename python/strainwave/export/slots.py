@@ -17,7 +17,7 @@ from scipy.optimize import linprog, nnls
 
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.exported import Exported
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.messages import listed, shortened
@@ -25,7 +25,7 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import USUAL_SPEED
-from strainwave.tuning.cascade import FAST_SPEED, Plant, gear_set_of, model_of, torque_constant
+from strainwave.tuning.cascade import FAST_SPEED, Plant, model_of, torque_constant
 from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss

@@ -325,6 +325,22 @@ def catalogue(of: str = "gears") -> list[str]:
     return sorted(file.stem for file in FOLDERS[arguments.one_of("of", of, FOLDERS)].glob("*.toml"))
 
 
+def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
+    """Return the set of a drive or a gear, or that of a file by its name or path.
+
+    Raises:
+        TypeError: it is none of these
+        ValueError: there is no such file, or what is wrong in it
+    """
+    if isinstance(model, GearSet):
+        return model
+    if isinstance(model, Drive | Gear):
+        return GearSet.of(model, name=f"the {type(model).__name__.lower()}", source="given")
+    if not isinstance(model, str | Path):
+        raise TypeError(f"drive must be a gear, a drive, a set of one, a name or a path, not {shortened(model)}")
+    return GearSet.read(model)
+
+
 def load(name_or_path: str | Path) -> Any:
     """Return the drive of a file that has a motor and a load, else the gear.
 

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from strainwave import Compensation, Drive, Gear, _core, arguments, compensation, control, friction, loads, motor, stiffness
-from strainwave.files.gear_set import GearSet
-from strainwave.messages import shortened
+from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning.steady_torque import steady_torque
 
@@ -25,22 +24,6 @@ LIMIT_OF_LEVELS = (
 )
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
 MAX_VIBRATION = 1e6  # rad/s of the fastest vibration: steps of 1 us, of which a motion of seconds has millions
-
-
-def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
-    """Return the set of a drive or a gear, or that of a file by its name or path.
-
-    Raises:
-        TypeError: it is none of these
-        ValueError: there is no such file, or what is wrong in it
-    """
-    if isinstance(model, GearSet):
-        return model
-    if isinstance(model, Drive | Gear):
-        return GearSet.of(model, name=f"the {type(model).__name__.lower()}", source="given")
-    if not isinstance(model, str | Path):
-        raise TypeError(f"drive must be a gear, a drive, a set of one, a name or a path, not {shortened(model)}")
-    return GearSet.read(model)
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
-from strainwave.tuning.cascade import Plant, Setting, gear_set_of
+from strainwave.tuning.cascade import Plant, Setting
 from strainwave.tuning.conditions import ConditionResult, OverCompensation, conditions, over_compensation
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, arguments
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, gear_set_of
+from strainwave.messages import shortened
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, constant
 from strainwave.simulation.state import State
 from strainwave.tuning.approach import friction_at_rest, lost_motion
-from strainwave.tuning.cascade import Plant, gear_set_of, line_of_friction
+from strainwave.tuning.cascade import Plant, line_of_friction
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import UPPER_QUANTILE
 
@@ -140,8 +141,10 @@ class PulsePlan:
         """Return a train of pulses of some widths [s], each followed by the rest; against the travel if `sense` is -1.
 
         Raises:
-            ValueError: a width is not positive
+            ValueError: there is no width, or one is not positive
         """
+        if not widths or min(widths) <= 0.0:
+            raise ValueError(f"widths = {shortened(widths)} must be one or more positive numbers [s]")
         ends = np.cumsum([width + self.rest for width in widths])
         begins = np.append(0.0, ends[:-1])
         edges = np.column_stack((begins, begins + widths)).ravel()

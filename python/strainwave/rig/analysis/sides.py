@@ -14,7 +14,7 @@ from strainwave.identification.candidates.friction import fit_friction
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.rig.analysis.regimes import segment
 from strainwave.rig.bench.setup import Value
-from strainwave.rig.loop import COLUMNS, Loop, Side
+from strainwave.rig.loop import COLUMNS, Loop, Side, signed
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def referred(loop: Loop, ratio: float, side: Side) -> Loop:
     ([0.0, 0.005, 0.0], [0.0, 20.0, 10.0])
     """
     arguments.one_of("side", side, COLUMNS)
-    if arguments.number("ratio", ratio) == 0.0:
+    if signed("ratio", ratio) == 0.0:
         raise ValueError("ratio = 0 must not be zero: it is the turns of the input for one of the output")
     if side == loop.side:
         return loop

@@ -276,7 +276,8 @@ def soft_parts(stiffnesses: Sequence[float], width: float, torque: float) -> tup
         the part of negative loading, and that of positive loading
 
     Raises:
-        ValueError: there are not four stiffnesses, or one of them or the torque is not positive
+        ValueError: there are not four stiffnesses, one of them or the torque is not positive, or a loading regime is as stiff
+            as the unloading ones
 
     >>> [round(part, 3) for part in soft_parts([4.51, 0.31, 4.85, 0.30], float(np.radians(50.5)), 0.36)]
     [0.292, 0.283]
@@ -284,6 +285,10 @@ def soft_parts(stiffnesses: Sequence[float], width: float, torque: float) -> tup
     closure_of_secants(stiffnesses, torque)
     down, soft_down, up, soft_up = (float(each) for each in stiffnesses)
     stiff = 0.5 * (down + up)
+    if max(soft_down, soft_up) >= stiff:
+        raise ValueError(
+            f"loading of {soft_down:g} and {soft_up:g} N.m/rad must be softer than unloading, {stiff:g} N.m/rad in the mean"
+        )
 
     def part(soft: float, unloading: float) -> float:
         return (width - torque / stiff + torque / unloading) / (1.0 / soft - 1.0 / stiff)

@@ -13,6 +13,7 @@ import numpy as np
 from strainwave import arguments
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
+from strainwave.rig.loop import not_negative, signed
 from strainwave.rig.torque.torque import arm, mass_sigma, shared_errors
 
 Kind = Literal["random", "common", "by direction"]
@@ -138,11 +139,16 @@ def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget, scale: fl
     Returns:
         The contributions to the standard deviation of the angle [rad], the largest first.
 
+    Raises:
+        ValueError: the angle is not finite, or a standard deviation is negative
+
     >>> from strainwave.rig import load, Step
     >>> rig = load("couple-rig")
     >>> angle_budget(rig, 0.08, 3e-5, torque_budget(rig, Step(1, mass_positive=0.35))).sigma
     3e-05
     """
+    angle = signed("angle", angle, "rad")
+    sigma, scale = not_negative("sigma", sigma, "rad"), not_negative("scale", scale, "1")
     contributions = [
         Contribution("reading of the markers", sigma, "random"),
         Contribution(PICTURE, abs(angle) * scale, "common"),

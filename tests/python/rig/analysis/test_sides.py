@@ -94,3 +94,8 @@ def test_what_holds_no_friction_is_refused() -> None:
         referred(loop, 0.0, "output")
     with pytest.raises(ValueError, match=r'side = "left"'):
         referred(loop, 100.0, "left")  # type: ignore[arg-type]
+
+
+def test_a_ratio_that_no_gear_has_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"ratio = 1e\+300"):
+        referred(loop_of_table(), 1e300, "output")

@@ -267,3 +267,8 @@ def test_a_level_quarter_has_no_stiffness_to_divide_by() -> None:
     found = analyse(loop)
     unloading = found.stiffness("positive_unloading")
     assert unloading is None or unloading.secant is None or unloading.secant.value > 0.0
+
+
+def test_loading_as_stiff_as_unloading_has_no_softer_part() -> None:
+    with pytest.raises(ValueError, match=r"loading of 4 and 5 N\.m/rad must be softer than unloading, 5 N\.m/rad in the mean"):
+        soft_parts([5.0, 4.0, 5.0, 5.0], 0.1, 0.36)

@@ -89,3 +89,9 @@ def test_contributions_add_up_as_squares_and_nothing_is_listed_that_is_nothing()
 def test_one_torque_tells_no_stiffness(steps: list[Step]) -> None:
     with pytest.raises(ValueError, match="steps: the stiffness of a regime needs two steps or more"):
         stiffness_budget(RIG, 4.5, steps)
+
+
+@pytest.mark.parametrize(("angle", "sigma"), [(math.nan, 1e-4), (0.1, -1e-4)])
+def test_an_angle_is_finite_and_its_error_is_not_negative(angle: float, sigma: float) -> None:
+    with pytest.raises(ValueError, match=r"angle = nan|sigma = -0\.0001"):
+        angle_budget(RIG, angle, sigma, torque_budget(RIG, STEPS[-1]))
