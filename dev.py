@@ -182,6 +182,7 @@ def lint(options: Sequence[str]) -> int:
         (BIN / "ruff", "check", "."),
         (BIN / "ruff", "format", "--check", "."),
         (BIN / "mypy",),
+        (BIN / "mypy", "--platform", "win32", "--cache-dir", ".mypy_cache/win32", "python/strainwave"),
         (BIN / "clang-format", "--dry-run", "--Werror", *sources),
     )
     return max(attempt(*check, *options) for check in checks)

@@ -57,7 +57,7 @@ def pattern(name: str, declaration: str) -> ReplacePattern:
 def main(extension: str, folder: str) -> None:
     for name, text in stubs(load(extension)).items():
         partial = Path(folder, f"{name}.partial")
-        partial.write_text(text)
+        partial.write_text(text, "utf-8")
         os.replace(partial, Path(folder, name))
 
 

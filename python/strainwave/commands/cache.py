@@ -20,14 +20,14 @@ def cache(
     """List the kernels: code compiled for one drive, which runs faster and gives the same numbers.
 
     The cache contains at most 256 MB; the kernels used least recently are removed first. The environment variable
-    STRAINWAVE_KERNELS names another folder for it, or is `off`: then no kernel is used.
+    STRAINWAVE_KERNELS names another folder for it, or is `off`: then no kernel is used. On Windows there are none.
     """
     from strainwave.native import cache as kernels
-    from strainwave.native.folder import VARIABLE, cache_folder
+    from strainwave.native.folder import cache_folder, reason_without_kernels
 
     folder = cache_folder()
     if folder is None:
-        print(f"kernels are switched off by {VARIABLE}")
+        print(f"no kernel is used: {reason_without_kernels()}")
         return
     if clear:
         print(f"removed {_counted(kernels.clear())} from {folder}")

@@ -36,6 +36,7 @@ def doctor() -> None:
     import strainwave
     from strainwave import _core
     from strainwave.commands.docs import MISSING, documentation
+    from strainwave.native.folder import reason_without_kernels
 
     works, fails = list(CORE_WORKS), list[str]()
     print(f"strainwave {version('strainwave')}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")
@@ -44,7 +45,7 @@ def doctor() -> None:
 
     compiler = _compiler()
     _show("C++ compiler", compiler or "none: g++ 12, clang++ 14 or later, or pip install 'strainwave[compiler]'")
-    (works if compiler else fails).append("kernels of any drive")
+    (works if compiler and not reason_without_kernels() else fails).append("kernels of any drive")
     for label, text in _kernels():
         _show(label, text)
 
@@ -86,7 +87,7 @@ def _compiler() -> str:
 def _kernels() -> Iterator[tuple[str, str]]:
     """Yield a label and a text for the kernels that the package contains, and for those of this user."""
     from strainwave.native.cache import listing
-    from strainwave.native.folder import SHIPPED_KERNELS, VARIABLE, cache_folder
+    from strainwave.native.folder import SHIPPED_KERNELS, cache_folder, reason_without_kernels
 
     shipped = [path.stat().st_size for path in SHIPPED_KERNELS.glob("*.so")]
     yield "shipped kernels", _counted(shipped, "in the package")
@@ -96,7 +97,7 @@ def _kernels() -> Iterator[tuple[str, str]]:
         yield "cached kernels", f"not used: {error}"
         return
     if folder is None:
-        yield "cached kernels", f"switched off by {VARIABLE}"
+        yield "cached kernels", f"not used: {reason_without_kernels()}"
     else:
         yield "cached kernels", _counted([record.size for record in records], f"in {folder}")
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -14,6 +13,7 @@ from pathlib import Path
 from strainwave.dataset.plan import DatasetPlan
 from strainwave.files.writing import making, remove_drafts, replacing
 from strainwave.messages import one_line
+from strainwave.operating_system import lock_bytes
 
 PLAN, MANIFEST, CARD, SUMS, LOCKS = "plan.toml", "manifest.json", "card.md", "SHA256SUMS", ".work.lock"
 READ_BYTES = 1 << 20
@@ -60,7 +60,7 @@ class DatasetFolder:
                     raise FileExistsError(
                         one_line(f"{self.path} has the data set of another plan ({self.plan.name}); take another folder")
                     )
-                if (self.path / MANIFEST).exists() and (self.path / MANIFEST).read_text() != manifest:
+                if (self.path / MANIFEST).exists() and (self.path / MANIFEST).read_text("utf-8") != manifest:
                     raise FileExistsError(
                         one_line(
                             f"{self.path / MANIFEST} is of another version of strainwave, or of another gear set; "
@@ -77,53 +77,45 @@ class DatasetFolder:
 
     # Locks are of bytes of one file: that of a shard's number. They end with the process, however it ends.
 
-    @contextmanager
-    def lock(self, number: int) -> Iterator[bool]:
+    def lock(self, number: int) -> AbstractContextManager[bool]:
         """Lock a shard; yields False if another process works on it."""
-        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
-        try:
-            yield _locked(descriptor, 1, number)
-        finally:
-            os.close(descriptor)
+        return self._locked(number, 1)
 
     def remove_drafts(self) -> None:
         """Remove what killed workers left, unless a worker is at work."""
-        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
-        try:
-            if _locked(descriptor, 0, 0):
-                for folder in (self.path, self.path / "shards", self.path / "samples"):
-                    remove_drafts(folder)
-        finally:
-            os.close(descriptor)
+        with self._locked(0, 0) as is_mine:
+            if is_mine:
+                self._remove_drafts()
 
     def finish(self) -> bool:
         """Write the hashes of all files and remove what is temporary; True if all shards are there and nobody is at work."""
         if self.done() < self.plan.shards:
             return False
-        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
-        try:
-            if not _locked(descriptor, 0, 0):
+        with self._locked(0, 0) as is_mine:
+            if not is_mine:
                 return False
-            for folder in (self.path, self.path / "shards", self.path / "samples"):
-                remove_drafts(folder)
+            self._remove_drafts()
             names = [PLAN, MANIFEST, CARD]
-            names += [f"{path.relative_to(self.path)}" for path in sorted(self.path.glob("s*/shard-*.parquet"))]
+            names += [path.relative_to(self.path).as_posix() for path in sorted(self.path.glob("s*/shard-*.parquet"))]
             with replacing(self.path / SUMS) as file:
                 for name in names:
                     file.write(f"{_hash(self.path / name)}  {name}\n".encode())
-            (self.path / LOCKS).unlink(missing_ok=True)
-        finally:
-            os.close(descriptor)
+            with suppress(PermissionError):  # Windows removes no open file: there it stays
+                (self.path / LOCKS).unlink(missing_ok=True)
         return True
 
+    def _remove_drafts(self) -> None:
+        for folder in (self.path, self.path / "shards", self.path / "samples"):
+            remove_drafts(folder)
 
-def _locked(descriptor: int, length: int, start: int) -> bool:
-    """Lock bytes of a file, of length 0 all; False if another process has locked some of them."""
-    try:
-        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, length, start)
-    except OSError:
-        return False
-    return True
+    @contextmanager
+    def _locked(self, start: int, length: int) -> Iterator[bool]:
+        """Lock bytes of the file of locks, of length 0 all; yields False if another process has locked some of them."""
+        descriptor = os.open(self.path / LOCKS, os.O_RDWR | os.O_CREAT, 0o644)
+        try:
+            yield lock_bytes(descriptor, start, length)
+        finally:
+            os.close(descriptor)
 
 
 def _hash(path: Path) -> str:

@@ -23,6 +23,7 @@ from strainwave.dataset.plan import DatasetPlan
 from strainwave.dataset.shards import Shards
 from strainwave.messages import one_line
 from strainwave.native import kernels
+from strainwave.operating_system import is_orphan
 from strainwave.simulation.threads import THREAD_VARIABLES
 
 POLL_SECONDS = 0.2
@@ -42,13 +43,13 @@ def work(path: str | Path, part: int = 0, parts: int = 1, parent: int | None = N
     Args:
         path: folder of a data set
         part, parts: which of how many workers this is, from 0
-        parent: process without which this one ends after its shard
+        parent: process without which this one ends after its shard; on Windows the worker goes on
     """
     folder = DatasetFolder(Path(path))
     shards = _shards(f"{folder.path}", folder.plan.digest)
     made = 0
     for number in _order(shards.plan.shards, part, parts):
-        if parent is not None and os.getppid() != parent:
+        if parent is not None and is_orphan(parent):
             break
         made += make_shard(folder, shards, number)
     folder.finish()

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from strainwave.messages import one_line
+from strainwave.operating_system import READ_FLAGS
 
 MIN_ALLOWED_BYTES = 2**28  # any file may expand to this: 33 million numbers
 MAX_EXPANSION = 100  # times its size, that a larger file may expand to; measured noise compresses 10 times at the most
@@ -91,7 +92,7 @@ def open_regular(path: str | Path) -> BinaryIO:
         RefusedFile: it is a FIFO, a device or a socket, which may never end
         OSError: there is no such file, or it may not be read
     """
-    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    descriptor = os.open(path, READ_FLAGS)
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
         os.close(descriptor)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import signal
 import stat
@@ -14,6 +13,7 @@ from typing import BinaryIO
 from uuid import uuid4
 
 from strainwave.messages import one_line
+from strainwave.operating_system import adopt, locked_folder
 
 DRAFT = ".strainwave-"  # beginning of the names of files that are still being written
 written: list[Path] = []  # folders and files with results of this process' command, listed at an interrupt
@@ -57,7 +57,7 @@ def write_all(contents: Mapping[Path, str | bytes]) -> None:
                 drafts[path].file.write(content.encode() if isinstance(content, str) else content)
                 drafts[path].complete()
         for folder in sorted({path.parent.resolve() for path in contents}):
-            stack.enter_context(_locked(folder, fcntl.LOCK_EX))
+            stack.enter_context(locked_folder(folder, wait=True))
         for path, draft in drafts.items():
             with _named(path):
                 draft.put()
@@ -119,7 +119,7 @@ def claiming(folder: Path) -> Iterator[None]:
     """
     with ExitStack() as stack:
         try:
-            stack.enter_context(_locked(folder, fcntl.LOCK_EX | fcntl.LOCK_NB))
+            stack.enter_context(locked_folder(folder, wait=False))
         except BlockingIOError:
             raise BlockingIOError(f"{folder} is being written by another process; wait until it ends") from None
         yield
@@ -179,13 +179,14 @@ def _draft(path: Path) -> Iterator[_Draft | _Through]:
         return
     if found is not None and not os.access(target, os.W_OK):
         raise PermissionError("it is read-only")
-    with _open_beside(target) as file:
-        try:
+    draft = _open_beside(target)
+    try:
+        with draft as file:  # closed before it is removed, as Windows removes no open file
             if found is not None:
-                _adopt(file, found)
+                adopt(file.fileno(), found)
             yield _Draft(file, target)
-        finally:
-            Path(file.name).unlink(missing_ok=True)
+    finally:
+        Path(draft.name).unlink(missing_ok=True)
 
 
 def _check_name(path: Path) -> None:
@@ -217,13 +218,6 @@ def _open_beside(target: Path) -> BinaryIO:
         raise PermissionError(f"no file can be made in {target.parent}, as permission is denied") from None
 
 
-def _adopt(file: BinaryIO, old: os.stat_result) -> None:
-    """Give a file the owner, as far as this process may, and the mode of the one whose place it takes."""
-    with suppress(PermissionError):
-        os.fchown(file.fileno(), old.st_uid, old.st_gid)
-    os.fchmod(file.fileno(), stat.S_IMODE(old.st_mode))
-
-
 @contextmanager
 def _opened(folder: Path) -> Iterator[int]:
     descriptor = os.open(folder, os.O_RDONLY)
@@ -231,19 +225,6 @@ def _opened(folder: Path) -> Iterator[int]:
         yield descriptor
     finally:
         os.close(descriptor)
-
-
-@contextmanager
-def _locked(folder: Path, how: int) -> Iterator[None]:
-    """Holds the lock of a folder, where its file system has locks. It ends with the process, however that ends."""
-    with _opened(folder) as descriptor:
-        try:
-            fcntl.flock(descriptor, how)
-        except BlockingIOError:
-            raise
-        except OSError:
-            pass
-        yield
 
 
 @contextmanager

@@ -17,6 +17,7 @@ from strainwave.native.compilers import MAX_COMPILE_SECONDS, Compiler, candidate
 from strainwave.native.folder import Record, cache_folder
 from strainwave.native.kernel import INCLUDE_FOLDER, Kernel
 from strainwave.native.private import check_private, make_private
+from strainwave.operating_system import user
 
 _failed: set[Kernel] = set()  # in this process: none is tried again
 _warned: set[str] = set()  # in this process: each reason is given once
@@ -37,7 +38,7 @@ class KernelWarning(UserWarning):
 def kernel_file(kernel: Kernel, announce: Callable[[], None] = lambda: None) -> Path | None:
     """Return the shared object of a kernel, which is compiled if it is missing; None, with a warning, if that is impossible.
 
-    None without a warning if the environment variable STRAINWAVE_KERNELS is `off`.
+    None without a warning if the environment variable STRAINWAVE_KERNELS is `off`, and on Windows.
 
     Args:
         kernel: what to compile
@@ -76,11 +77,11 @@ def make_kernel(kernel: Kernel, announce: Callable[[], None] = lambda: None) -> 
     Raises:
         NoCompilerError: there is no compiler
         CompileError: the compiler reports an error, or takes too long
-        OSError: the cache cannot be written, or kernels are switched off
+        OSError: the cache cannot be written, or no kernel is used
     """
     folder, compiler = cache_folder(), find_compiler()
     if folder is None:
-        raise OSError(f"kernels are switched off by the environment variable {store.VARIABLE}")
+        raise OSError(f"no kernel is compiled: {store.reason_without_kernels()}")
     make_private(folder)
     key = kernel.key(compiler)
     with store.alone(folder, key, MAX_COMPILE_SECONDS):
@@ -125,7 +126,7 @@ def _shipped(kernel: Kernel) -> Path | None:
     """Return the kernel that the package carries; whoever could change the package itself may have written it."""
     if not store.SHIPPED_KERNELS.is_dir():
         return None
-    owners = {os.geteuid(), 0, Path(_core.__file__).stat().st_uid}
+    owners = {user(), 0, Path(_core.__file__).stat().st_uid}
     return store.read(store.SHIPPED_KERNELS, kernel.shipped_key(), owners)
 
 
@@ -135,7 +136,7 @@ def _cached(folder: Path, kernel: Kernel, compilers: Iterable[Compiler]) -> Path
         return None
     check_private(folder)
     for compiler in compilers:
-        if path := store.read(folder, kernel.key(compiler), {os.geteuid()}):
+        if path := store.read(folder, kernel.key(compiler), {user()}):
             with suppress(OSError):  # a read-only file system
                 os.utime(path)  # the least recently used are removed first
             return path

@@ -6,10 +6,8 @@ import os
 import re
 import shlex
 import shutil
-import signal
 import subprocess
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -17,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from strainwave.messages import one_line
+from strainwave.operating_system import kill_group
 
 MAX_COMPILE_SECONDS = 300.0  # of one command; the largest kernel takes some 10 s alone on two cores
 MAX_LIBRARY_SECONDS = 1200.0  # of one command that also builds a C library; zig takes 140 s of one core for that of Windows
@@ -171,8 +170,7 @@ def _run(command: Sequence[str], seconds: float, folder: str, temporary: Sequenc
     try:
         output, _ = process.communicate(timeout=seconds)
     except BaseException as error:
-        with suppress(ProcessLookupError):  # they have just ended
-            os.killpg(process.pid, signal.SIGKILL)
+        kill_group(process)
         process.communicate()
         if isinstance(error, subprocess.TimeoutExpired):
             raise CompileError(f"{command[0]} was ended after {seconds:g} s") from None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import shutil
@@ -18,12 +17,12 @@ from tempfile import TemporaryDirectory
 from strainwave import _core
 from strainwave.files.writing import DRAFT, replacing
 from strainwave.native.private import content_of
+from strainwave.operating_system import HAS_OWNERS, LOCK_POLL_SECONDS, NO_LINK, lock_file, user
 
 VARIABLE = "STRAINWAVE_KERNELS"  # environment variable: `off`, or the folder of the cache
 OFF = "off"
 MAX_CACHE_BYTES = 256_000_000  # of all kernels in the cache
 MAX_DRAFT_SECONDS = 86_400.0  # age of what a killed process left, after which it is removed
-LOCK_POLL_SECONDS = 0.05
 SHIPPED_KERNELS = Path(_core.__file__).parent / "kernels"  # folder
 
 
@@ -50,15 +49,26 @@ class Record:
     sha256: str
 
 
+def reason_without_kernels() -> str:
+    """Return why no kernel is used; empty if kernels are used.
+
+    On Windows no kernel is used. A kernel is loaded into the process, so that nobody else may have written its file; owners and
+    modes of files do not show that there. The general drive gives the same numbers, more slowly.
+    """
+    if not HAS_OWNERS:
+        return "there are none on Windows; the general code gives the same numbers"
+    return f"they are switched off by {VARIABLE}" if os.environ.get(VARIABLE) == OFF else ""
+
+
 def cache_folder() -> Path | None:
-    """Return the folder of the user's kernels, which may not exist; None if kernels are switched off.
+    """Return the folder of the user's kernels, which may not exist; None if no kernel is used.
 
     Raises:
         ValueError: the environment variable is neither `off` nor an absolute path
     """
-    chosen = os.environ.get(VARIABLE, "")
-    if chosen == OFF:
+    if reason_without_kernels():
         return None
+    chosen = os.environ.get(VARIABLE, "")
     if chosen and not os.path.isabs(chosen):
         raise ValueError(f'{VARIABLE} = "{chosen}" must be {OFF} or an absolute path')
     return Path(chosen) if chosen else _user_cache() / "strainwave" / "kernels"
@@ -90,7 +100,7 @@ def write(folder: Path, key: str, content: bytes, record: Record) -> Path:
     for target, part in ((path, content), (_record_path(folder, key), json.dumps(asdict(record)).encode())):
         target.unlink(missing_ok=True)  # or the new file would have the owner and the mode of the old one
         with replacing(target) as file:
-            os.fchmod(file.fileno(), 0o600)
+            os.chmod(file.fileno(), 0o600)
             file.write(part)
     return path
 
@@ -100,7 +110,7 @@ def records(folder: Path) -> dict[str, Record]:
     found = {}
     for path in sorted(_kernels(folder), key=_last_used, reverse=True):
         with suppress(OSError):
-            found[path.stem] = _record(folder, path.stem, {os.geteuid()})
+            found[path.stem] = _record(folder, path.stem, {user()})
     return found
 
 
@@ -142,24 +152,13 @@ def alone(folder: Path, key: str, max_wait: float) -> Iterator[None]:
     """
     path = folder / f"{DRAFT}{key}.lock"
     with ExitStack() as stack:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | NO_LINK, 0o600)
         stack.callback(os.close, descriptor)
         deadline = time.monotonic() + max_wait
-        while not _locked(descriptor) and time.monotonic() < deadline:
+        while not lock_file(descriptor) and time.monotonic() < deadline:
             time.sleep(LOCK_POLL_SECONDS)
         stack.callback(path.unlink, missing_ok=True)
         yield
-
-
-def _locked(descriptor: int) -> bool:
-    """Take the lock of a file if nobody else has it; True, too, where the file system has no locks."""
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        return True
-    return True
 
 
 def _user_cache() -> Path:

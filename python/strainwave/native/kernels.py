@@ -144,5 +144,5 @@ def _is_updated() -> bool:
 
 def use(drive: Drive, path: Path) -> None:
     """Load a shared object, and do its jobs by it for drives with the laws of one."""
-    table = ctypes.c_char.in_dll(ctypes.CDLL(str(path), ctypes.RTLD_LOCAL | os.RTLD_NOW), "strainwave_kernel")
+    table = ctypes.c_char.in_dll(ctypes.CDLL(str(path)), "strainwave_kernel")
     _core.add_kernel(drive, ctypes.addressof(table))

@@ -6,6 +6,8 @@ import os
 import stat
 from pathlib import Path
 
+from strainwave.operating_system import NO_LINK, READ_FLAGS, user
+
 
 def check_private(folder: Path) -> None:
     """Check that no other user could have put a file into a folder.
@@ -18,7 +20,7 @@ def check_private(folder: Path) -> None:
         raise PermissionError(f"{folder} is a link; set STRAINWAVE_KERNELS to the folder itself")
     if not stat.S_ISDIR(found.st_mode):
         raise NotADirectoryError(f"{folder} is no folder; remove it, or set STRAINWAVE_KERNELS to another one")
-    _check_writers(folder, found, {os.geteuid()})
+    _check_writers(folder, found, {user()})
     _check_above(folder)
 
 
@@ -37,8 +39,7 @@ def make_private(folder: Path) -> None:
 
 def content_of(path: Path, owners: set[int]) -> bytes:
     """Return the bytes of a regular file that nobody but its owner, one of these, could have written."""
-    # A link is an error, and a FIFO does not make anybody wait.
-    with open(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
+    with open(os.open(path, READ_FLAGS | NO_LINK), "rb") as file:  # a link is an error
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
             raise OSError(f"{path} is no regular file; it is not used")
@@ -50,7 +51,7 @@ def _check_above(folder: Path) -> None:
     """Check that no other user could exchange a folder, or make it first."""
     for above in folder.resolve().parents:
         if above.exists():
-            _check_writers(above, above.stat(), _administrators() | {os.geteuid()})
+            _check_writers(above, above.stat(), _administrators() | {user()})
 
 
 def _check_writers(path: Path, found: os.stat_result, owners: set[int]) -> None:

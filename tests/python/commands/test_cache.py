@@ -55,7 +55,7 @@ def test_without_a_cache_nothing_is_made(kernels: Path, tmp_path: Path) -> None:
 
 def test_kernels_that_are_switched_off_are_said_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STRAINWAVE_KERNELS", "off")
-    assert strainwave("cache", folder=tmp_path).stdout == "kernels are switched off by STRAINWAVE_KERNELS\n"
+    assert strainwave("cache", folder=tmp_path).stdout == "no kernel is used: they are switched off by STRAINWAVE_KERNELS\n"
 
 
 def test_a_folder_that_cannot_be_trusted_is_refused(kernels: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -121,7 +121,7 @@ def test_kernels_that_are_not_used_are_shown_with_the_reason(
     kernels.chmod(0o777)
     assert answer(tmp_path)["cached kernels"].startswith(f"not used: other users may write to {kernels}")
     monkeypatch.setenv("STRAINWAVE_KERNELS", "off")
-    assert answer(tmp_path)["cached kernels"] == "switched off by STRAINWAVE_KERNELS"
+    assert answer(tmp_path)["cached kernels"] == "not used: they are switched off by STRAINWAVE_KERNELS"
     assert stat.S_IMODE(kernels.stat().st_mode) == 0o777
 
 
