@@ -182,7 +182,7 @@ def ended(folder: Path) -> bool:
             os.kill(number, 0)
         except ProcessLookupError:
             return True
-        if f"{number} (sleep) Z" in Path(f"/proc/{number}/stat").read_text():
+        if ") Z " in Path(f"/proc/{number}/stat").read_text():  # under any name: it may be killed before it is sleep
             return True
         time.sleep(0.01)
     return False
