@@ -2,9 +2,9 @@
 # # A robot's log to a gear in ten minutes
 #
 # At the end you have a gear file of a robot joint: its friction, inertia and gravity, each with a standard deviation, from
-# one log of its controller. It takes ten minutes. You need `strainwave` and an empty folder with the files above.
+# one log of its controller. You need `strainwave` and an empty folder with the files above.
 #
-# Each step is shown twice: as a command for the terminal, after a `$`, and in Python. One of them is enough.
+# Each step is a command for the terminal, after a `$`, or Python. Where both do the same, one is enough.
 #
 # ## 1. Look at the log
 #
@@ -28,12 +28,12 @@ below.plot(log["t"], log["current"], linewidth=0.7)
 below.set(ylabel="motor current [A]", xlabel="time [s]")
 
 # %% [markdown]
-# This log is good for identification: the joint moves both ways, slowly and fast, and through a large angle. A log of your
-# own should do the same for half a minute or more.
+# The joint moves both ways, slowly and fast, and through a large angle. A log of your own should do the same for half a
+# minute or more.
 #
 # ## 2. Identify the joint
 #
-# Three facts are not in the log. You find them on data sheets:
+# Three facts are not in the log:
 #
 # * **The gear.** The joint has a strain wave gear of size 20 and ratio 80. `strainwave gears 20-80` lists the catalogue sets
 #   of this size; `hfuc-20-80` is one of them. Its numbers are the start; those that the log determines are replaced.
@@ -47,17 +47,17 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 # %% [markdown]
 # From top to bottom:
 #
-# * `since …`: what the file was taken for, and why. **Read these lines first.** If a file is taken for something else, all
-#   numbers are wrong.
-# * `Coulomb and viscous, a delay, …`: the model. Effects are added as long as they predict better.
+# * `since …`: the type of the file, and the reasons. **Read these lines first.** If the type is wrong, all numbers are.
+# * `Coulomb and viscous, a delay, …`: the model. Effects are added as long as they improve the prediction.
 # * `error on data held out: …`: the model was fitted to the first 70 % of the motion and predicts the last 30 %. This share
 #   of the current is not predicted.
-# * `current comes … behind`: this controller averages the current over its period of 10 ms, so the current is 5 ms late. The
-#   delay was found and corrected.
-# * `the inertia of the motor …`: the log cannot separate the rotor from the load. The inertia below is that of the load, plus
-#   that of the rotor times 80².
+# * `current comes … behind`: this controller averages the current over its period of 10 ms, so the current is 5 ms late.
+#   The delay is estimated and corrected.
+# * `the inertia of the motor …`: the log cannot separate the rotor from the load. The inertia below is that of the load,
+#   plus that of the rotor times 80².
 # * `current is counted against the motion …`: in `strainwave` a positive current turns the motor forward, and the output of
-#   this gear turns against its motor. In this robot a positive current turns the joint forward. This was found and corrected.
+#   this gear turns against its motor. In this robot a positive current turns the joint forward. This is detected and
+#   corrected.
 # * The numbers: value ± standard deviation. The friction is at the motor's side; multiply it by 80 for the joint.
 #
 # The exit code is 0. It is 3 if a check finds a contradiction, and then there is no `gear.toml`: [five wrong
@@ -86,12 +86,12 @@ for axes in (above, below):
 _ = above.legend(ncols=3)
 
 # %% [markdown]
-# A good difference looks like noise and is no larger in the grey part, which the fit has not seen. Here a part of the
-# difference is noise of the current sensor, 0.06 A.
+# A good difference looks like noise and is no larger in the grey part, which was not fitted. Here a part of the difference
+# is noise of the current sensor, 0.06 A.
 #
 # ## 4. Which numbers are determined, and which are not
 #
-# A gear has more numbers than one log shows. `identify` lists each of them with its state:
+# A gear has more numbers than one log determines. `identify` states for each if it is determined:
 
 # %%
 shown = ("coulomb", "breakaway", "viscous", "k1", "amplitude[0]")
@@ -102,10 +102,10 @@ for each in found.states:
 
 # %% [markdown]
 # * **identified** with a standard deviation: the log determines it.
-# * **kept**: the log does not determine it. Stiffness and kinematic error do not show in a log of one encoder, so they are
+# * **kept**: the log does not determine it. A log of one encoder does not show stiffness and kinematic error, so they are
 #   those of the catalogue, or assumed.
-# * **breakaway** has no standard deviation: it was set equal to the Coulomb torque, because no fall of the friction at low
-#   speed was found. A [table of friction](05_which_friction.md) determines it.
+# * **breakaway** has no standard deviation: it was set equal to the Coulomb torque, because the log shows no fall of the
+#   friction at low speed. A [table of friction](05_which_friction.md) determines it.
 #
 # For each number that is not determined, the report lists the measurement that determines it.
 #
@@ -127,9 +127,9 @@ print(f"load: {drive.load.inertia:.3f} kg.m2, {drive.load.gravity_torque:.2f} N.
 #
 # ## 6. Compare with the truth
 #
-# **This log is simulated**, so the truth is known. It was written by a program that shares nothing with `strainwave`, with
-# noise and quantisation of its sensors added. Its joint has friction that falls from 0.062 N·m at rest to 0.047 N·m, a spring
-# of three segments with hysteresis, and a kinematic error.
+# **This log is simulated**, so the truth is known. A program that shares nothing with `strainwave` wrote it, with noise and
+# quantisation of its sensors. Its joint has friction that falls from 0.062 N·m at rest to 0.047 N·m, a spring of three
+# segments with hysteresis, and a kinematic error.
 
 # %%
 ratio = 80.0
@@ -150,8 +150,8 @@ for parameter in found.parameters:
 # %% [markdown]
 # Four numbers of five are within two standard deviations. **Viscous friction is 5 % too low**, 2.3 standard deviations. The
 # cause is the rate of the log, 100 samples a second: at a reversal the friction changes its sign between two of them. The
-# same joint recorded at 250 Hz gives 2.91e-4 ± 0.10e-4 N·m·s/rad. So **record faster** if you can, or [give a table of
-# friction beside the log](05_which_friction.md).
+# same joint recorded at 250 Hz gives 2.91e-4 ± 0.10e-4 N·m·s/rad. So **record faster** if you can, or [add a table of
+# friction](05_which_friction.md).
 #
 # ## 7. Now your own log
 #
@@ -166,5 +166,5 @@ for parameter in found.parameters:
 # | the motor's angle | `--column input_angle=NAME` |
 #
 # **What can go wrong.** If a large share is unexplained, other joints may have moved, or the motion was too small. A log of
-# one direction does not separate Coulomb friction from the zero of the current. [From measurements to a
-# gear](../how-to/identify.md) has the details.
+# one direction does not separate Coulomb friction from the zero of the current. [Identify a gear from
+# measurements](../how-to/identify.md) has the details.

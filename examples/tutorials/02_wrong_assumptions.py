@@ -4,9 +4,9 @@
 # At the end you know what `strainwave` prints if a unit, a side or a file is wrong, and which error no check can find. It
 # takes 15 minutes. You need `strainwave` and an empty folder with the files above.
 #
-# A measurement file rarely contains everything: a unit is missing, an angle may be that of the motor or of the joint. Most
-# wrong assumptions contradict the numbers of the file. Then a **check** fails: it is printed first, no `gear.toml` is
-# written, and the exit code is 3. In the commands below, `|| echo` prints the exit code if it is not 0.
+# Measurement files lack units, and an angle may be that of the motor or of the joint. Most wrong assumptions contradict the
+# numbers of the file. Then a **check** fails: it is printed first, no `gear.toml` is written, and the exit code is 3. In
+# the commands below, `|| echo` prints the exit code if it is not 0.
 #
 # ## 1. The unit of the speed
 #
@@ -27,8 +27,8 @@ print(table[:60])
 # $ strainwave identify hfuc-20-80 friction_colleague.csv || echo "exit code $?"
 
 # %% [markdown]
-# Nothing is guessed here: the numbers alone do not determine the unit of a speed. So `strainwave` asks, and shows what each
-# unit would mean. Now with the wrong one:
+# The numbers alone do not determine the unit of a speed. So `strainwave` asks, and shows what each unit would mean. Now
+# with the wrong one:
 
 # %% [console]
 # $ strainwave identify hfuc-20-80 friction_colleague.csv --unit speed=rad/s --unit torque=N.m || echo "exit code $?"
@@ -39,9 +39,9 @@ print(table[:60])
 #
 # ## 2. The side
 #
-# The same table, with its units, but stated to be measured at the joint, behind the gear. The command is `strainwave identify
-# hfuc-20-80 friction.csv --side output`, and its exit code is 3. From here on in Python: `failed` has the checks that the
-# command prints after `FAILED`.
+# The same table with its units, but stated to be measured at the joint, behind the gear: `strainwave identify hfuc-20-80
+# friction.csv --side output` ends with exit code 3. From here on in Python: `failed` has the checks that the command prints
+# after `FAILED`.
 
 # %%
 stated = sw.FileMapping(side="output")
@@ -86,9 +86,9 @@ for check in found.failed:
     print(f"{check.name}: {check.message}\n  what to do: {check.remedy}")
 
 # %% [markdown]
-# Both files are fitted, and their results differ by far more than two runs of one gear do. **Smaller differences pass:**
-# friction changes with temperature, lubricant and run-in, so that two tables may differ by up to about 60 % before the check
-# fails. A joint of the same size with similar friction is not found.
+# The results of both files differ by far more than two runs of one gear do. **Smaller differences pass:** friction changes
+# with temperature, lubricant and run-in. Two tables may differ by up to about 60 % before the check fails. So the check
+# does not find a joint of the same size with similar friction.
 #
 # ## 5. The torque constant
 #
@@ -111,8 +111,8 @@ panels[0].legend(ncols=2)
 _ = panels[1].set(xlabel="time [s]")
 
 # %% [markdown]
-# **No check fails, and none can.** With twice the torque constant, inertia, gravity and friction are about twice as large,
-# and the predicted current is the same. A wrong ratio with an angle behind the gear is of the same sort. What you can do:
+# **No check fails, and none can.** Inertia, gravity and friction are about twice as large, and the predicted current is the
+# same. A wrong ratio with an angle behind the gear is of the same sort. What you can do:
 #
 # * **Compare the gravity torque with what you know**: weight of the arm times the distance of its centre. Here it is 11 N·m,
 #   and not 22.

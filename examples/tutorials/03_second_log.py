@@ -9,8 +9,7 @@
 #
 # ## 1. The saved joint
 #
-# These lines repeat tutorial 1 and save the joint. With its numbers, the file keeps their covariance and the error on its own
-# log.
+# As in tutorial 1. The file contains the numbers, their covariance, and the error on its own log.
 
 # %%
 import matplotlib.pyplot as plt
@@ -37,8 +36,8 @@ found.gear_set.save("joint_2.toml")
 #
 # * **The error** of the current, and the error that is allowed: twice that of the joint on its own log. A larger one
 #   contradicts the joint.
-# * **Plain least squares on this file**: offset, inertia, gravity, Coulomb and viscous friction, fitted to *this* recording.
-#   The saved joint has never seen the recording, and still predicts it better.
+# * **Plain least squares on this file**: offset, inertia, gravity, Coulomb and viscous friction, fitted to *this*
+#   recording. The saved joint was not fitted to it, and still predicts it better.
 # * **Five quantities** that may have changed, each as a multiple of the saved one. A change is significant if it exceeds
 #   three standard deviations and 3 %.
 # * **Lines of the residual**: what is left repeats twice and four times a revolution of the motor. This is the kinematic
@@ -71,8 +70,7 @@ for file, each in zip(logs, predictions, strict=True):
 # $ strainwave predict joint_2.toml robot_log_tool.csv --constant torque_constant=0.0755 --out tool || echo "exit code $?"
 
 # %% [markdown]
-# The curves are in the result. A change has a shape in the residual: friction follows the sign of the speed, a load follows
-# the angle.
+# A change has a shape in the residual: friction follows the sign of the speed, a load follows the angle.
 
 # %%
 figure, panels = plt.subplots(len(logs), 1, sharex=True, sharey=True, figsize=(8.0, 6.0), layout="constrained")
@@ -103,10 +101,10 @@ _ = panels[-1].set(xlabel="time [s]")
 # * **Save the joint from a log that is long and varied.** Its error on its own log limits what a later recording can
 #   contradict.
 # * **Record at the same temperature**, or compare after the same time of running: warm grease has less viscous friction.
-# * **Do not give another torque constant than before.** If all torques are changed by one factor, a message says that this is
-#   the sensor or the torque constant, and not the joint.
-# * **If no change explains the error**, a message states that. The log is then of another joint, or a column or unit differs
-#   from the first log.
+# * **Give the same torque constant as before.** If all torques change by one factor, a message names the sensor or the
+#   torque constant.
+# * **If no change explains the error**, a message states that. The log is then of another joint, or a column or unit
+#   differs from the first log.
 #
 # All messages, and what `predict` compares of other files, are in [Compare a later recording with a saved
 # joint](../how-to/predict.md).

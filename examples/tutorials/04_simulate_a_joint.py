@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Simulate a joint and read what the gear does to it
 #
-# At the end you know the four effects of a strain wave gear by sight: kinematic error, wind-up, hysteresis and friction. You
-# have the share of each in the error of a joint, and the speed at which the gear makes the joint vibrate.
+# At the end you recognise the four effects of a strain wave gear: kinematic error, wind-up, hysteresis and friction. You
+# know the share of each in the error of a joint, and the speed at which the gear makes the joint vibrate.
 #
 # **Time:** 15 minutes. **You need:** strainwave and matplotlib; no measurement, no compiler.
 
@@ -36,8 +36,8 @@ print("friction", gear.friction_input)
 # The ratio is negative: in this gear the circular spline is fixed, and the output turns against the motor. Friction is that
 # of the input; at the output it counts with the ratio, 0.09 N·m as 9 N·m.
 #
-# The controller sees the encoder of the motor only, as in most joints. So it keeps the *motor* at its place. What the gear
-# does behind it, no loop corrects.
+# The controller reads the encoder of the motor only, as in most joints. So it corrects the angle of the *motor*, and not
+# what the gear does behind it.
 #
 # ## A move
 #
@@ -58,8 +58,8 @@ lower.plot(run.time, 1e6 * error)
 lower.set(xlabel="time [s]", ylabel="command - output [µrad]")
 
 # %% [markdown]
-# The first five seconds are left out (`between`), so that the loop has settled. The error looks confused because four effects
-# are in it. The next sections take them one by one.
+# `between` leaves out the first five seconds, in which the loop settles. The error looks confused because it contains four
+# effects. The next sections take them one by one.
 #
 # ## Kinematic error: a ripple with the angle of the motor
 #
@@ -85,8 +85,8 @@ axes.legend()
 
 # %% [markdown]
 # *Order 2* means: twice in each turn of the motor, because the wave generator has two lobes. The amplitude in the
-# transmission error is larger than that of the gear file. The ripple shakes the arm a little, and this twists the gear. Near
-# a resonance it does this much more, as you will see.
+# transmission error is larger than that of the gear file. The ripple shakes the arm a little, and this twists the gear.
+# Near a resonance it does this much more.
 #
 # ## Wind-up and hysteresis: the twist under load
 #
@@ -164,14 +164,14 @@ axes.set(xlabel="speed of the motor [rad/s]", ylabel="order 2 of the torque [N.m
 axes.legend()
 
 # %% [markdown]
-# The peak lies between the two lines. In small motion the elements of the hysteresis stick and add their stiffness to that of
-# the spring; `sw.modes` computes this case. In larger motion they slide, and the gear is softer. So the resonance of a gear
-# moves with the amplitude, and a linear model has no right value for it.
+# The peak lies between the two lines. In small motion the elements of the hysteresis stick and add their stiffness to that
+# of the spring; `sw.modes` computes this case. In larger motion they slide, and the gear is softer. So the resonance of a
+# gear moves with the amplitude, and no linear model has the right value.
 #
 # ## The share of each effect
 #
-# Now each effect is switched off, one at a time, and then each is left as the only one. `replace` makes a changed copy of the
-# drive; paths name the part.
+# Each effect is switched off alone, and then left as the only one. `replace` makes a changed copy of the drive; paths name
+# the part.
 
 # %%
 switched_off = {
@@ -230,4 +230,4 @@ figure.legend(loc="outside lower center", ncols=3)
 # * [Simulate a drive](../how-to/simulate.md): steps, scenarios, temperature, noise.
 # * [The parts of a drive](../how-to/drives.md): other motors, controllers, loads and sensors.
 # * [Which model when](../how-to/which-model.md): friction and hysteresis that fit your joint.
-# * [Take away what the gear does](../how-to/compensate.md): what of this error a controller can remove.
+# * [Compensate torsion, friction and kinematic error](../how-to/compensate.md): what of this error a controller can remove.

@@ -1,14 +1,14 @@
 # %% [markdown]
 # # Which friction does my joint have?
 #
-# At the end you have a friction law for your joint that was chosen by what it predicts, and you know what your data do not
+# At the end you have a friction law for your joint, chosen by its predictions. You also know what your data do not
 # separate. It takes 15 minutes. You need `strainwave` and an empty folder with the files above.
 #
 # ## 1. A table of friction
 #
-# `friction.csv` is a table of 13 speeds in both directions. In each row the motor turned the gear at one speed, with nothing
-# at the output, and the torque was averaged. `rank` fits every law to it. The error of each law is that on rows which it was
-# not fitted to.
+# `friction.csv` is a table of 13 speeds in both directions. In each row the motor turned the gear at one speed, with
+# nothing at the output, and the torque was averaged. `rank` fits every law to it, and computes the error on rows that were
+# not fitted.
 
 # %% [console]
 # $ strainwave rank hfuc-20-80 friction.csv
@@ -21,9 +21,9 @@
 # | `residuals together` | how many neighbouring rows are wrong in the same sense; if more than 1, the law lacks something |
 # | `cost` | time of the law in a simulation, for each evaluation |
 #
-# The law to take is in the first line: the **simplest law whose error exceeds the smallest by no more than chance explains**.
-# Here the laws without a fall at low speed have an error about four times as large. The laws with more numbers than the first
-# gain nothing.
+# Take the law in the first line: the **simplest law whose error exceeds the smallest by no more than chance explains**.
+# Laws without a fall at low speed have an error about four times as large. Laws with more numbers than the first gain
+# nothing.
 #
 # ## 2. Look at the laws
 #
@@ -65,8 +65,8 @@ panels[0].set(ylabel="friction torque [N·m]")
 _ = panels[0].legend(fontsize="small")
 
 # %% [markdown]
-# On the left, all laws look alike. The logarithm on the right shows the difference: below 5 rad/s (50 1/min) the friction
-# rises toward rest, and two laws cannot follow. In return, they are too high at 5 to 50 rad/s.
+# On the left, all laws look alike. The logarithm shows the difference: below 5 rad/s (50 1/min) the friction rises toward
+# rest. Two laws cannot follow, and are too high at 5 to 50 rad/s.
 
 # %%
 print(fits["with a fall at low speed"].summary())
@@ -89,9 +89,9 @@ for each in sw.combinations(forced):
     print(each)
 
 # %% [markdown]
-# `identify` takes a simpler law. If you force the law with a fall onto these rows, `sw.combinations` reports that one of its
-# numbers is not determined. Both are right: the rows contain nothing about low speeds. So **record slow speeds if your joint
-# moves slowly**.
+# `identify` takes a simpler law. If you fit the law with a fall to these rows, `sw.combinations` reports that one of its
+# numbers is not determined. Both are right: the rows contain no low speeds. So **record slow speeds if your joint moves
+# slowly**.
 #
 # **A table does not separate laws that differ before sliding.** `LuGre` has bristles that bend before the contact slides. At
 # constant speed it is the law with a fall:
@@ -120,7 +120,7 @@ print(f"largest difference in a table: {np.abs(lugre.steady(grid) - stribeck.ste
 # $ strainwave rank hfuc-20-80 robot_log.csv --constant torque_constant=0.0755
 
 # %% [markdown]
-# Each line is a set of effects; its error is further right. Three things can be read from the table:
+# Each line is a set of effects; its error is further right. The table shows:
 #
 # * **Bristles that bend at reversals** are in all of the best lines: the joint turns round often, and friction does not jump
 #   there.
@@ -144,9 +144,9 @@ for parameter in both.parameters:
     print(f"{estimate.path:34} {estimate.value:9.4g} ± {estimate.sigma:<8.2g} {known:14} {parameter.source}")
 
 # %% [markdown]
-# The law of the table is taken, and the log gives the load. **Both files are simulated**: the log by a program that shares
-# nothing with `strainwave`, the table by the steady friction of the same joint with 1 % noise. Now viscous friction is right
-# as well, which the log alone had [5 % too low](01_robot_log.md).
+# The table determines the law, and the log the load. **Both files are simulated**: the log by a program that shares nothing
+# with `strainwave`, the table by the steady friction of the same joint with 1 % noise. Now viscous friction is right as
+# well; the log alone gave it [5 % too low](01_robot_log.md).
 #
 # ## 6. Which law for your own joint
 #

@@ -4,14 +4,14 @@
 # At the end you have stiffness, hysteresis and lost motion of a gear with their uncertainties, in a report, and a gear file.
 # The test needs masses, cords and a camera.
 #
-# **Time:** 20 minutes. **You need:** strainwave with matplotlib. A rig is not needed: a virtual one makes the photographs
-# here. The two sections that begin with *With your own rig* list what changes for real ones.
+# **Time:** 20 minutes. **You need:** strainwave with matplotlib. A virtual rig makes the photographs here. The two
+# paragraphs that begin with *With your own rig* list what changes for a real one.
 
 # %% [markdown]
 # ## The rig file
 #
-# The output of the gear is held. A disk sits on the shaft of the wave generator. Masses on cords turn the disk, and a camera
-# sees two round markers on it. A TOML file states the numbers of the rig, each with its unit, its uncertainty and its source:
+# The output of the gear is fixed. Masses on cords turn a disk on the shaft of the wave generator, and a camera photographs
+# two round markers on it. A TOML file contains the numbers of the rig, each with its unit, its uncertainty and its source:
 
 # %%
 from pathlib import Path
@@ -24,8 +24,8 @@ print(Path("06_torsion_rig_bench.toml").read_text())
 
 # %% [markdown]
 # **With your own rig:** copy this file and write your numbers into it. `disk_radius` and the masses are needed. Measure
-# `pulley_torque` and `compliance` too: what is left out counts as zero, and widens or softens the gear in the result. [The
-# torsion rig](../how-to/torsion-rig.md) describes what to build and how to measure each of these numbers.
+# `pulley_torque` and `compliance` too: if they are left out, they count as zero, and the gear appears wider or softer. [The
+# torsion rig](../how-to/torsion-rig.md) describes what to build and how to measure each number.
 #
 # ## The plan
 #
@@ -42,9 +42,9 @@ print(Path("06_torsion_rig_bench.toml").read_text())
 #
 # ## The test
 #
-# Here the test is a virtual one. The gear on the rig is one of the catalogue, but with another hysteresis and friction; the
-# analysis does not get these numbers. The folder `torsion-test` then has what a real test leaves: a photograph of each step,
-# `steps.csv`, `rig.toml`.
+# The gear on the virtual rig is one of the catalogue, but with another hysteresis and friction; the analysis does not get
+# these numbers. The folder `torsion-test` then has what a real test leaves: a photograph of each step, `steps.csv`,
+# `rig.toml`.
 
 # %%
 on_the_rig = sw.load("csg-25-100").replace(
@@ -93,14 +93,13 @@ print(sw.rig.torque_budget(bench, test.steps[0]))
 print("remarks:", (*test.remarks, *loop.remarks) or "none")
 
 # %% [markdown]
-# The budget lists what limits the torque, the largest first. Improve its first line, not its last. An empty list of remarks
-# is good: it would name a blurred photograph, a skipped step, or a camera that looks askew.
+# The budget lists what limits the torque, the largest first. Improve its first line, not its last. Remarks would name a
+# blurred photograph, a skipped step, or a camera that looks askew.
 #
 # ## A friction table
 #
-# The loop of the input contains the friction of the wave generator. To separate it, measure the friction apart: turn the free
-# gear at a few constant speeds, and write down the torque. A motor with a known torque constant does it. Here it is a table
-# of the virtual gear.
+# The loop of the input contains the friction of the wave generator. To separate it, turn the free gear at a few constant
+# speeds, and write down the torque. A motor with a known torque constant does it. Here it is a table of the virtual gear.
 
 # %%
 speed = np.geomspace(1.0, 300.0, 12)
@@ -135,13 +134,12 @@ axes.set(xlabel="angle of the input [deg]", ylabel="torque at the input [N.m]", 
 axes.legend()
 
 # %% [markdown]
-# The loop as measured is wider, because it contains the friction of the wave generator. Without a friction table you would
-# take all of the width for hysteresis of the flexspline.
+# The loop as measured is wider. Without a friction table, all of its width would count as hysteresis of the flexspline.
 #
 # ## The gear
 #
-# `sw.identify` takes friction table and loop together and gives a gear. The first argument is the catalogue set to begin
-# with. On the command line: `strainwave identify csg-25-100 rig_friction.csv analysis/loop-0deg.csv`.
+# `sw.identify` makes a gear from friction table and loop. The first argument is the start set of the catalogue. On the
+# command line: `strainwave identify csg-25-100 rig_friction.csv analysis/loop-0deg.csv`.
 
 # %%
 result = sw.identify("csg-25-100", {"friction": friction, "torsion": loop.recording()})
@@ -151,7 +149,7 @@ print(mine.stiffness)
 print(mine.hysteresis)
 
 # %% [markdown]
-# This test is virtual, so the truth is known. With a real gear you never see this table; a second test takes its place.
+# This test is virtual, so the truth is known. With a real gear, compare with a second test instead.
 
 # %%
 for name in ("k1", "k2", "k3"):
@@ -174,6 +172,6 @@ print(f"friction {mine.friction_input.coulomb:.4f} N.m found, {on_the_rig.fricti
 #
 # ## Where to go on
 #
-# * [A torsion test rig](../how-to/torsion-rig.md): what to build, cameras, uncertainty.
-# * [Evaluate a torsion loop](../how-to/torsion-analysis.md): the definitions of stiffness, hysteresis and lost motion.
+# * [Build and use a torsion test rig](../how-to/torsion-rig.md): what to build, cameras, uncertainty.
+# * [Analyse a torsion loop](../how-to/torsion-analysis.md): the definitions of stiffness, hysteresis and lost motion.
 # * [Simulate a joint](04_simulate_a_joint.md): what this gear does in a joint.

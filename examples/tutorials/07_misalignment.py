@@ -9,8 +9,8 @@
 # %% [markdown]
 # ## A joint, and a misaligned wave generator
 #
-# The joint turns at constant speed. Its gear is one of the catalogue. `with_faults` changes the numbers of a drive as a fault
-# does: here the shaft of the wave generator sits off the middle of the housing by 15 µm, and by 30 µm.
+# The joint turns at constant speed, with a gear of the catalogue. `with_faults` changes the numbers of a drive as a fault
+# does: here the shaft of the wave generator is 15 µm or 30 µm off the middle of the housing.
 
 # %%
 from pathlib import Path
@@ -45,8 +45,8 @@ right.set(xlabel="order, cycles in a turn of the motor", ylabel="amplitude [µra
 left.legend()
 
 # %% [markdown]
-# A healthy gear has an order 2 too. The misalignment adds to order 2 and makes orders 4, 6 and 8. So no single order proves a
-# misalignment: what counts is the *change*, and whether the recording could show it.
+# A healthy gear has an order 2 too. The misalignment adds to it, and makes orders 4, 6 and 8. So no single order proves a
+# misalignment: the *change* counts, and whether the recording could show it.
 #
 # ## From the error to the current
 #
@@ -116,8 +116,8 @@ for axes, load in zip(panels, (0.0, 20.0), strict=True):
 panels[1].set(xlabel="time [s]")
 
 # %% [markdown]
-# No eye sees the order in these curves; the fit over whole revolutions does, under load. Order 4 of this misalignment stays
-# below the limit here. A recording without load and without an alarm proves nothing.
+# You cannot see the order in these curves; the fit over whole revolutions finds it, under load. Order 4 of this
+# misalignment stays below the limit here. A recording without load and without an alarm proves nothing.
 #
 # ## After you recorded: compare with a baseline
 #
@@ -162,12 +162,13 @@ print(*Path("later.csv").read_text().splitlines()[:3], sep="\n")
 # | `insensitive` | Load too small or noise too large. Load the output, or record longer. No alarm means nothing here. |
 # | `not comparable` | The later day has another motion, load or place than the baseline. Repeat the motion of the baseline. |
 # | `aliased` | Order 2 passes above 0.8 of half the sample rate. Record faster, or turn slower. |
-# | an alarm after a repair | The joint is another one now: record a new baseline. |
+# | an alarm after a repair | Record a new baseline. |
 # | order 2 alone is larger | A misalignment is one cause. Cogging, a coupling or another load make lines too. |
 #
 # ## Where to go on
 #
 # * [Diagnose a gear from its motor current](../how-to/diagnose.md): the report, false alarms, remaining life.
 # * [Detection limit of the motor current](../how-to/detection-limit.md): what the limit depends on.
-# * [A misalignment from the motor current](../validation/misalignment-from-current.md): from the orders back to the geometry.
+# * [Estimate a misalignment from the motor current](../validation/misalignment-from-current.md): from the orders back to
+#   the geometry.
 # * [Fault data and a detector](09_fault_data.md): the same question for many units.

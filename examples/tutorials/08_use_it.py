@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Use it: MJCF and URDF, FMU, C++ step, feed-forward
 #
-# At the end you have the gear of a log in four other programs: a robot simulator, a co-simulation tool, a firmware, and a
-# controller that compensates the gear. Each export is checked: it must give the same numbers as strainwave.
+# At the end you have the gear of a log in a robot simulator, a co-simulation tool, a firmware, and a controller that
+# compensates it. Each export is checked against strainwave.
 #
 # **Time:** 25 minutes. **You need:** strainwave with matplotlib. The FMU and the firmware need a C++ compiler, the checks of
 # FMU and MJCF the packages `fmpy` and `mujoco`. What is not installed is skipped.
@@ -10,9 +10,8 @@
 # %% [markdown]
 # ## The gear of a log
 #
-# A log has the time, the angle and the torque of a joint at its output. This one is computed by a formula with a known
-# friction of 6 N·m and 4 N·m·s/rad, so that you can compare. Put your own log in its place: [the first
-# tutorial](01_robot_log.md) shows how.
+# A log has the time, the angle and the torque of a joint at its output. This one is computed by a formula, with a friction
+# of 6 N·m and 4 N·m·s/rad. Put your own log in its place: [the first tutorial](01_robot_log.md) shows how.
 
 # %%
 import ctypes
@@ -59,8 +58,8 @@ found.save("found.toml")
 # The export states the loss: a joint of MuJoCo has friction and inertia, and no torsion. `armature` and
 # `load.inertia` together are the 2 kg·m² of the formula: the log shows their sum, and `robot-joint` states the rotor.
 #
-# Now the check. A torque of 20 N·m turns a free joint; MuJoCo with these numbers must turn it as far as strainwave does. With
-# 0.9 of its friction it must rest.
+# The check: a torque of 20 N·m turns a free joint, and MuJoCo must turn it as far as strainwave does. Under 0.9 of its
+# friction it must rest.
 
 # %%
 ratio = abs(found.gear.kinematics.ratio)
@@ -178,9 +177,9 @@ axes.set(xlabel="time [s]", ylabel="command - output [µrad]", title="Feed-forwa
 axes.legend()
 
 # %% [markdown]
-# Here the joint is exactly the model. A real joint is not: stiffness and hysteresis are assumed in this file, and the gain is
-# smaller. `strainwave compensate elbow.toml` tries many compensations on gears that the file may mean, and keeps what gains
-# on these.
+# Here the joint is exactly the model. A real joint is not: stiffness and hysteresis are assumed in this file, and the gain
+# is smaller. `strainwave compensate elbow.toml` tries many compensations on gears drawn from the uncertainty of the file,
+# and keeps those that gain on them.
 #
 # ## What can go wrong
 #
@@ -196,4 +195,4 @@ axes.legend()
 #
 # * [From a measurement to another program](../how-to/exports.md): all exports, and what each loses.
 # * [MuJoCo and URDF](../how-to/mujoco.md), [FMU](../how-to/fmu.md), [firmware](../how-to/firmware.md).
-# * [Take away what the gear does to the motion](../how-to/compensate.md).
+# * [Compensate torsion, friction and kinematic error](../how-to/compensate.md).

@@ -1,19 +1,17 @@
 # %% [markdown]
 # # Fault data and a detector
 #
-# At the end you have labelled data of healthy and faulty joints and a detector trained on them. Its error is that on units
-# that it never saw, and is compared with the own past of each unit. You also see how a wrong split makes a detector look good
-# that knows nothing.
+# At the end you have labelled data of healthy and faulty joints, and a detector judged on units that it was not trained on.
+# You compare it with the own past of each unit, and see how a wrong split makes a useless detector look good.
 #
 # **Time:** 20 minutes. **You need:** strainwave with matplotlib, pandas and scikit-learn (`pip install pandas scikit-learn`).
 
 # %% [markdown]
 # ## The plan
 #
-# A plan describes units, faults and conditions. Here 60 actuators differ in friction, stiffness and in the eccentricity of
-# their wave generator: no two healthy units are alike. Each is recorded at two stages of its life: new, and after a million
-# output revolutions. In half of the units a misalignment grows meanwhile. Each recording takes place under four conditions of
-# speed, temperature and load.
+# A plan describes units, faults and conditions. Here 60 actuators differ in friction, stiffness and the eccentricity of
+# their wave generator. Each is recorded new and after a million output revolutions, under four conditions of speed,
+# temperature and load. In half of the units a misalignment grows meanwhile.
 
 # %%
 import json
@@ -40,8 +38,8 @@ made = make("09_fault_data_plan.toml", "data", workers=1)
 print(*sorted(path.name for path in made.iterdir()), sep="\n")
 
 # %% [markdown]
-# On the command line: `strainwave dataset 09_fault_data_plan.toml --out data`. With `--dry-run` instead of `--out` it measures
-# beforehand what a plan takes. `data/card.md` describes the set, `data/manifest.json` each column.
+# On the command line: `strainwave dataset 09_fault_data_plan.toml --out data`. `--dry-run` instead of `--out` measures what
+# a plan takes. `data/card.md` describes the set, `data/manifest.json` each column.
 #
 # ## Look at the rows
 #
@@ -75,8 +73,8 @@ panels[1].legend()
 # ## A detector, judged on units that it never saw
 #
 # `split_unit` puts all rows of a unit on one side. The detector is a logistic regression on the features of current and
-# speed, which a real joint measures. Features that are not a number in some rows are left out: the actuator here turns in one
-# direction only. ROC curves compare it with single features.
+# speed, which a real joint measures. Features that are not a number in some rows are left out, because the actuator turns
+# in one direction only. ROC curves compare the detector with single features.
 
 # %%
 features = [name for name in roles["feature"] if name.startswith(("current", "input_speed")) and runs[name].notna().all()]
@@ -114,7 +112,7 @@ axes.set_title("ROC on late recordings of units not in the training")
 axes.legend(loc="lower right")
 
 # %% [markdown]
-# The detector gains little over the one feature that physics names, order 2. The own baseline takes away what differs between
+# The detector gains little over the one feature that physics names, order 2. The own baseline removes what differs between
 # units, and gains most.
 #
 # `strainwave diagnose` makes this comparison with statistics: each order against the baseline recordings of the joint, at a
@@ -147,8 +145,8 @@ print("healthy:    {} alarms in {} recordings".format(*counts[False]))
 # %% [markdown]
 # ## How a wrong split lies
 #
-# Now give each unit a label by lot, which has nothing to do with any signal. No detector can learn it. Train the same forest
-# with rows split at random, and with units split; the mean is over six lots.
+# Now give each unit a random label, which no detector can learn. Train a forest with rows split at random, and the same
+# forest with units split. The mean is over six draws of the labels.
 
 # %%
 complete = [name for name in roles["feature"] if runs[name].notna().all()]
@@ -181,4 +179,4 @@ for name, values in areas.items():
 #
 # * [Data sets for learning](../how-to/datasets.md): plans, splits, many machines.
 # * [Diagnose a gear from its motor current](../how-to/diagnose.md): the comparison with a baseline on your recordings.
-# * [How probably it finds a fault](../validation/detection-benchmark.md): three faults over their severity.
+# * [Detection probability of a diagnosis](../validation/detection-benchmark.md): three faults over their severity.
