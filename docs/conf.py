@@ -29,7 +29,7 @@ default_role = "py:obj"
 
 html_theme = "furo"
 html_static_path = ["_static"]
-html_css_files = ["formulas.css", "layout.css", "tables.css"]
+html_css_files = ["formulas.css", "layout.css", "tables.css", "print.css"]
 html_title = f"{project} {version}"
 html_show_sourcelink = False
 html_copy_source = False

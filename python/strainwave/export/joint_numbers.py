@@ -17,7 +17,7 @@ from strainwave.files.gear_set import GearSet, gear_set_of
 
 Array = NDArray[np.float64]
 
-DIGITS = 12  # of the numbers, less than the last of a double, which products of decimals miss
+SIGNIFICANT_DIGITS = 12  # of the numbers, less than the last of a double, which products of decimals miss
 
 
 def joint(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None = None, name: str = "gear") -> Exported:
@@ -100,7 +100,7 @@ def _numbers(elements: GearElements) -> dict[str, tuple[float, str]]:
         "stiffness": (elements.max_torque / twist_at_largest(elements), "N.m/rad"),
         "stiffness_damping": (elements.damping, "N.m.s/rad"),
     }
-    return {key: (float(f"{value:.{DIGITS}g}"), unit) for key, (value, unit) in numbers.items()}
+    return {key: (float(f"{value:.{SIGNIFICANT_DIGITS}g}"), unit) for key, (value, unit) in numbers.items()}
 
 
 def _mujoco_default(numbers: Mapping[str, tuple[float, str]], name: str) -> str:

@@ -51,7 +51,7 @@ WHOLE = {
     for field in kind.fields
     if field["kind"] == "count"
 }  # names of numbers that are counted
-MOST_THREADS = 2**31 - 1  # that the core can count
+MAX_THREADS = 2**31 - 1  # that the core can count
 MIN_POSITIVE = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 # Bytes of output that a part of the files holds at most, where one pack does not need more; of a GPU, which takes many at once.
 PART_BYTES, DEVICE_PART_BYTES = 64 << 20, 1 << 30
@@ -248,7 +248,7 @@ class _Plan(ComparedByFields):
         numbers, values = _checked(drive, parameters)
         known = initial_of(drive, initial, len(next(iter(values.values()))))
         recorded = signals.chosen(drive, record)
-        threads = available_threads() if threads is None else arguments.whole("threads", threads, 1, MOST_THREADS)
+        threads = available_threads() if threads is None else arguments.whole("threads", threads, 1, MAX_THREADS)
         dt = arguments.seconds("dt", dt)
         sample = dt if sample is None else arguments.seconds("sample", sample)
         for path in values.keys() & {"control.period", "control.delay"}:

@@ -31,7 +31,8 @@ Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
 METHODS: tuple[Method, ...] = get_args(Method)
 SAMPLE_LESS = "sample less often, or record fewer outputs"
-MOST_FOR_ONE, MOST_STEPS = 1000, 100_000  # adaptive steps for each fixed one that bristles are too fast for, and of a short run
+MAX_STEPS_PER_FIXED_STEP = 1000  # adaptive steps of bristles that are too fast for fixed ones
+MAX_STEPS_OF_SHORT_RUN = 100_000  # adaptive steps
 
 
 class Run(Recording):
@@ -179,7 +180,7 @@ def simulate(
             start=start,
             initial=initial,
             record=record,
-            max_steps=max(MOST_STEPS, MOST_FOR_ONE * (len(time_grid.instants) - 1)),
+            max_steps=max(MAX_STEPS_OF_SHORT_RUN, MAX_STEPS_PER_FIXED_STEP * (len(time_grid.instants) - 1)),
             progress=progress,
         )
         warn_of_ratings(model, run)

@@ -65,7 +65,7 @@ INJECTED = {
     "housing_tilt_x": 0.05 * RAD_PER_DEGREE,
     "housing_tilt_y": 0.03 * RAD_PER_DEGREE,
 }
-FEWEST_ROWS = 2  # of a measured ramp
+MIN_ROWS = 2  # of a measured ramp
 RECORDS = {"transmission_error": 2e-5, "current": 0.02}  # root mean square of the noise: two encoders [rad], current sensor [A]
 SERIES_RUNS = 200  # about, of the drive with its gear in series: as many determine whether a kernel is compiled first
 NOISE_TRIALS = 12  # records with different noise from which the misalignment is recovered
@@ -465,8 +465,8 @@ def recording_of_ramp(path: Path) -> Recording:
     if not there:
         raise ValueError(f"{path} has none of the columns {listed(CHANNELS)}; a ramp has time and one of them or more")
     found = Recording.read(path, columns={name: name for name in ("time", *there)})
-    if len(found) < FEWEST_ROWS:
-        raise ValueError(f"{path} has {len(found)} rows; a ramp needs {FEWEST_ROWS} or more")
+    if len(found) < MIN_ROWS:
+        raise ValueError(f"{path} has {len(found)} rows; a ramp needs {MIN_ROWS} or more")
     units = {"torque": "N.m", "current": "A"}
     try:
         columns = {"time": found.values("time", "s") - found.values("time", "s")[0]}

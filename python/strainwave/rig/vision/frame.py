@@ -24,7 +24,7 @@ _MIN_ARC_SHARE = 0.9  # share of an edge that must be seen [1]; a warning gives 
 _MAX_CLIPPED_SHARE = 0.02  # share of pixels at an end of the scale around an edge [1]; a warning gives a larger one
 _MAX_BLUR_SHARE = 0.2  # blur over radius [1]; beyond it, inside and outside cannot be distinguished
 _MAX_RADIUS_DIFFERENCE = 0.3  # relative difference of the radii of two markers [1]
-_MOST_SHOWN = 4
+_MAX_MARKERS_SHOWN = 4
 
 
 @dataclass(frozen=True)
@@ -118,8 +118,8 @@ def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Mar
         ]
         rest = f"; of another, {_place(alike[0])}, only {alike[0].arc:.0%} of the edge is seen" if alike else ""
         return None, f"one marker instead of two: {_place(found[0])}{rest}"
-    shown = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MOST_SHOWN])
-    more = f", and {len(found) - _MOST_SHOWN} more" if len(found) > _MOST_SHOWN else ""
+    shown = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MAX_MARKERS_SHOWN])
+    more = f", and {len(found) - _MAX_MARKERS_SHOWN} more" if len(found) > _MAX_MARKERS_SHOWN else ""
     return None, f"{len(found)} markers instead of two: {shown}{more}; select them by radius=(least, most) in px, or by dark"
 
 
