@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-import importlib
 import re
 from collections import Counter
 from inspect import isroutine
 from pathlib import Path
 from typing import Any
 
+import api
+import cli_reference
+import docstrings
 import pytest
 import strainwave as sw
 from strainwave import _core
-
-DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("reference")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(DOCS)
-        importlib.import_module("api").write(folder / "api")
-        importlib.import_module("cli_reference").write(folder)
+    api.write(folder / "api")
+    cli_reference.write(folder)
     return folder
-
-
-@pytest.fixture(scope="module")
-def docstrings() -> Any:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(DOCS)
-        yield importlib.import_module("docstrings")
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +72,7 @@ def test_every_verb_has_a_section_with_its_options(written: Path) -> None:
     assert "[default: 0.001]" in simulate
 
 
-def test_a_docstring_keeps_its_table_its_code_and_the_limits_of_its_parameters(docstrings: Any) -> None:
+def test_a_docstring_keeps_its_table_its_code_and_the_limits_of_its_parameters() -> None:
     table = docstrings.restructured(sw.check_ratings.__doc__)
     assert "   * - average_torque\n     - " in table
     assert "``input_speed``" in table

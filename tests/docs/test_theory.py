@@ -2,42 +2,32 @@
 
 from __future__ import annotations
 
-import importlib
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 import strainwave as sw
+import theory
 from strainwave import _core
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
 FAMILIES = _core.families | _core.fault_families
 MODELS = [*(model for family in FAMILIES.values() for model in family.values()), sw.Gear, sw.Drive, sw.Sensors]
 
 
-@pytest.fixture(scope="module")
-def theory() -> Any:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(DOCS)
-        yield importlib.import_module("theory")
-
-
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
-def test_the_section_of_a_model_can_be_generated(model: Any, theory: ModuleType) -> None:
+def test_the_section_of_a_model_can_be_generated(model: Any) -> None:
     text, figure = theory.section(model)
     assert text.startswith(f"## {model.__name__}\n")
     assert (f"({model.name}.svg)" in text) == (figure is not None)
 
 
-def test_every_model_is_on_one_page(theory: ModuleType) -> None:
+def test_every_model_is_on_one_page() -> None:
     shown = [model for _, models in theory.pages().values() for model in models]
     assert sorted(model.__name__ for model in shown) == sorted(model.__name__ for model in MODELS)
     pictured = [model for model in shown if theory.module_of(model) not in _core.fault_families]
     assert len({model.name for model in pictured}) == len(pictured)  # else one figure replaces another
 
 
-def test_the_table_of_failure_modes_has_a_row_for_every_fault(theory: ModuleType) -> None:
+def test_the_table_of_failure_modes_has_a_row_for_every_fault() -> None:
     faults = list(_core.fault_families["fault"].values())
     _, table = theory.failure_modes(faults)
     rows = table.splitlines()[2:]
@@ -49,18 +39,18 @@ def test_the_table_of_failure_modes_has_a_row_for_every_fault(theory: ModuleType
     assert theory.failure_modes([sw.Gear]) == []
 
 
-def test_an_error_under_load_is_that_of_the_model_divided_by_the_load(theory: ModuleType) -> None:
+def test_an_error_under_load_is_that_of_the_model_divided_by_the_load() -> None:
     law = sw.kinematic_error.Fourier(order=[2], amplitude=[3e-4], phase=[0.0])
     loaded = theory.under_load(sw.kinematic_error.Scaled(law=law, load_sensitivity=0.1))
     assert loaded == pytest.approx(law.error(theory.TURN) / (1.0 + 0.1 * theory.LOAD_TORQUE), abs=1e-6)
 
 
-def test_symbols_within_words_become_formulas_and_code_stays(theory: ModuleType) -> None:
+def test_symbols_within_words_become_formulas_and_code_stays() -> None:
     words = theory.escaped("theta_in of ``pitch_radius``, phi, k_i and bearing_stiffness")
     assert words == r"$\theta_{\mathrm{in}}$ of ``pitch_radius``, $\varphi$, $k_{i}$ and bearing\_stiffness"
 
 
-def test_a_page_names_each_document_once(theory: ModuleType) -> None:
+def test_a_page_names_each_document_once() -> None:
     page = theory.titled(theory.linked("Document P's K_s; document P, document T"))
     assert page.count(f'("{theory.TITLES["P"]}")') == page.count(f'("{theory.TITLES["T"]}")') == 1
     assert page.startswith(f'[Document P](../validation/errata.md#the-four-documents)\'s ("{theory.TITLES["P"]}") $K_')

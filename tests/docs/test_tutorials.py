@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
+import tutorials
 
 from tests import tutorial_joint
 
@@ -17,13 +16,6 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "examples" / "tutorials"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
 MAX_BYTES = 150_000  # of a file that belongs to a tutorial
-
-
-@pytest.fixture(scope="module")
-def tutorials() -> Iterator[ModuleType]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "docs")
-        yield importlib.import_module("tutorials")
 
 
 def robot_log(page: str) -> None:
@@ -134,7 +126,7 @@ CLAIMS: dict[str, Callable[[str], None]] = {
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tutorials: ModuleType, tmp_path: Path) -> None:
+def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tmp_path: Path) -> None:
     tutorials.write_page(script, tmp_path)
     page = (tmp_path / f"{script.stem}.md").read_text(encoding="utf-8")
     pictures = re.findall(r"^!\[.+\]\((.+)\)$", page, re.MULTILINE)
@@ -147,7 +139,7 @@ def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tutorials: Module
     CLAIMS[script.stem](page)
 
 
-def test_the_files_of_tutorials_are_small_text_and_each_is_used(tutorials: ModuleType) -> None:
+def test_the_files_of_tutorials_are_small_text_and_each_is_used() -> None:
     texts = [script.read_text(encoding="utf-8") for script in SCRIPTS]
     for path in FOLDER.glob("*.*"):
         if path.suffix != ".py":
@@ -189,14 +181,14 @@ def test_the_page_of_tutorials_lists_each() -> None:
         ("# %% [markdown]\n# An interval of 95\n# %.", r"^wrong\.py, line 6: begins with %"),
     ],
 )
-def test_a_cell_that_fails_is_named_with_its_line(cell: str, message: str, tutorials: ModuleType, tmp_path: Path) -> None:
+def test_a_cell_that_fails_is_named_with_its_line(cell: str, message: str, tmp_path: Path) -> None:
     script = tmp_path / "wrong.py"
     script.write_text(f"# %% [markdown]\n# # Wrong\n\n{cell}\n")
     with pytest.raises(tutorials.TutorialError, match=message):
         tutorials.run_alone(script, tmp_path / "out")
 
 
-def test_code_must_not_need_what_a_command_wrote(tutorials: ModuleType, tmp_path: Path) -> None:
+def test_code_must_not_need_what_a_command_wrote(tmp_path: Path) -> None:
     """A script that is run as a whole has no commands."""
     script = tmp_path / "wrong.py"
     script.write_text(
@@ -206,7 +198,7 @@ def test_code_must_not_need_what_a_command_wrote(tutorials: ModuleType, tmp_path
         tutorials.run_alone(script, tmp_path / "out")
 
 
-def test_a_page_shows_what_cells_print_and_draw(tutorials: ModuleType, tmp_path: Path) -> None:
+def test_a_page_shows_what_cells_print_and_draw(tmp_path: Path) -> None:
     """The folder of a tutorial has its data; a command that may fail shows its exit code."""
     (tmp_path / "data.csv").write_text("1\n2\n")
     script = tmp_path / "01_name.py"
