@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from math import inf
 from numbers import Integral, Real
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Drive, _core
 from strainwave.messages import listed, quoted, shortened
 
+Model = TypeVar("Model")
 MIN_RATIO, MAX_RATIO = 0.1, 1e4  # size of the ratio of a gear
 MIN_PROBABILITY = 1e-12  # of an error: no measurement shows less
 
@@ -131,14 +133,22 @@ def mapping(name: str, value: object, example: str) -> None:
 
 
 def drive(value: object) -> Drive:
-    """A drive to run or to look at."""
-    if not isinstance(value, Drive):
-        raise TypeError(f"drive = {shortened(value)} must be a drive, as sw.Drive(...) makes one")
-    return value
+    """A drive to run or to look at.
+
+    >>> drive("robot-joint")
+    Traceback (most recent call last):
+    TypeError: drive = 'robot-joint' must be a drive, as sw.load('robot-joint') reads one
+    """
+    return _model("drive", value, Drive)
 
 
 def gear(value: object) -> _core.Gear:
     """A gear."""
-    if not isinstance(value, _core.Gear):
-        raise TypeError(f"gear = {shortened(value)} must be a gear, as sw.Gear(...) makes one")
+    return _model("gear", value, _core.Gear)
+
+
+def _model(name: str, value: object, kind: type[Model]) -> Model:
+    if not isinstance(value, kind):
+        how = f"sw.load({shortened(value)}) reads" if isinstance(value, str) else f"sw.{kind.__name__}(...) makes"
+        raise TypeError(f"{name} = {shortened(value)} must be a {name}, as {how} one")
     return value
