@@ -41,7 +41,7 @@ _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothin
 
 @dataclass(frozen=True, eq=False)
 class Linearisation(ComparedByFields):
-    """A drive seen from close by: A, B, C, D of its small deviations from a state, for n states, 4 inputs and m outputs.
+    """Linear model of a drive about a state: matrices A, B, C, D for n states, 4 inputs and m outputs.
 
     Unpacks to the four matrices, which have no names: ``control.StateSpace(*linear, **linear.labels)`` of python-control keeps
     those of states, inputs and outputs. `command_rate` is the rate of `command`: whoever feeds a command from elsewhere feeds
@@ -193,7 +193,7 @@ def linearise(
     load_torque: float = 0.0,
     temperature: float = ROOM_TEMPERATURE,
 ) -> Linearisation:
-    """The drive as small deviations from a state see it.
+    """Return the linear model of a drive about a state.
 
     Small means: so small that nothing else changes. A side that sticks does not move, and its states drop out; so does what
     nothing depends on. Friction and hysteresis with memory answer each reversal with their initial stiffness, and what they
@@ -256,7 +256,7 @@ def linearise(
 
 
 def modes(drive: Drive) -> dict[str, Array]:
-    """Eigenfrequencies of the shafts on the spring of the gear, without what damps, drives or holds them.
+    """Return the natural frequencies of the free, undamped shafts on the spring of the gear.
 
     Spring and hysteresis have their stiffness at rest. The kinematic error is left out, for its slope changes the ratio with
     the input angle. What the load does is kept, its damping too. Two inertias on a spring of stiffness k at the output

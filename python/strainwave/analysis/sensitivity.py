@@ -36,7 +36,7 @@ NO_MEASURE = {
 
 @dataclass(frozen=True, eq=False)
 class Derivatives(ComparedByFields):
-    """A run, and what a small change of each of some parameters does to it.
+    """A run, and the derivatives of its outputs by some parameters.
 
     Attributes:
         run: the run itself

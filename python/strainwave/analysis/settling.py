@@ -22,7 +22,7 @@ def settling_time(
     final: float | None = None,
     start: float | None = None,
 ) -> float:
-    r"""The time from a change on, after which a response stays within a band around its final value.
+    r"""Return the time from a change until a response stays within a band around its final value.
 
     .. math:: |y(t) - y_f| \le b\, |y_f - y(t_0)| \quad \text{for all } t \ge t_0 + t_s
 

@@ -33,7 +33,7 @@ def equilibrium(
     temperature: float = ROOM_TEMPERATURE,
     start: State | None = None,
 ) -> State:
-    """The state in which nothing accelerates under constant inputs: at rest if there is one, else in steady running.
+    """Return the state in which nothing accelerates under constant inputs: at rest if there is one, else in steady running.
 
     Friction and hysteresis hold a drive in many states at rest. The one returned is reached from `start` by a slow motion of
     each shaft one way. A side whose set-valued friction holds it where it is sticks there; one that breaks away comes to rest

@@ -55,7 +55,7 @@ class Entry:
 
 @dataclass(frozen=True, kw_only=True)
 class Quantity(Entry):
-    """A number with its unit and where it comes from.
+    """A number with its unit and its source.
 
     Args:
         value: the number, in `unit`

@@ -309,7 +309,7 @@ class GearSet:
 
 
 def catalogue(of: str = "gears") -> list[str]:
-    """Names of the sets that come with the package, in order.
+    """Return the names of the sets that come with the package, in order.
 
     Args:
         of: "gears", those of makers' catalogues, or "drives", whole ones with motor and load

@@ -36,7 +36,7 @@ MAX_STEPS_OF_SHORT_RUN = 100_000  # adaptive steps
 
 
 class Run(Recording):
-    """The recording of a simulation, and how it came about.
+    """Recording of a simulation, with its method and its end.
 
     Attributes:
         end: the state at the end, from which another simulation can start

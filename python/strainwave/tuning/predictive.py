@@ -92,7 +92,7 @@ class Program:
 
 
 class PredictiveController:
-    """A function of what is seen, for `simulate_controlled`; `predictive` makes one.
+    """Controller for `simulate_controlled` that predicts the motion; `predictive` makes one.
 
     Attributes:
         drive: with an ideal current loop and without a controller, for `simulate_controlled`

@@ -65,7 +65,7 @@ WILD = "*?[."  # a section with one of these in its name is a pattern of file na
 
 @dataclass(frozen=True)
 class FileMapping:
-    """Mapping that a person gives for a file; the rest is determined from the file, or asked for.
+    """Meaning of the columns of a file as the user states it; strainwave determines the rest from the file, or asks.
 
     Args:
         columns: for each channel the name or the number of its column in the file

@@ -347,7 +347,7 @@ def _of_peaks(found: LoopAnalysis) -> Iterator[str]:
 
 
 def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[LoopSummary, ...]:
-    """Rows in the form of document T's Table 2, one a loop.
+    """Return rows in the form of document T's Table 2, one for each loop.
 
     T's table is one of slopes of the softest stretch: under this reading its loops close (erratum E-T4). Where a regime is one
     straight line, all three definitions agree.

@@ -143,7 +143,7 @@ def segment(loop: Loop) -> Segmented:
 
 
 def cycles(loop: Loop) -> list[Loop]:
-    """The complete cycles of a loop, each as a loop; the loop itself where it has one or none.
+    """Return the complete cycles of a loop, each as a loop; the loop itself if it has one or none.
 
     >>> torque = [1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 1.0]
     >>> twice = Loop([3.0, 2.0, -3.0, -2.0, 3.0, 2.0, -3.0, -2.0, 3.1], torque, side="output", name="example")

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 def referred(loop: Loop, ratio: float, side: Side) -> Loop:
-    """A loop as it would have been measured at the other shaft, of a gear that only divides and multiplies.
+    """Return a loop referred to the other shaft by the ratio, as that of an ideal gear.
 
     With a ratio i = input over output, angles are divided by it towards the output, torques multiplied, and so stiffness is
     multiplied by i squared. A negative ratio turns both signs: what loads the input positively loads the output negatively.
@@ -107,7 +107,7 @@ def _behind_play(torque: Array, half: float, start: float) -> Array:
 
 
 def friction_at_rest(table: Recording, gear: Gear) -> Value:
-    """Friction of the input at rest [N.m], from a table of torque over speed.
+    """Return the friction of the input at rest [N.m], from a table of torque over speed.
 
     The law of the gear's input friction is fitted to the table; its breakaway counts, or, where the table shows no fall of the
     torque at low speed, Coulomb's torque.

@@ -47,7 +47,7 @@ _DEFAULTS = {each.name: each.default for each in dataclasses.fields(Rig)}
 
 
 def rigs() -> list[str]:
-    """Names of the rigs that come with the package.
+    """Return the names of the rigs that come with the package.
 
     >>> rigs()
     ['couple-rig']

@@ -13,7 +13,7 @@ MAX_NAME = 200  # characters of a name of a photograph or a specimen
 
 @dataclass(frozen=True)
 class Step:
-    """One state of rest of a test.
+    """A step of a test: masses on the pans, and the shaft at rest.
 
     Args:
         number: in the order made, from 1

@@ -105,7 +105,7 @@ def write_steps(steps: Sequence[Step], path: str | Path) -> None:
 
 
 def append_step(step: Step, path: str | Path) -> None:
-    """Add a step to the record of a test, which it begins where there is none yet.
+    """Add a step to the record of a test. A new record is begun if there is none.
 
     The file is complete at any moment: a new file with all steps is written next to it and then replaces it.
 

@@ -131,7 +131,7 @@ class CatalogueRow:
 
 @dataclass(frozen=True, eq=False)
 class Influence(ComparedByFields):
-    """Document T's Table 3 put to models and measurements.
+    """Test of document T's Table 3 by models and measurements.
 
     Attributes:
         gear_set: the gear

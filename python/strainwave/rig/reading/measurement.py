@@ -47,7 +47,7 @@ class AngleReading(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TorsionTest(ComparedByFields):
-    """A torsion test as it was read.
+    """A torsion test as read from its files.
 
     Attributes:
         folder: of the test
@@ -176,7 +176,7 @@ def _look(folder: Path, step: Step, rig: Rig, progress: Callable[[str], None]) -
 
 
 def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = ()) -> list[Loop]:
-    """The loops of a test: one for each position, unit and cycle.
+    """Return the loops of a test: one for each position, unit and cycle.
 
     Args:
         steps: as made

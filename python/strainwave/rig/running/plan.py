@@ -90,7 +90,7 @@ def plan(
     units: Sequence[str] = ("",),
     cycles: int = 1,
 ) -> Plan:
-    """Plans cycles from the positive peak over the negative one and back, for each unit at each position.
+    """Return a plan of cycles from the positive peak over the negative one and back, for each unit at each position.
 
     Args:
         rig: its masses, radius and gravity

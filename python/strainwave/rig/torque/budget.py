@@ -92,7 +92,7 @@ class Budget:
 
 
 def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
-    r"""Uncertainty of the torque of the masses at one step.
+    r"""Return the uncertainty of the torque of the masses at one step.
 
     .. math:: T = (m_+ - m_-) g r a, \quad \sigma_T^2 = (g r a \sigma_m)^2 + T^2 \left( (\sigma_g/g)^2 + (\sigma_r/r)^2
               + (\tan(\varphi - \varphi_t) \sigma_t)^2 + \sigma_s^2 \right) + \sigma_{T_0}^2
@@ -127,7 +127,7 @@ def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
 
 
 def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget, scale: float = 0.0) -> Budget:
-    r"""Uncertainty of the gear's own angle, the reading less what coupling and frame turn: theta - C T.
+    r"""Return the uncertainty of the gear's own angle, theta - C T: the reading less the rotation of coupling and frame.
 
     Args:
         rig: which rig
@@ -161,7 +161,7 @@ def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget, scale: fl
 def stiffness_budget(
     rig: Rig, stiffness: float, steps: Sequence[Step], angle: float = 0.0, angle_sigma: float = 0.0, angle_scale: float = 0.0
 ) -> Budget:
-    r"""Uncertainty of the stiffness of a straight regime, by regression of angle on torque over its steps.
+    r"""Return the uncertainty of the stiffness of a straight regime, by regression of angle on torque over its steps.
 
     .. math:: \frac{\sigma_k^2}{k^2} = (1 + k C)^2 \left( \frac{\sigma_T^2}{S^2} + \frac{\sigma_g^2}{g^2}
               + \frac{\sigma_r^2}{r^2} + \overline{\tan^2} \, \sigma_t^2 + \sigma_s^2 \right)

@@ -83,7 +83,7 @@ def arm(rig: Rig, angle: Sequence[float] | Array | float) -> Array:
 
 
 def torque_of(steps: Sequence[Step], rig: Rig, angle: Sequence[float] | Array | None = None) -> Torque:
-    """Torque on the shaft at steps that follow each other, the first one reached from zero.
+    """Return the torque on the shaft at consecutive steps, the first one reached from zero.
 
     A torque that was measured otherwise is taken as that of the shaft: there are no pulleys between.
 
@@ -188,7 +188,7 @@ def without_compliance(angle: Array, torque: Array, compliance: Value) -> Array:
 
 
 def blank(loop: Loop, confidence: float = CONFIDENCE_LEVEL) -> Value:
-    r"""Compliance of coupling and frame, from a run with a rigid dummy in place of the gear.
+    r"""Return the compliance of coupling and frame, from a run with a rigid dummy in place of the gear.
 
     It is the slope of the regression of angle on torque. Its standard deviation joins the scatter about the line with what all
     torques and all angles share.

@@ -20,7 +20,7 @@ NEGLIGIBLE_STIFFNESS = 1e-6  # N.m/rad, of the spring of a gear whose torque is 
 
 
 def printed_gear(position: int) -> Gear:
-    """The gear of document T with its flexspline turned by 0, 60 or 120 degrees, as Table 2 prints it.
+    """Return the gear of document T with its flexspline turned by 0, 60 or 120 degrees, as Table 2 prints it.
 
     The printed stiffnesses are read as slopes between the knees of the loop (erratum E-T4). The gear is 1:100.
 

@@ -131,7 +131,7 @@ def seen(points: Array, camera: Camera, size: tuple[int, int]) -> Array:
 
 
 def render(scene: Scene, angle: float, random: np.random.Generator) -> NDArray[Any]:
-    """The picture of a target that has turned by an angle.
+    """Return the picture of a target that has turned by an angle.
 
     The share of each pixel that a marker covers is exact to 1e-4, blurred by a Gaussian that is integrated over the
     pixel: no edge is moved by a grid.

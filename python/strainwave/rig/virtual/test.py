@@ -46,7 +46,7 @@ COLUMNS = {
 
 @dataclass(frozen=True, eq=False)
 class VirtualTest(ComparedByFields):
-    """A virtual test and its truth: the steps that its record holds, and of each, shape (n,), what was so.
+    """A virtual test and its truth: the recorded steps, and the true values of each, shape (n,).
 
     Attributes:
         folder: of the test

@@ -30,7 +30,7 @@ def measure_angles(
     dark: bool | None = None,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Angles:
-    """The angles of a target with two round markers, from its photographs in the order of the test.
+    """Return the angles of a target with two round markers, from its photographs in the order of the test.
 
     An image that does not show two markers, or cannot be read, has a fault and no angle; the others have theirs. The angle is
     followed from image to image through any number of turns: by the smaller turn where both markers look alike, which is right

@@ -49,7 +49,7 @@ class Circle(ComparedByFields):
 
 
 def kasa(x: Series, y: Series) -> Circle:
-    """Kåsa's circle, which document T uses: least squares of (x - a)^2 + (y - b)^2 - r^2.
+    """Return Kåsa's circle, which document T uses: least squares of (x - a)^2 + (y - b)^2 - r^2.
 
     Args:
         x, y: of the points, three or more, not all on a line
@@ -70,7 +70,7 @@ def kasa(x: Series, y: Series) -> Circle:
 
 
 def pratt(x: Series, y: Series) -> Circle:
-    """Pratt's circle: Kåsa's squares over 4 r^2, which makes them those of the distances, to first order.
+    """Return Pratt's circle: Kåsa's squares over 4 r^2, which are the squared distances to first order.
 
     Args:
         x, y: as of `kasa`
@@ -94,7 +94,7 @@ def pratt(x: Series, y: Series) -> Circle:
 
 
 def taubin(x: Series, y: Series) -> Circle:
-    """Taubin's circle: Kåsa's squares over the mean squared gradient.
+    """Return Taubin's circle: Kåsa's squares over the mean squared gradient.
 
     Args:
         x, y: as of `kasa`
@@ -115,7 +115,7 @@ def taubin(x: Series, y: Series) -> Circle:
 
 
 def geometric(x: Series, y: Series) -> Circle:
-    """The circle with the least sum of squared distances: the most likely one if noise is normal and the same all round.
+    """Return the circle with the least sum of squared distances: the most likely one if noise is normal and equal all round.
 
     Gauss-Newton from Taubin's circle, damped where a step does not help.
 

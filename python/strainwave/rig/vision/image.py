@@ -173,7 +173,7 @@ def _opened(cv2: Any, path: Path) -> Any:
 
 
 def as_image(name: str, pixels: NDArray[Any]) -> Image:
-    """An array of pixels as an image: uint8 or uint16, shape (height, width), or (height, width, 3) in colour.
+    """Return an array of pixels as an image: uint8 or uint16, shape (height, width), or (height, width, 3) in colour.
 
     Raises:
         TypeError: the pixels are of another type

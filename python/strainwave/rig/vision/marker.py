@@ -80,7 +80,7 @@ def find_markers(
     dark: bool | None = None,
     camera: Camera = PERFECT,
 ) -> list[Marker]:
-    """All round markers of a picture, the larger before the smaller.
+    """Return all round markers of a picture, the larger before the smaller.
 
     Spots are searched for by local brightness. The edge of each is found by radial profiles, outliers left out, and a circle
     fitted by distance: an ellipse if its points clearly require it. With a camera that is known, the points are first brought
