@@ -177,4 +177,13 @@ def _power(decade: int) -> int:
 
 
 def _times(power: int) -> str:
-    return f" × 10{str(power).translate(_SUPERSCRIPTS)}" if power else ""
+    return f" × {power_of_ten(power)}" if power else ""
+
+
+def power_of_ten(power: int) -> str:
+    """Return a power of ten in print.
+
+    >>> power_of_ten(-3)
+    '10⁻³'
+    """
+    return f"10{str(power).translate(_SUPERSCRIPTS)}"

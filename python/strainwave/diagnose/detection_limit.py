@@ -15,7 +15,8 @@ from math import hypot, inf
 
 from strainwave import Drive, arguments
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
-from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE, RAD_PER_ARCMIN, RecordedOrder, SteadyRun
+from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
+from strainwave.files.typical_gear import RAD_PER_ARCMIN
 
 PROBE = RAD_PER_ARCMIN  # rad: error of the first run; later ones have the limit itself
 PROBE_RUNS = 3  # runs with an error at most

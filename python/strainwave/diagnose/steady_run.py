@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, radians, sqrt, tau
+from math import pi, sqrt, tau
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from strainwave.diagnose.actuator_ramp import ERROR, longest_step, noises
 from strainwave.diagnose.motion import MAX_SAMPLES, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
+from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import listed
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, constant, ramp
@@ -20,7 +21,6 @@ from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
 
-RAD_PER_ARCMIN = radians(1.0 / 60.0)  # rad
 MAX_CATALOGUE_AMPLITUDE = RAD_PER_ARCMIN  # rad: half of 2 arcmin peak to peak, the bound of the least accurate catalogue gears
 RUN_IN_TURNS = 2.0  # revolutions of the input before the record
 MIN_RUN_IN = 1.0  # s

@@ -10,7 +10,7 @@ from typing import Any
 
 from strainwave.diagnose.baseline import OrderChange
 from strainwave.diagnose.diagnosis import Diagnosis, OrderAgainstNoise, RunDiagnosis
-from strainwave.diagnose.steady_run import RAD_PER_ARCMIN
+from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.report import diagnose_figures as plots
 from strainwave.report.orders import line_numbers
 from strainwave.report.orders_figures import spectrum_figure

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib import metadata
 
 from strainwave.diagnose.detection_limit import DetectionLimit
-from strainwave.diagnose.steady_run import RAD_PER_ARCMIN
+from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json

@@ -17,7 +17,7 @@ from strainwave.report import figures
 from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
 from strainwave.studies.pure_error import PureError
-from strainwave.typeset import ARCMIN_PER_RADIAN, number
+from strainwave.typeset import ARCMIN_PER_RADIAN, number, power_of_ten
 from strainwave.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 DETAIL_TURNS = 2.0  # turns of the input that a detail shows
 STRAIGHT: dict[str, Any] = {"color": LIGHT["ink"], "linewidth": 1.0}
 TILTED: tuple[dict[str, Any], ...] = (
@@ -165,7 +164,7 @@ def _decades(axis: Axis) -> None:
 
     def decade(value: float, _: float) -> str:
         power = round(float(np.log10(value)))
-        return number(value) if abs(power) <= 2 else f"10{str(power).translate(SUPERSCRIPTS)}"
+        return number(value) if abs(power) <= 2 else power_of_ten(power)
 
     axis.set_major_locator(LogLocator(numticks=6))
     axis.set_minor_formatter(NullFormatter())

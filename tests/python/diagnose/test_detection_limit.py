@@ -11,7 +11,8 @@ import strainwave as sw
 from strainwave.diagnose.detection import needed_signal_to_noise
 from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
 from strainwave.diagnose.order_lines import order_lines
-from strainwave.diagnose.steady_run import COLUMN, RAD_PER_ARCMIN
+from strainwave.diagnose.steady_run import COLUMN
+from strainwave.files.typical_gear import RAD_PER_ARCMIN
 
 from tests.detection_limits import (
     Case,
