@@ -22,7 +22,7 @@ def percent(share: float) -> str:
 @pytest.mark.parametrize(
     "statement",
     [
-        f"kept may move it by more than {percent(identifiability.MAX_SHIFT)}",
+        f"kept parameters may change it by more than {percent(identifiability.MAX_SHIFT)}",
         f"kept parameters that move it by more than {percent(identifiability.MIN_SHIFT_LISTED)}",
         f"would change this one by more than {percent(identifiability.MAX_SHIFT_BY_WRONG)}",
         f"standard deviation exceeds half the value (of a phase: {identifiability.MAX_SIGMA_OF_PHASE:g} rad)",

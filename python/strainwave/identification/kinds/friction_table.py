@@ -278,7 +278,7 @@ def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable
         if each.sigma > MIN_FACTOR_BY_LAWS * sigma
     ]
     if unsure:
-        yield f"other laws are about as likely: their spread in {', '.join(unsure)} is part of its standard deviation"
+        yield f"other laws fit as well: ± includes how far their {', '.join(unsure)} differs"
     yield from thinned(table.samples, len(table.speed))
     yield from unused(recording, ("speed", "torque", *CONDITIONS))
     if (left_out := int(np.sum(~best.fit.training))) > 0:

@@ -84,7 +84,7 @@ class JudgedFit:
         if not np.isfinite(estimate.sigma):
             return f"{self.source} stays the same when it changes"
         if estimate.at_limit:
-            return f"ended at the limit of what it may be; {self.source} pulls it beyond"
+            return f"ended at its bound; {self.source} would move it further"
         if _is_phase(estimate):
             return f"standard deviation is {estimate.sigma:.2g} rad" if estimate.sigma > MAX_SIGMA_OF_PHASE else ""
         return ""
@@ -99,7 +99,9 @@ class JudgedFit:
         path = max(shifts, key=lambda each: abs(shifts[each]), default="")
         if not path or abs(shifts[path]) < MAX_SHIFT_BY_WRONG:
             return ""
-        return f"it would move by {100.0 * shifts[path]:+.2g} % were {path} what {self.source} pulls it to"
+        return (
+            f"{self.source} disagrees with the kept {path}: fitting that too would change this by {100.0 * shifts[path]:+.2g} %"
+        )
 
 
 def _law(path: str, gear: Any) -> str:
@@ -112,7 +114,7 @@ def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
     """Return the kept parameters whose uncertainty shifts an estimate far; empty if none does."""
     size = _size(estimate)
     far = [f"{path} by {100.0 * shift / size:.2g} %" for path, shift in shifts.items() if shift > MAX_SHIFT * size]
-    return f"what is not known of parameters kept may move it: {', '.join(far[:MAX_LISTED])}" if far else ""
+    return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_LISTED])}" if far else ""
 
 
 def _combination(fit: Fit, place: int) -> str:
