@@ -28,7 +28,7 @@ COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
     "state", "reason",
 )  # fmt: skip
-MAX_REMARKS = 5  # of a file on a terminal; the report has all
+MAX_REMARKS = 8  # of a file on a terminal; the report has all
 
 
 def identify_files(

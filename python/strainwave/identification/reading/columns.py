@@ -23,6 +23,7 @@ MIN_MOTION = 0.01  # of how far the joint moves that moves most: others that mov
 SEVERAL = ("other_angles", "regressors")  # channels that may be several columns
 EXCHANGEABLE = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
 MEASURED = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
+EFFORTS = ("torque", "current")  # quantities
 USUAL_FIRST = ("time", "temperature")  # of which the first column is taken, if a file has several
 CURRENT, TORQUE = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
 
@@ -39,7 +40,8 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
     named = _of_one_time(_by_name(table, mapping, by_user))
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
     found = by_user + _of_one_joint(table, own, mapping)
-    names = {column.name for column in found}
+    is_stated = any(column.channel.quantity in EFFORTS for column in by_user)
+    names = set[str]() if is_stated else {column.name for column in found}
     return found, [remark for name, remark in remarks.items() if name in names]
 
 
@@ -133,7 +135,7 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
     The torque of the motor contains the friction of the gear, that of a sensor behind the gear does not. So a torque from the
     current goes before a current, and this before any other torque.
     """
-    efforts = [each for each in columns if each.channel.quantity in ("torque", "current") and each.channel.measured]
+    efforts = [each for each in columns if each.channel.quantity in EFFORTS and each.channel.measured]
     efforts = [each for each in efforts if each.channel.side is None and each.own and not each.by_user]
     taken, remarks = list(columns), dict[str, str]()
     for joint in dict.fromkeys(column.which for column in efforts):

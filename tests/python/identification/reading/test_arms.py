@@ -80,6 +80,7 @@ def test_of_duplicates_the_torque_from_the_current_is_taken(tmp_path: Path, seen
     assert any("--column joint_torque=NAME takes another one of " in remark for remark in found.remarks)
     other = recognise(tmp_path / "log.csv", FileMapping(joint="2", columns={"joint_torque": "Torque"}))
     assert other.columns["joint_torque"] == "Torque2"
+    assert not any("takes another one of " in remark for remark in other.remarks)
 
 
 def test_u_of_a_robot_may_be_anything_that_drives_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
