@@ -21,7 +21,7 @@ found.gear_set.save("joint_2.toml")
 
 # %% [markdown]
 # In a terminal, the same is `strainwave identify hfuc-20-80 robot_log.csv --constant torque_constant=0.0755 --name "joint 2"
-# --out mine`, and the file is `mine/gear.toml`.
+# --out mine`, and then `cp mine/gear.toml joint_2.toml`.
 #
 # ## 2. The same joint, another motion
 #

@@ -84,8 +84,8 @@ def _controller(drive: Drive, part: str, period: float | None) -> StepFunction:
     control = drive.control
     if not isinstance(control, _core.control.Sampled):
         raise TypeError(
-            f"drive.control = {shortened(control)} must be sampled, as sw.control.Sampled(law=...) makes one; a law of the gear "
-            'needs no controller: --part gear.friction_input, in Python part="gear.friction_input"'
+            f"drive.control = {shortened(control)} must be sampled, as sw.control.Sampled(law=...) makes one; a law of the "
+            'gear needs no controller: --part gear.friction_input, in Python part="gear.friction_input"'
         )
     if period not in (None, control.period):
         raise ValueError(f"period = {period:g} s must be drive.control.period, {control.period:g} s: leave it out")
