@@ -230,5 +230,5 @@ def summary(found: Evaluation) -> str:
     for each in found.comparisons:
         lines += ["", *(str(compared) for compared in each.quantities)]
     if open_questions := unknown(found):
-        lines += ["", "not determined, or contradictory:", *(f"  {line}" for line in open_questions)]
+        lines += ["", "limits of this test:", *(f"  {line}" for line in open_questions)]
     return "\n".join(lines)

@@ -142,7 +142,7 @@ def test_what_could_not_be_told_comes_first(found: Evaluation, html: str) -> Non
     assert any("One specimen" in each for each in said)
     assert any("friction of the wave generator" in each for each in said)
     assert f"{HOSTILE}." in said
-    assert "What this test does not determine" in section(html, "summary").text
+    assert "Limits of this test" in section(html, "summary").text
 
 
 def test_a_loop_alone_makes_a_report_that_says_what_is_missing() -> None:

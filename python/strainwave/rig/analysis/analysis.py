@@ -315,7 +315,10 @@ def _of_catalogue(found: LoopAnalysis) -> Iterator[str]:
     rated = found.rated_torque
     if rated is None:
         if found.width_at_zero is not None:
-            yield "no rated torque is known: hysteresis loss and lost motion as catalogues define them cannot be stated"
+            yield (
+                "no rated torque is known (--rated-torque, in Python rated_torque): hysteresis loss and lost motion as catalogues "
+                "define them cannot be stated"
+            )
             yield from _of_peaks(found)
         return
     if found.hysteresis_loss is None and found.width_at_zero is not None and not found.whole_angle:

@@ -144,7 +144,7 @@ def _nothing(grey: Grey, partial: Sequence[Marker]) -> str:
 def _warnings(number: int, marker: Marker) -> list[str]:
     warnings = []
     if marker.arc < _MIN_ARC_SHARE:
-        warnings.append(f"marker {number}: {marker.arc:.0%} of the edge is seen")
+        warnings.append(f"marker {number}: {marker.arc:.0%} of the edge is seen; look for shadows, reflections or dirt there")
     if marker.clipped > _MAX_CLIPPED_SHARE:
         share = f"{marker.clipped:.0%} of the pixels on one side of its edge are black or at full scale"
         warnings.append(f"marker {number}: {share}; its centre may be in error by more than its sigma")

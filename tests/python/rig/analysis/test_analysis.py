@@ -151,7 +151,7 @@ def test_the_remarks_of_the_loop_come_first() -> None:
     found = analyse(Loop(loop.angle, loop.torque, side="input", name="x", remarks=("the lamp flickered",)))
     assert found.remarks[0] == "the lamp flickered"
     assert any("no errors were stated" in remark for remark in found.remarks)
-    assert any("no rated torque is known" in remark for remark in found.remarks)
+    assert any("no rated torque is known (--rated-torque" in remark for remark in found.remarks)
 
 
 def test_a_table_has_gaps_where_a_loop_has_none() -> None:

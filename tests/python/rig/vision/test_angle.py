@@ -213,7 +213,9 @@ def test_of_a_marker_that_is_cut_off_it_is_said_how_much_is_seen() -> None:
     whole, half = cut(4.0), cut(-8.0)
     assert whole.markers is not None
     assert whole.markers[1].arc == pytest.approx(np.arccos(-4.0 / 20.0) / np.pi, abs=1.0 / 36.0)  # of 36 sectors
-    assert whole.warnings == (f"marker 2: {whole.markers[1].arc:.0%} of the edge is seen",)
+    assert whole.warnings == (
+        f"marker 2: {whole.markers[1].arc:.0%} of the edge is seen; look for shadows, reflections or dirt there",
+    )
     assert half.fault.startswith("one marker instead of two: at x = 128, y = 100 px with radius 20.0 px; of another, at x = 24")
     share = np.arccos(8.0 / 20.0) / np.pi
     assert float(half.fault.partition("only ")[2].partition("%")[0]) / 100.0 == pytest.approx(share, abs=1.0 / 36.0 + 0.005)
