@@ -34,7 +34,7 @@ print(f"error on its own file: {100.0 * saved.validation[0].relative:.1f} % of w
 (same,) = sw.predict("joint.toml", {"log": recorded(0.06, seed=2)}, mapping=STATED)
 (worn,) = sw.predict("joint.toml", {"log": recorded(0.078, seed=3)}, mapping=STATED)
 for day, later in (("next day", same), ("a year later", worn)):
-    result = "contradicts it" if later.contradicts else "agrees"
+    result = later.verdict
     print(f"{day}: error {later.error:.3f} A of {later.varies:.3f} A, {later.allowed:.3f} A allowed: {result}")
     for change in later.changed:
         print(f"  {change.name} is {change.value:.3f} +- {change.sigma:.3f} times that saved")

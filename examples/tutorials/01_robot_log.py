@@ -33,7 +33,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 #
 # ## 2. Identify the joint
 #
-# Three facts are not in the log:
+# Three facts are not in the log. You find the first two on data sheets:
 #
 # * **The gear.** The joint has a strain wave gear of size 20 and ratio 80. `strainwave gears 20-80` lists the catalogue sets
 #   of this size; `hfuc-20-80` is one of them. Its numbers are the start; those that the log determines are replaced.

@@ -111,8 +111,8 @@ panels[0].legend(ncols=2)
 _ = panels[1].set(xlabel="time [s]")
 
 # %% [markdown]
-# **No check fails, and none can.** Inertia, gravity and friction are about twice as large, and the predicted current is the
-# same. A wrong ratio with an angle behind the gear is of the same sort. What you can do:
+# **No check fails, and none can.** With twice the torque constant, inertia, gravity and friction are about twice as large, and
+# the predicted current is the same. A wrong ratio with an angle behind the gear is of the same sort. What you can do:
 #
 # * **Compare the gravity torque with what you know**: weight of the arm times the distance of its centre. Here it is 11 N·m,
 #   and not 22.

@@ -137,7 +137,7 @@ def drive(value: object) -> Drive:
 
     >>> drive("robot-joint")
     Traceback (most recent call last):
-    TypeError: drive = 'robot-joint' must be a drive, as sw.load('robot-joint') reads one
+    TypeError: drive = 'robot-joint' must be a drive, not its name: sw.load(name) returns what a file has
     """
     return _model("drive", value, Drive)
 
@@ -148,7 +148,8 @@ def gear(value: object) -> _core.Gear:
 
 
 def _model(name: str, value: object, kind: type[Model]) -> Model:
+    if isinstance(value, str):
+        raise TypeError(f"{name} = {shortened(value)} must be a {name}, not its name: sw.load(name) returns what a file has")
     if not isinstance(value, kind):
-        how = f"sw.load({shortened(value)}) reads" if isinstance(value, str) else f"sw.{kind.__name__}(...) makes"
-        raise TypeError(f"{name} = {shortened(value)} must be a {name}, as {how} one")
+        raise TypeError(f"{name} = {shortened(value)} must be a {name}, as sw.{kind.__name__}(...) makes one")
     return value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import subprocess
@@ -28,8 +29,8 @@ if sys.platform == "win32":
         os.lseek(descriptor, start, os.SEEK_SET)
         try:
             msvcrt.locking(descriptor, msvcrt.LK_NBLCK, length or MAX_LOCK_BYTES)
-        except OSError:
-            return False
+        except OSError as error:  # of another kind: the file system has no locks
+            return error.errno not in (errno.EACCES, errno.EDEADLK)
         return True
 
     def lock_file(descriptor: int, *, wait: bool = False) -> bool:

@@ -45,7 +45,8 @@ def doctor() -> None:
 
     compiler = _compiler()
     _show("C++ compiler", compiler or "none: g++ 12, clang++ 14 or later, or pip install 'strainwave[compiler]'")
-    (works if compiler and not reason_without_kernels() else fails).append("kernels of any drive")
+    reason = reason_without_kernels()
+    (works if compiler and not reason else fails).append(f"kernels of any drive{f' ({reason})' if reason else ''}")
     for label, text in _kernels():
         _show(label, text)
 

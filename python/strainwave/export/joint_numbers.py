@@ -17,7 +17,7 @@ from strainwave.files.gear_set import GearSet, gear_set_of
 
 Array = NDArray[np.float64]
 
-SIGNIFICANT_DIGITS = 12  # of the numbers, less than the last of a double, which products of decimals miss
+SIGNIFICANT_DIGITS = 12  # of exported numbers: without the last digits of products, as in 3.4919999999999995
 
 
 def joint(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None = None, name: str = "gear") -> Exported:

@@ -128,7 +128,7 @@ def setting(found: Evaluation) -> dict[str, str]:
         )
     if found.rig is not None:
         facts["Rig"] = found.rig.name
-    if corrections := dict.fromkeys(correction for each in found.analyses for correction in each.loop.corrections):
+    if corrections := _with_labels(found, [each.loop.corrections for each in found.analyses]):
         facts["Corrections"] = " ".join(map(sentence, corrections))
     return facts
 
@@ -180,19 +180,25 @@ def _range(low: float, high: float, digits: int) -> str:
 
 def unknown(found: Evaluation) -> list[str]:
     """Return what the test does not determine, or what makes it doubtful, each once, with its loops."""
-    facts: dict[str, list[str]] = {}
-    for label, analysis in zip(found.labels, found.analyses, strict=True):
-        for remark in analysis.remarks:
-            if not remark.startswith(OF_REGIMES):  # these stand with the loop
-                facts.setdefault(remark, []).append(label)
-    every = len(found.analyses)
-    lines = [remark if len(labels) == every else f"{', '.join(labels)}: {remark}" for remark, labels in facts.items()]
+    lines = _with_labels(
+        found,
+        [[remark for remark in each.remarks if not remark.startswith(OF_REGIMES)] for each in found.analyses],  # with the loop
+    )
     on_photographs = [each for each in found.remarks if not any(line.endswith(f"is left out: {each}") for line in lines)]
     lines += [*on_photographs, *(found.deviations or ()), *(remark for each in found.comparisons for remark in each.remarks)]
     lines += [remark for each in found.angles for remark in each.remarks]
     if found.gear_set is None:
         lines.append("no gear is named: neither its ratio, its rated torque nor its catalogue figures are known (--gear)")
     return [sentence(line) for line in dict.fromkeys(lines)]
+
+
+def _with_labels(found: Evaluation, remarks: Sequence[Sequence[str]]) -> list[str]:
+    """Return the remarks of each loop, each once: with the labels of its loops, unless it is of all."""
+    labels: dict[str, list[str]] = {}
+    for label, of_loop in zip(found.labels, remarks, strict=True):
+        for remark in of_loop:
+            labels.setdefault(remark, []).append(label)
+    return [remark if len(of) == len(found.labels) else f"{', '.join(of)}: {remark}" for remark, of in labels.items()]
 
 
 # ---- Lines for a terminal --------------------------------------------------------------------------------------------

@@ -169,6 +169,7 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
         "drift": analysis.drift,
         "soft_spots": analysis.soft_spots,
         "catalogue": analysis.catalogue,
+        "corrections": loop.corrections,
         "remarks": analysis.remarks,
     }
 

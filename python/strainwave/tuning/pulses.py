@@ -143,7 +143,7 @@ class PulsePlan:
         Raises:
             ValueError: there is no width, or one is not positive
         """
-        if not widths or min(widths) <= 0.0:
+        if len(widths) == 0 or not np.min(widths) > 0.0:
             raise ValueError(f"widths = {shortened(widths)} must be one or more positive numbers [s]")
         ends = np.cumsum([width + self.rest for width in widths])
         begins = np.append(0.0, ends[:-1])

@@ -212,6 +212,8 @@ def test_friction_from_a_table_is_taken_out(tmp_path: Path) -> None:
     setting, _, limits = result.stdout.partition("limits of this test:")
     assert "Corrections: Friction of the wave generator, ±0.02 N·m at the input, is subtracted (friction table" in setting
     assert "is subtracted" not in limits
+    (loop,) = json.loads((tmp_path / "out" / "rig" / "results.json").read_text())["loops"]
+    assert loop["corrections"][0].startswith("friction of the wave generator, ±0.02 N.m at the input, is subtracted")
     analysed = tmp_path / "out" / "rig" / "loop-0deg.csv"
     assert Recording.read(analysed)["input_torque"] == pytest.approx(Recording.read(LOOP)["input_torque"])
     command = next(line for line in result.stdout.splitlines() if line.startswith("for a gear: "))

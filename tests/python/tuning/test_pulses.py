@@ -171,7 +171,7 @@ def test_a_friction_beyond_the_torque_is_not_reached() -> None:
     assert move.angles[-1] == pytest.approx(0.0, abs=1e-5)
 
 
-@pytest.mark.parametrize("widths", [[], [0.01, -0.01]])
+@pytest.mark.parametrize("widths", [[], [0.01, -0.01], [np.nan]])
 def test_a_train_has_pulses_and_each_has_a_width(widths: list[float]) -> None:
     with pytest.raises(ValueError, match=r"must be one or more positive numbers \[s\]"):
         sw.plan_pulses(drive_of(RIGID), 0.01).pulses(widths)

@@ -77,10 +77,7 @@ class GearSoFar:
             elif path in before and value == before[path][0] and path in self.gear_set.sources:
                 sources[path] = self.gear_set.sources[path]
             else:
-                leads = fitted.get(path.replace(".breakaway", ".coulomb")) if path.endswith(".breakaway") else None
-                why = "follows from the parameters fitted with it" if path in before else "set by the method of the fit"
-                sigma = leads.sigma if leads is not None and np.isfinite(leads.sigma) else None
-                sources[path] = Entry(source=f"assumed: {why}; no file determines it", uncertainty=sigma)
+                sources[path] = _not_estimated(path, path in before, {each.path: each.sigma for each in estimates})
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
         determined_by |= {each.path: name for each in estimates if each.path in numbers and not each.why}
         gear_set = replace(self.gear_set, gear=after, sources=sources)
@@ -89,6 +86,8 @@ class GearSoFar:
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> GearSoFar:
         """Return the same with parts of the gear that a file determines; numbers that it takes over keep their source.
+
+        Other numbers without a standard deviation have the source that `with_fit` gives them.
 
         Args:
             parts: the new laws, by name
@@ -112,7 +111,7 @@ class GearSoFar:
                 sources[path] = before[old]
                 determined_by |= {path: self.determined_by[old]} if old in self.determined_by else {}
             else:
-                sources[path] = Entry(source=f"assumed with the parameters that {one_line(name)} determines")
+                sources[path] = _not_estimated(path, path in values, sigmas)
         gear_set = replace(self.gear_set, gear=gear, sources=sources)
         return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
 
@@ -140,6 +139,13 @@ class GearSoFar:
             law = each.replace(law=law)
         named = {f"gear.friction_input.{'law.' * depth}{each}": sigma for each, sigma in sigmas.items()}
         return self.with_parts({"friction_input": law}, named, name)
+
+
+def _not_estimated(path: str, was_there: bool, sigmas: Mapping[str, float]) -> Entry:
+    """Return the source of a number that a fit changed without estimating it: breakaway is as uncertain as Coulomb's torque."""
+    sigma = sigmas.get(path.replace(".breakaway", ".coulomb"), np.inf)
+    why = "follows from the parameters fitted with it" if was_there else "set by the method of the fit"
+    return Entry(source=f"assumed: {why}; no file determines it", uncertainty=sigma if np.isfinite(sigma) else None)
 
 
 def is_of(path: str, parts: Collection[str]) -> bool:

@@ -107,7 +107,8 @@ class Prediction(ComparedByFields):
 
     @property
     def verdict(self) -> Verdict:
-        """`contradicts` if the error is larger than allowed, `differs` if only a part changed significantly, else `agrees`."""
+        """`refused` if it cannot be predicted, `contradicts` if the error exceeds the allowed one, `differs` if only a part
+        changed significantly, else `agrees`."""
         if self.refused:
             return "refused"
         return "contradicts" if self.contradicts else "differs" if self.changed else "agrees"

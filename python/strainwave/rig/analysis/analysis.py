@@ -316,8 +316,8 @@ def _of_catalogue(found: LoopAnalysis) -> Iterator[str]:
     if rated is None:
         if found.width_at_zero is not None:
             yield (
-                "no rated torque is known (--rated-torque, in Python rated_torque): hysteresis loss and lost motion as catalogues "
-                "define them cannot be stated"
+                "no rated torque is known (--rated-torque, in Python rated_torque): hysteresis loss and lost motion as "
+                "catalogues define them cannot be stated"
             )
             yield from _of_peaks(found)
         return
