@@ -47,7 +47,7 @@ def _texts() -> tuple[str, ...]:
     numbers = ("load.inertia", "gear.damping")
     identified = whole.replace(
         covariance=Covariance(numbers, ((1e-4, 1e-5), (1e-5, 1e-4))),
-        validation=(Validation("log.csv", "current", "A", 0.1, 0.5, 0.12, 0.4),),
+        validation=(Validation("log.csv", "log", "current", "A", 0.1, 0.5, 0.12, 0.4),),
     )
     return tuple(_written(gear_set) for gear_set in (*gear_sets, rated, identified))
 

@@ -92,6 +92,7 @@ class Validation:
 
     Args:
         file: its name
+        kind: of measurement, as `--kind` has it: `log`, `friction`, `torsion`
         channel: that is predicted
         unit: of all numbers but `delay`
         error: root mean square of measured less predicted by the model as it is saved, over the whole file
@@ -106,6 +107,7 @@ class Validation:
     """
 
     file: str
+    kind: str
     channel: str
     unit: str
     error: float
@@ -117,6 +119,7 @@ class Validation:
 
     def __post_init__(self) -> None:
         check_line("file", self.file)
+        check_line("kind", self.kind)
         check_line("channel", self.channel)
         check_unit(self.unit)
         for name in ("error", "varies", "held_out", "held_out_varies"):
@@ -198,7 +201,7 @@ def _covariance_form() -> Form:
 
 @cache
 def _validation_form() -> Form:
-    text, number = {"file", "channel", "unit"}, {"zero": 0.0, "delay": 0.0}
+    text, number = {"file", "kind", "channel", "unit"}, {"zero": 0.0, "delay": 0.0}
     keys = {each.name: (str if each.name in text else float, number.get(each.name, ...)) for each in fields(Validation)}
     examples = {name: f'{name} = "…"' if name in text else f"{name} = …" for name in keys}
     return Form("key of a validation", schema("validation", keys), examples)

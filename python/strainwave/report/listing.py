@@ -159,12 +159,12 @@ def _validation(gear_set: GearSet) -> Iterator[str]:
     """Yield the errors of a set on the files that it was identified from."""
     if not gear_set.validation:
         return
-    rows: list[Row] = [("", "channel", "unit", "error", "held out", "of what varies")]
+    rows: list[Row] = [("", "kind", "channel", "unit", "error", "held out", "of what varies")]
     for each in gear_set.validation:
         share = f"{100.0 * each.relative:.3g} %"
-        rows.append((each.file, each.channel, each.unit, f"{each.error:.4g}", f"{each.held_out:.4g}", share))
+        rows.append((each.file, each.kind, each.channel, each.unit, f"{each.error:.4g}", f"{each.held_out:.4g}", share))
     yield from ["", "[validation] root mean square errors on the files that it was identified from"]
-    yield from _indented(aligned(rows, "<<<>>>"))
+    yield from _indented(aligned(rows, "<<<<>>>"))
 
 
 def _vibration(gear_set: GearSet) -> Iterator[str]:

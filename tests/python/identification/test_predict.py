@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
-from strainwave.files.identified_tables import Covariance
+from strainwave.files.identified_tables import Covariance, Validation
 from strainwave.identification.results.changes import PartChange
 from strainwave.report.predict import verdict_sentence
 
@@ -192,3 +192,25 @@ def test_an_angle_counted_the_other_way_is_named_and_nothing_changed(folder: Pat
     found = predicted(folder, "turned.csv")
     assert not found.contradicts
     assert "the angle is counted in the other sense" in found.remarks[0]
+
+
+def test_a_table_is_judged_by_the_error_on_tables_not_by_that_on_torsion_loops() -> None:
+    """The torque of a torsion loop has the same name, and is a thousand times as large."""
+    gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
+    errors = (
+        Validation("loop.csv", "torsion", "torque", "N.m", 0.34, 40.0, 0.34, 40.0),
+        Validation("table.csv", "friction", "torque", "N.m", 2e-3, 0.08, 2e-3, 0.08),
+    )
+    saved = GearSet.of(gear, name="joint", source="measured").replace(validation=errors)
+    scatter = 1e-3 * np.cos(np.arange(12.0))
+    for scale in (1.3, 4.0):
+        table = sw.Recording(
+            {"speed": SPEED, "torque": scale * (0.05 + 3e-4 * SPEED) + scatter}, {"speed": "rad/s", "torque": "N.m"}
+        )
+        (found,) = sw.predict(saved, {"friction": table})
+        assert found.contradicts
+        assert found.allowed == pytest.approx(2.0 * max(2e-3, 2e-3 / 0.08 * found.varies), rel=1e-6)
+        assert {each.name for each in found.changed} == {"dry friction", "viscous friction"}
+        assert all(abs(each.value - scale) < 3.0 * each.sigma for each in found.changed)
+    (alone,) = sw.predict(saved.replace(validation=errors[:1]), {"friction": table})
+    assert alone.allowed == pytest.approx(0.5 * alone.varies)  # the loop does not count

@@ -111,7 +111,7 @@ class SteadyFriction(Kind):
         left = table.torque - _at(table, gear)
         directions = list(friction_directions(gear, lambda other: _at(table, other)))
         slopes, covariance = slopes_by_numbers(gear_set, gear, lambda other: _at(table, other), "gear.friction_")
-        changes, explained = changes_of(left, directions, slopes, covariance, model_error(gear_set, "torque"))
+        changes, explained = changes_of(left, directions, slopes, covariance, model_error(gear_set, file.kind, "torque"))
         curves = {"speed": table.speed, "torque": table.torque, "predicted": table.torque - left, "residual": left}
         found = Prediction(
             file.path.name, gear_set.name, file.kind, "torque", "N.m", rms(left), float(np.std(table.torque)),

@@ -271,7 +271,7 @@ def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validat
     """Yield the errors of the saved model on the files that it was identified from."""
     for each in files:
         held_out, drive = each.held_out, _drive_of(each)
-        if held_out is None or each.is_in_current or not np.isfinite([held_out.error, held_out.zero]).all():
+        if held_out is None or each.recognised is None or each.is_in_current or not np.isfinite([held_out.error, held_out.zero]).all():
             continue
         error, varies, zero, delay = held_out.error, held_out.zero, 0.0, 0.0
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):
@@ -281,5 +281,6 @@ def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validat
             error, varies = float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[rows]))
             zero, delay = unknown.get(f"{log.effort}_zero", 0.0), unknown.get("delay", 0.0)
         yield Validation(
-            one_line(each.name), held_out.channel, held_out.unit, error, varies, held_out.error, held_out.zero, zero, delay
-        )
+            one_line(each.name), each.recognised.kind, held_out.channel, held_out.unit, error, varies, held_out.error,
+            held_out.zero, zero, delay,
+        )  # fmt: skip

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
-MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own files
+MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own files of this kind
 
 Verdict = Literal["agrees", "differs", "contradicts", "refused"]
 
@@ -142,14 +142,14 @@ class Prediction(ComparedByFields):
         return (scale, sigma) if alike else None
 
 
-def validations(gear_set: GearSet, channel: str) -> list[Validation]:
-    """Return the errors that a saved gear has on its own files, of one channel."""
-    return [each for each in gear_set.validation if each.channel == channel]
+def validations(gear_set: GearSet, kind: str, channel: str) -> list[Validation]:
+    """Return the errors that a saved gear has on its own files of one kind of measurement, of one channel."""
+    return [each for each in gear_set.validation if (each.kind, each.channel) == (kind, channel)]
 
 
-def model_error(gear_set: GearSet, channel: str) -> float:
-    """Return the largest error that a saved gear has on its own files, of one channel; 0 if it contains none."""
-    return max((max(each.error, each.held_out) for each in validations(gear_set, channel)), default=0.0)
+def model_error(gear_set: GearSet, kind: str, channel: str) -> float:
+    """Return the largest of these errors; 0 if the gear contains none."""
+    return max((max(each.error, each.held_out) for each in validations(gear_set, kind, channel)), default=0.0)
 
 
 def judged(prediction: Prediction, gear_set: GearSet, variance: float) -> Prediction:
@@ -160,10 +160,11 @@ def judged(prediction: Prediction, gear_set: GearSet, variance: float) -> Predic
         gear_set: the saved one
         variance: mean variance of the prediction by the covariance of its numbers, in the unit of the channel squared
     """
-    own = validations(gear_set, prediction.channel)
-    shares = [each.relative for each in own or gear_set.validation]
+    own = validations(gear_set, prediction.kind, prediction.channel)
+    alike = [each for each in gear_set.validation if each.kind == prediction.kind]  # of any channel
+    shares = [each.relative for each in own or alike]
     if shares:
-        base = max(max(shares) * prediction.varies, model_error(gear_set, prediction.channel))
+        base = max(max(shares) * prediction.varies, model_error(gear_set, prediction.kind, prediction.channel))
         allowed = MAX_ERROR_FACTOR * float(np.hypot(base, np.sqrt(variance)))
     else:
         allowed = MAX_UNEXPLAINED * prediction.varies
