@@ -38,8 +38,8 @@ found.gear_set.save("joint_2.toml")
 #   contradicts the joint.
 # * **Plain least squares on this file**: offset, inertia, gravity, Coulomb and viscous friction, fitted to *this*
 #   recording. The saved joint was not fitted to it, and still predicts it better.
-# * **Five quantities** that may have changed, each as a multiple of the saved one. A change is significant if it exceeds
-#   three standard deviations and 3 %.
+# * **Seven quantities** that may have changed: friction and load as multiples of the saved ones, two zeros and a delay. A
+#   change is significant if it exceeds three standard deviations and 3 %; a delay, half a sample.
 # * **Lines of the residual**: what is left repeats twice and four times a revolution of the motor. This is the kinematic
 #   error of the gear. One log of one encoder shows its orders, not its amplitude.
 #

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from importlib import metadata
-from math import isfinite
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.results.changes import PartChange
+from strainwave.identification.results.changes import SIGNIFICANCE_SIGMA, PartChange
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.prediction import Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
@@ -33,8 +33,7 @@ def verdict_sentence(found: Prediction) -> str:
     allowed = quantity(found.allowed, found.unit)
     if found.contradicts:
         result = f"{found.name} contradicts {found.gear}: error {of}, {share} of what varies, where {allowed} is allowed"
-        cause = f"; {_changes(found)}" if found.changed else "; no change of friction, zero or load explains it"
-        return f"{result}{cause}."
+        return f"{result}; {_changes(found) if found.changed else _not_explained(found)}."
     error = f"error {of}, {share} of what varies, of {allowed} allowed"
     if found.changed:
         return f"{found.name} differs from {found.gear}, within the allowed error: {_changes(found)}; {error}."
@@ -48,6 +47,13 @@ def _changes(found: Prediction) -> str:
     return "; ".join(f"{each.name} is {change_in_words(each)}" for each in found.changed)
 
 
+def _not_explained(found: Prediction) -> str:
+    why = "no change of friction, load, zero or delay explains it"
+    if not any(each.significant for each in found.changes):
+        return why
+    return f"{why}: {percent(found.error_with_changes / found.error)} of the error is left with all changes"
+
+
 def _nothing_changed(found: Prediction) -> str:
     return "nothing changed significantly" if found.changes else "it does not determine whether anything changed"
 
@@ -56,9 +62,20 @@ def change_in_words(change: PartChange) -> str:
     """Return a change as `1.31 ± 0.02 times that saved`."""
     if change.unit == "1":
         return f"{uncertain(change.value, change.sigma)} times that saved"
+    if change.unit == "rad":
+        return f"{uncertain(math.degrees(change.value), math.degrees(change.sigma))}° off"
     if change.unit == "1/K":
         return f"{uncertain(100.0 * change.value, 100.0 * change.sigma)} % per kelvin"
     return f"{uncertain_quantity(change.value, change.sigma, change.unit)}, saved {quantity(change.unchanged, change.unit)}"
+
+
+def state_in_words(change: PartChange, found: Prediction) -> str:
+    """Return whether a part changed, and why not if it differs by more than chance makes."""
+    if change in found.changed:
+        return "changed"
+    if change.significance <= SIGNIFICANCE_SIGMA:
+        return "no significant change"
+    return f"no significant change: below {change.limit}" if change.is_small else "does not explain the error"
 
 
 def predict_summary(found: Sequence[Prediction]) -> str:
@@ -73,8 +90,7 @@ def _lines(found: Prediction) -> Iterator[str]:
     for name, size, share in _errors(found):
         yield f"  {name:38} {size} ({share})"
     for change in found.changes:
-        state = "changed" if change.significant else "no significant change"
-        yield f"  {change.name:38} {change_in_words(change)} ({state})"
+        yield f"  {change.name:38} {change_in_words(change)} ({state_in_words(change, found)})"
     if found.lines:
         lines = (f"{line_words(each)} {quantity(each.amplitude, found.unit, 2)}" for each in found.lines[:MAX_LINES])
         yield f"  {'lines of the residual':38} {'; '.join(lines)}"
@@ -125,10 +141,11 @@ def _section(found: Prediction, anchor: str) -> dict[str, Any]:
         "errors": [] if found.refused else _errors(found),
         "figure": "" if (drawn := found.picture) is None else file_figure(FileResult(found.name), drawn, f"{anchor}-figure"),
         "changes": [
-            (each.name, change_in_words(each), number(each.significance, 2), each.significant) for each in found.changes
+            (each.name, change_in_words(each), number(each.significance, 2), state_in_words(each, found), each in found.changed)
+            for each in found.changes
         ],
         "lines": [
-            (line_words(each), f"{number(each.frequency, 4)} Hz" if isfinite(each.frequency) else "",
+            (line_words(each), f"{number(each.frequency, 4)} Hz" if math.isfinite(each.frequency) else "",
              uncertain_quantity(each.amplitude, each.sigma, found.unit))
             for each in found.lines
         ],
@@ -150,7 +167,7 @@ def _json(found: Prediction) -> dict[str, Any]:
     return {
         **{name: getattr(found, name) for name in names},
         "summary": verdict_sentence(found).replace(NO_BREAK_SPACE, " "),
-        "changes": [{**asdict(each), "significant": each.significant} for each in found.changes],
+        "changes": [{**asdict(each), "significant": each in found.changed} for each in found.changes],
         "lines": [line_numbers(each) for each in found.lines],
         "checks": [asdict(check) for check in found.checks],
     }

@@ -238,7 +238,9 @@ REFUSED |= {f"{BASE}\n[covariance]\n{text}": f"my.toml [covariance] {message}" f
 REFUSED[f"{BASE}\n[covariance]\nnumbers = ['load.inertia']\nmatrix = [[1.0]]"] = (
     "my.toml covariance names load.inertia, which is no number of the set"
 )
-VALIDATED = "file = 'a'\nkind = 'friction'\nchannel = 'torque'\nunit = 'N.m'\nvaries = 1.0\nheld_out = 0.1\nheld_out_varies = 1.0\n"
+VALIDATED = (
+    "file = 'a'\nkind = 'friction'\nchannel = 'torque'\nunit = 'N.m'\nvaries = 1.0\nheld_out = 0.1\nheld_out_varies = 1.0\n"
+)
 REFUSED |= {
     f"{BASE}\n[[validation]]\n{VALIDATED}{text}": f"my.toml [[validation]] {message}"
     for text, message in {

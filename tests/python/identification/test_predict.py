@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,7 +15,7 @@ import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Covariance, Validation
 from strainwave.identification.results.changes import PartChange
-from strainwave.report.predict import verdict_sentence
+from strainwave.report.predict import predict_summary, verdict_sentence
 
 from tests.arms import Joint, Recorder, fourier, rtde, run
 from tests.python.command import refused, strainwave
@@ -30,6 +31,12 @@ SPEED = np.geomspace(2.0, 200.0, 12)
 def record(path: Path, joint: Joint, seed: int, turned: float = 1.0, way: float = 1.0) -> None:
     seen = Recorder(rate=250.0, seed=seed)(run((joint,) * 3, fourier(30.0, (1,), seed)))
     rtde(path, seen | {"current": turned * seen["current"], "q": way * seen["q"], "dq": way * seen["dq"]})
+
+
+def record_shifted(path: Path, angle: float = 0.0, current: float = 0.0, delay: float = 0.0, joint: Joint = JOINT) -> None:
+    """Write a log with another zero of the angle and of the current; the latter is counted against the motion."""
+    seen = Recorder(rate=250.0, seed=12, delay=delay)(run((joint,) * 3, fourier(30.0, (1,), 12)))
+    rtde(path, seen | {"q": seen["q"] + angle, "current": seen["current"] + current})
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +151,8 @@ def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_cont
     both = strainwave("predict", "gear.toml", "same.csv", "worn.csv", *options, "--out", "both", folder=folder)
     assert both.returncode == 3
     assert "worn.csv contradicts gear of joint 1 of first: error " in both.stdout
-    assert "; dry friction is 1.3" in both.stdout
+    dry, sigma = map(float, re.findall(r"; dry friction is (\S+) ± (\S+) times that saved\.", both.stdout)[0])
+    assert abs(dry - 1.3) < 3.0 * sigma < 0.05
     assert "plain least squares on this file" in both.stdout
     numbers = json.loads((folder / "both" / "results.json").read_text())["files"]
     assert [each["verdict"] for each in numbers] == ["agrees", "contradicts"]
@@ -214,3 +222,54 @@ def test_a_table_is_judged_by_the_error_on_tables_not_by_that_on_torsion_loops()
         assert all(abs(each.value - scale) < 3.0 * each.sigma for each in found.changed)
     (alone,) = sw.predict(saved.replace(validation=errors[:1]), {"friction": table})
     assert alone.allowed == pytest.approx(0.5 * alone.varies)  # the loop does not count
+
+
+@pytest.mark.parametrize("samples", [-2.0, 1.0, 4.5])
+def test_a_delay_of_the_current_is_a_change_of_its_own_and_none_of_friction(folder: Path, samples: float) -> None:
+    record_shifted(folder / "late.csv", delay=samples / 250.0)
+    found = predicted(folder, "late.csv")
+    late = change(found, "delay")
+    assert [each.name for each in found.changed] == ["delay"]
+    assert late.value == pytest.approx(samples / 250.0, abs=1e-3)
+    assert all(abs(each.value - 1.0) < 3.0 * each.sigma for each in found.changes if each.unit == "1")
+
+
+@pytest.mark.parametrize("angle", [-0.1, 0.5, 2.5])
+def test_an_angle_counted_from_another_zero_is_no_change_of_zero_or_gravity(folder: Path, angle: float) -> None:
+    record_shifted(folder / "turned.csv", angle=angle)
+    found = predicted(folder, "turned.csv")
+    assert [each.name for each in found.changed] == ["zero of the angle"]
+    assert change(found, "zero of the angle").value == pytest.approx(angle, abs=0.01)
+    assert found.error_with_changes < 0.06 * found.varies
+    assert f"zero of the angle is {'−' if angle < 0.0 else ''}" in verdict_sentence(found)
+
+
+def test_wear_a_delay_and_two_zeros_are_separated(folder: Path) -> None:
+    record_shifted(folder / "all.csv", angle=0.4, current=0.1, delay=8e-3, joint=WORN)
+    found = predicted(folder, "all.csv")
+    truth = {"dry friction": 1.3, "zero": -0.1, "delay": 8e-3, "zero of the angle": 0.4}
+    allowed = {"dry friction": 0.03, "zero": 0.02, "delay": 2e-3, "zero of the angle": 0.02}
+    assert {each.name for each in found.changed} == truth.keys()
+    assert {each.name for each in found.changed if abs(each.value - truth[each.name]) > allowed[each.name]} == set()
+
+
+def test_a_sure_but_small_change_states_the_limit_that_it_is_below(folder: Path) -> None:
+    record_shifted(folder / "drifted.csv", current=0.022)
+    found = predicted(folder, "drifted.csv")
+    zero = change(found, "zero")
+    assert zero.significance > 3.0
+    assert not zero.significant
+    assert "(no significant change: below 3 % of what the current varies)" in predict_summary([found])
+
+
+def test_changes_that_leave_the_error_explain_nothing(folder: Path) -> None:
+    """The currents of another motion: scales fit a little of them, and one below zero is no torque constant."""
+    motions = [Recorder(rate=250.0, seed=seed)(run((JOINT,) * 3, fourier(30.0, (1,), seed))) for seed in (12, 31)]
+    rtde(folder / "other.csv", motions[0] | {"current": motions[1]["current"]})
+    found = predicted(folder, "other.csv")
+    assert found.contradicts
+    assert found.error_with_changes > 0.5 * found.varies
+    assert any(each.significant for each in found.changes)
+    assert found.changed == ()
+    assert found.common_scale is None
+    assert "no change of friction, load, zero or delay explains it: " in verdict_sentence(found)

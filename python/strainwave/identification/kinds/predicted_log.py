@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive
+from strainwave import Drive, loads
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import bands
-from strainwave.identification.candidates.plain import fit_plain, held_out_rms, moving
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain, held_out_rms, moving
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.changes import (
+    ANGLE,
+    DELAY,
     DRY,
+    FRICTION,
     GRAVITY,
     INERTIA,
     MIN_CHANGE,
+    MIN_CHANGE_TEXT,
     MIN_SAMPLES,
     TEMPERATURE,
     VISCOUS,
@@ -36,7 +40,7 @@ from strainwave.identification.results.changes import (
     slopes_by_numbers,
 )
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.prediction import Prediction, judged
+from strainwave.identification.results.prediction import Prediction, judged, validations
 from strainwave.messages import listed
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ripple import ripple
@@ -45,6 +49,13 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 MIN_TEMPERATURE_RANGE = 2.0  # K: over a smaller one friction does not change measurably
+MIN_DELAY_SAMPLES = 0.5  # of the log: smaller changes of the delay are none, as instants are labelled no better
+MAX_DELAY_SIGMA_SAMPLES = 1.0  # standard deviation of a delay, in samples of the log, with which it counts as determined
+MAX_ANGLE_SIGMA = 0.1  # rad: standard deviation of the zero of the angle, with which it counts as determined
+MAX_STEPS = 8  # of Gauss and Newton for delay and zero of the angle
+STEP_TOLERANCE = 1e-2  # of the smallest change that matters: smaller steps end the search
+ANGLE_STEP = 1e-3  # rad, either way: its square is negligible in the derivative of a sine
+MIN_GRAVITY_SCALE = 1e-3  # of the saved gravity: with less, no motion shows the zero of the angle
 MAX_LINES = 8  # of the residual that are listed
 SPEED_BINS = 20  # of equally many samples, over which the error of a law of friction is averaged
 OF_RIGID_DRIVE = ("gear.friction_", "load.", "motor.")  # beginnings of paths of numbers that a rigid drive has
@@ -78,7 +89,7 @@ def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
     taken = log_of(file, GearSoFar(gear_set))
     if taken.in_current:
         raise ValueError(f"{gear_set.name} has no torque constant: give --constant torque_constant=…")
-    return judged(*_PredictedLog.of(taken, gear_set).prediction(file, gear_set))
+    return judged(*_PredictedLog.of(file, taken, gear_set).prediction(file, gear_set))
 
 
 def _turned(file: Recognised) -> Recognised:
@@ -95,10 +106,13 @@ class _PredictedLog(ComparedByFields):
 
     Attributes:
         taken: the log as `identify` prepares it
-        log: the same with the delay of the saved drive, less the zero
+        log: the same with a delay of the effort, less the zero
         drive: the saved one, with the motor of the log
         zero: of the effort, as saved
         delay: of the effort, as saved [s]
+        later: change of the delay, with which the effort is predicted [s]
+        turned: change of the zero of the angle at the output, with which it is predicted; `drive` has it [rad]
+        values: of the other parts that may have changed, by name, as last estimated; as saved if not given
     """
 
     taken: PreparedLog
@@ -106,21 +120,24 @@ class _PredictedLog(ComparedByFields):
     drive: Drive
     zero: float
     delay: float
+    later: float = 0.0
+    turned: float = 0.0
+    values: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, taken: PreparedLog, gear_set: GearSet) -> _PredictedLog:
+    def of(cls, file: Recognised, taken: PreparedLog, gear_set: GearSet) -> _PredictedLog:
         """Return a log compared with a saved drive."""
         log = min((taken.log, *taken.with_others), key=lambda each: held_out_rms(each, taken.drive))
         drive = taken.drive.replace(load=gear_set.load)
-        saved = next((each for each in gear_set.validation if each.channel == log.effort), None)
-        zero, delay = (0.0, 0.0) if saved is None else (saved.zero, saved.delay)
+        saved = validations(gear_set, file.kind, log.effort)
+        zero, delay = (saved[0].zero, saved[0].delay) if saved else (0.0, 0.0)
         log = replace(log, recorded=log.recorded - zero, force=log.force - zero)
-        return cls(taken, log.with_delay() if delay else log, drive, zero, delay)
+        return cls(taken, log.with_delay(), drive, zero, delay)
 
     @property
     def nuisances(self) -> Array:
-        """Unknowns of the measurement as saved; terms of other joints are none of the drive."""
-        return np.array([self.delay if each.name == "delay" else 0.0 for each in self.log.nuisances])
+        """Delay of the measurement, shape (k,); zero and terms of other joints are 0, as they are no part of the drive."""
+        return np.array([self.delay + self.later if each.name == "delay" else 0.0 for each in self.log.nuisances])
 
     @cached_property
     def rows(self) -> Rows:
@@ -139,23 +156,20 @@ class _PredictedLog(ComparedByFields):
 
     def prediction(self, file: Recognised, gear_set: GearSet) -> tuple[Prediction, GearSet, float]:
         """Return the comparison, the saved set, and the mean variance of what it predicts."""
-        log, rows = self.log, self.rows
-        residual, directions = log.residual(self.drive, self.nuisances), list(self._directions())
+        log, rows, resting = self.log, self.rows, self.log.motion.resting
         slopes, covariance = slopes_by_numbers(gear_set, self.drive, self.at, OF_RIGID_DRIVE)
-        changes = self._changes(directions, slopes, covariance)
-        effects = {each.name: each.effect for each in directions}
-        by_change = {each.name: (each.value - each.unchanged) * _effect(each.name, effects) for each in changes}
-        resting = log.motion.resting
-        others = sum((each for name, each in by_change.items() if name.startswith(OTHER)), np.zeros_like(residual))
-        own = sum((each for name, each in by_change.items() if not name.startswith(OTHER)), np.zeros_like(residual))
-        residual = np.where(resting, residual, residual - others)
+        there, directions, changes = self._estimated(gear_set)
+        values = {each.name: each.value for each in changes}
+        others = _explained({name: value for name, value in values.items() if name.startswith(OTHER)}, directions)
+        residual = log.residual(self.drive, self.nuisances) - np.where(resting, 0.0, others)
+        changed = there.log.residual(there.drive, there.nuisances) - np.where(resting, 0.0, _explained(values, directions))
         channel, unit, measured = log.effort, log.units[0], log.recorded + self.zero
         lines, about_lines = self._lines(residual, file)
         found = Prediction(
             file.path.name, gear_set.name, file.kind, channel, unit, rms(residual[rows]), float(np.std(measured[rows])),
             self._plain_error(), samples=int(rows.sum()),
             changes=tuple(each for each in changes if not each.name.startswith(OTHER)),
-            error_with_changes=rms(np.where(resting, residual, residual - own)[rows]),
+            error_with_changes=rms(changed[rows]),
             lines=lines,
             curves=Recording(
                 {"time": log.motion.time, channel: measured, "predicted": measured - residual, "residual": residual},
@@ -165,8 +179,40 @@ class _PredictedLog(ComparedByFields):
         )  # fmt: skip
         return found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes[rows], covariance, slopes[rows])))
 
-    def _changes(self, directions: Sequence[Direction], slopes: Array, covariance: Array) -> tuple[PartChange, ...]:
+    def _estimated(self, gear_set: GearSet) -> tuple[_PredictedLog, list[Direction], tuple[PartChange, ...]]:
+        """Return the log with its delay and zero of the angle, how the effort changes with each part there, and the changes.
+
+        All other parts are linear, and need one step of Gauss and Newton.
+        """
+        there = self
+        for steps_left in reversed(range(MAX_STEPS)):
+            directions = list(there._directions())
+            changes = there._changes(directions, gear_set)
+            next_one = there._moved(changes)
+            later = abs(next_one.later - there.later) / (MIN_DELAY_SAMPLES * self.log.motion.step)
+            turned = abs(next_one.turned - there.turned) / MIN_CHANGE
+            if not steps_left or max(later, turned) < STEP_TOLERANCE:
+                break
+            there = next_one
+        return there, directions, changes
+
+    def _moved(self, changes: Sequence[PartChange]) -> _PredictedLog:
+        """Return the same with the delay and the zero of the angle of changes; those that are not determined are as saved."""
+        values = {each.name: each.value for each in changes}
+        longest = MAX_DELAY_SAMPLES * self.log.motion.step
+        later = min(max(values.pop(DELAY, self.delay) - self.delay, -longest), longest)
+        if ANGLE not in values:
+            return self._turned_by(-self.turned, later, values)
+        scale, across = values.get(GRAVITY, 1.0), self.values.get(GRAVITY, 1.0) * (values.pop(ANGLE) - self.turned)
+        return self._turned_by(float(np.arctan2(across, scale)), later, values | {GRAVITY: float(np.hypot(scale, across))})
+
+    def _turned_by(self, more: float, later: float, values: Mapping[str, float]) -> _PredictedLog:
+        turned = float(np.angle(np.exp(1j * (self.turned + more))))
+        return replace(self, drive=_turned_drive(self.drive, more), later=later, turned=turned, values=values)
+
+    def _changes(self, directions: Sequence[Direction], gear_set: GearSet) -> tuple[PartChange, ...]:
         """Return what the log shows of each part, in its pass band."""
+        slopes, covariance = slopes_by_numbers(gear_set, self.drive, self.at, OF_RIGID_DRIVE)
         band, speed = self.band, self.log.motion.speed[self.band.rows]
         asked = [replace(each, effect=band.filtered(each.effect)) for each in directions]
         left, by_numbers = band.filtered(self.log.force - self.at(self.drive)), band.filtered(slopes.T).T
@@ -176,12 +222,31 @@ class _PredictedLog(ComparedByFields):
 
     def _directions(self) -> Iterator[Direction]:
         """Yield how the effort changes with each part that may have changed."""
+        drive, step, linear = self.drive, self.log.motion.step, list(self._linear_directions())
+        yield from linear
+        changed = self.at(drive) + _explained(self.values, linear)
+        yield Direction(
+            DELAY, "s", self.delay, -np.gradient(changed, step), MIN_DELAY_SAMPLES * step,
+            f"{MIN_DELAY_SAMPLES:g} samples", MAX_DELAY_SIGMA_SAMPLES * step, self.delay + self.later,
+        )  # fmt: skip
+        if any(each.name == GRAVITY for each in linear):
+            scale = max(self.values.get(GRAVITY, 1.0), MIN_GRAVITY_SCALE)
+            less, greater = (self.at(_turned_drive(drive, angle)) for angle in (-ANGLE_STEP, ANGLE_STEP))
+            yield Direction(
+                ANGLE, "rad", 0.0, scale * (greater - less) / (2.0 * ANGLE_STEP), MIN_CHANGE,
+                f"{np.degrees(MIN_CHANGE):.2g}°", MAX_ANGLE_SIGMA, self.turned,
+            )  # fmt: skip
+
+    def _linear_directions(self) -> Iterator[Direction]:
+        """Yield how the effort changes with each part that it is linear in."""
         log, drive = self.log, self.drive
         friction = list(friction_directions(drive.gear, lambda gear: self.at(drive.replace(gear=gear))))
         yield from friction
         if log.both_ways:
             varies = float(np.std(log.recorded[self.rows]))
-            yield Direction(ZERO, log.units[0], self.zero, np.ones_like(log.recorded), MIN_CHANGE * varies)
+            limit = f"{MIN_CHANGE_TEXT} of what the {log.effort.replace('_', ' ')} varies"
+            effect = np.ones_like(log.recorded)
+            yield Direction(ZERO, log.units[0], self.zero, effect, MIN_CHANGE * varies, limit, np.inf)
         for name, number in ((INERTIA, "inertia"), (GRAVITY, "gravity_torque")):
             value = float(getattr(drive.load, number, 0.0))
             if value != 0.0:
@@ -189,10 +254,12 @@ class _PredictedLog(ComparedByFields):
                 yield Direction(name, "1", 1.0, 2.0 * (self.at(drive) - self.at(less)))
         if (warmer := self._temperature()) is not None:
             total = friction[0].effect + friction[1].effect
-            yield Direction(TEMPERATURE, "1/K", 0.0, total * warmer, MIN_CHANGE / float(np.ptp(warmer)))
+            smallest, limit = MIN_CHANGE / float(np.ptp(warmer)), f"{MIN_CHANGE_TEXT} over its range"
+            yield Direction(TEMPERATURE, "1/K", 0.0, total * warmer, smallest, limit, np.inf)
         for name in log.regressors:
             shares = np.array([float(each.name == f"{OTHER}{name}") for each in log.nuisances])
-            yield Direction(f"{OTHER}{name}", "N.m", 0.0, log.whole(drive, self.nuisances + shares) - self.at(drive))
+            effect = log.whole(drive, self.nuisances + shares) - self.at(drive)
+            yield Direction(f"{OTHER}{name}", "N.m", 0.0, effect, max_sigma=np.inf)
 
     def _temperature(self) -> Array | None:
         """Return the temperature about its mean at every sample [K]; None if it was not recorded, or hardly changes."""
@@ -231,9 +298,21 @@ class _PredictedLog(ComparedByFields):
             yield f"the load is as saved: {self.drive.load.name}"
 
 
-def _effect(name: str, effects: dict[str, Array]) -> Array:
-    """Return the effect of a part; dry and viscous friction together if the recording does not separate them."""
-    return effects[name] if name in effects else effects[DRY] + effects[VISCOUS]
+def _turned_drive(drive: Drive, angle: float) -> Drive:
+    """Return a drive whose output angle in each position of the load is larger [rad]."""
+    load = drive.load
+    if not isinstance(load, loads.Pendulum):
+        return drive
+    return drive.replace(load=load.replace(gravity_phase=load.gravity_phase - angle))
+
+
+def _explained(values: Mapping[str, float], directions: Sequence[Direction]) -> Array:
+    """Return the part of the effort that values of parts make, shape (m,); dry and viscous friction may be one."""
+    parts, total = {each.name: each for each in directions}, np.zeros_like(directions[0].effect)
+    for whole, value in values.items():
+        for name in (DRY, VISCOUS) if whole == FRICTION else (whole,):
+            total += (value - parts[name].start) * parts[name].effect
+    return total
 
 
 def _by_speed(left: Array, speed: Array) -> float:

@@ -1,4 +1,4 @@
-"""Changes of parts of a saved gear or drive by a recording: scales of its friction and load, a zero, a temperature."""
+"""Changes of parts of a saved gear or drive by a recording: scales of friction and load, zeros, a delay, a temperature."""
 
 from __future__ import annotations
 
@@ -19,12 +19,14 @@ Array = NDArray[np.float64]
 
 SIGNIFICANCE_SIGMA = 3.0  # standard deviations by which a change must differ from none
 MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
+MIN_CHANGE_TEXT = f"{100.0 * MIN_CHANGE:g} %"
 MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
 STEP_SIGMA = 0.1  # standard deviations of a number, between two predictions
 RECORD_BLOCKS = 20  # contiguous ones of a recording, over which residuals scatter
 MIN_SAMPLES = 50  # of sliding, from which changes are determined
-DRY, VISCOUS, FRICTION, ZERO = "dry friction", "viscous friction", "friction", "zero"
+DRY, VISCOUS, FRICTION, ZERO, DELAY = "dry friction", "viscous friction", "friction", "zero", "delay"
 INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
+ANGLE = "zero of the angle"
 PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 
@@ -34,12 +36,15 @@ class PartChange:
 
     Attributes:
         name: of the part: `dry friction`, `viscous friction`, `friction` if the recording does not separate both, `zero` of the
-            channel, `inertia of the load`, `gravity of the load`, `friction over temperature`
-        value: its scale, 1 if it is as saved; of the zero its value; over temperature the relative change per kelvin
+            channel, its `delay` behind the motion, `inertia of the load`, `gravity of the load`, `zero of the angle` at the
+            output, `friction over temperature`
+        value: its scale, 1 if it is as saved; of zero and delay its value; over temperature the relative change per kelvin; of
+            the zero of the angle the angle in the saved position of the load, less that saved
         sigma: standard deviation of `value`, with that of the saved numbers
         unit: of both
         unchanged: `value` of the saved gear
-        smallest: difference from it that matters; a smaller one is none, however sure
+        smallest: difference from it that matters; a smaller one is none, however small its standard deviation
+        limit: `smallest` in words, as `3 % of what the current varies`
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -58,6 +63,7 @@ class PartChange:
     unit: str
     unchanged: float
     smallest: float = 0.0
+    limit: str = ""
 
     @property
     def significance(self) -> float:
@@ -68,7 +74,12 @@ class PartChange:
     @property
     def significant(self) -> bool:
         """True if it differs from the saved gear by more than chance makes, and by `smallest` or more."""
-        return self.significance > SIGNIFICANCE_SIGMA and abs(self.value - self.unchanged) >= self.smallest
+        return self.significance > SIGNIFICANCE_SIGMA and not self.is_small
+
+    @property
+    def is_small(self) -> bool:
+        """True if the difference from the saved gear is below `smallest`."""
+        return abs(self.value - self.unchanged) < self.smallest
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +87,10 @@ class Direction(ComparedByFields):
     """Derivative of a channel by a part of a gear.
 
     Attributes:
-        name, unit, unchanged, smallest: as of a `PartChange`
+        name, unit, unchanged, smallest, limit: as of a `PartChange`
         effect: derivative of the channel, shape (n,)
+        max_sigma: standard deviation beyond which the recording does not determine the part
+        here: value at which the channel is predicted; `unchanged` if not given
     """
 
     name: str
@@ -85,6 +98,18 @@ class Direction(ComparedByFields):
     unchanged: float
     effect: Array
     smallest: float = MIN_CHANGE
+    limit: str = MIN_CHANGE_TEXT
+    max_sigma: float = MAX_SCALE_SIGMA
+    here: float | None = None
+
+    @property
+    def start(self) -> float:
+        """Value at which the channel is predicted."""
+        return self.unchanged if self.here is None else self.here
+
+    def changed_by(self, more: float, sigma: float) -> PartChange:
+        """Return the change of a part whose value differs from `start` by `more`."""
+        return PartChange(self.name, self.start + more, sigma, self.unit, self.unchanged, self.smallest, self.limit)
 
 
 def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direction]:
@@ -118,7 +143,7 @@ def changes_of(
     Least squares of the residual on all directions together. Their variance is the scatter of contiguous blocks, within which
     residuals correlate (Liang and Zeger 1986), that of the saved numbers, and that by an error of the laws, which another
     motion turns into other apparent changes: it is taken as coherent within each block. A scale that the residual does not
-    determine is left out; dry and viscous friction that it does not separate are one.
+    determine is left out, the least determined first; dry and viscous friction that it does not separate are one.
 
     Args:
         left: measured less predicted, shape (n,)
@@ -138,17 +163,14 @@ def changes_of(
         slopes = inverse @ by_numbers
         by_saved = np.einsum("kp,pq,kq->k", slopes, covariance, slopes)
         sigma = np.sqrt(_scatter(inverse, left - explained, len(asked)) + by_laws + by_saved)
-        unsure = [k for k, each in enumerate(asked) if each.unit == "1" and sigma[k] > MAX_SCALE_SIGMA]
-        if not unsure:
+        excess = sigma / np.array([each.max_sigma for each in asked])
+        if excess.max() <= 1.0:
             break
-        asked = _without(asked, max(unsure, key=lambda k: float(sigma[k])))
+        asked = _without(asked, int(np.argmax(excess)))
     else:
         return (), np.zeros_like(left)
     shown = zip(asked, values.tolist(), sigma.tolist(), strict=True)
-    changes = (
-        PartChange(each.name, each.unchanged + value, s, each.unit, each.unchanged, each.smallest) for each, value, s in shown
-    )
-    return tuple(changes), explained
+    return tuple(each.changed_by(value, s) for each, value, s in shown), explained
 
 
 def _without(asked: Sequence[Direction], worst: int) -> list[Direction]:

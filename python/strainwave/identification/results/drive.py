@@ -271,7 +271,12 @@ def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validat
     """Yield the errors of the saved model on the files that it was identified from."""
     for each in files:
         held_out, drive = each.held_out, _drive_of(each)
-        if held_out is None or each.recognised is None or each.is_in_current or not np.isfinite([held_out.error, held_out.zero]).all():
+        if (
+            held_out is None
+            or each.recognised is None
+            or each.is_in_current
+            or not np.isfinite([held_out.error, held_out.zero]).all()
+        ):
             continue
         error, varies, zero, delay = held_out.error, held_out.zero, 0.0, 0.0
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):

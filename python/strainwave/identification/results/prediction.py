@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
+MAX_SHARE_LEFT = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
 MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own files of this kind
 
 Verdict = Literal["agrees", "differs", "contradicts", "refused"]
@@ -119,9 +120,14 @@ class Prediction(ComparedByFields):
         return any(check.failed for check in self.checks)
 
     @property
+    def explained(self) -> bool:
+        """True if the changes are the cause: with them the error is allowed, or at most half of `error` and of `varies`."""
+        return self.error_with_changes <= max(self.allowed, MAX_SHARE_LEFT * min(self.error, self.varies))
+
+    @property
     def changed(self) -> tuple[PartChange, ...]:
-        """Significant changes."""
-        return tuple(each for each in self.changes if each.significant)
+        """Significant changes; none if they do not explain the error."""
+        return tuple(each for each in self.changes if each.significant and self.explained)
 
     @property
     def common_scale(self) -> tuple[float, float] | None:
@@ -132,14 +138,14 @@ class Prediction(ComparedByFields):
         scales = {each.name: each for each in self.changes if each.unit == "1"}
         if GRAVITY in scales:
             scales.pop(INERTIA, None)  # it contains that of the rotor, which no torque constant scales
-        significant = {name for name, each in scales.items() if each.significant}
+        significant = {each.name for each in self.changed} & scales.keys()
         if not (significant & {DRY, FRICTION} and significant & {INERTIA, GRAVITY}):
             return None
         weights = np.array([each.sigma**-2 for each in scales.values()])
         scale = float(np.average([each.value for each in scales.values()], weights=weights))
         sigma = float(weights.sum() ** -0.5)
         alike = all(abs(each.value - scale) < SIGNIFICANCE_SIGMA * each.sigma + MAX_APART for each in scales.values())
-        return (scale, sigma) if alike else None
+        return (scale, sigma) if alike and scale > SIGNIFICANCE_SIGMA * sigma else None
 
 
 def validations(gear_set: GearSet, kind: str, channel: str) -> list[Validation]:
