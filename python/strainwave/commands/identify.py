@@ -49,7 +49,7 @@ def _one_gear(
     """Write and print the gear of all files. Return True if a check fails."""
     from strainwave.files.writing import write_folder
     from strainwave.identification.identify import identify as identified
-    from strainwave.identification.results.drive import why_no_load
+    from strainwave.identification.results.drive import not_written
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
@@ -61,8 +61,8 @@ def _one_gear(
         write_folder(out, files)
     print("\n".join(identify_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
-    if "gear.toml" in files and (why := why_no_load(found.files)):
-        print(f"gear.toml: {found.gear_set.name}, without a load: {why}")
+    if "gear.toml" in files and (lacking := not_written(found.files)):
+        print(f"gear.toml: {found.gear_set.name}, {lacking}")
     return bool(found.failed)
 
 

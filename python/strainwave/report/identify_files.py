@@ -8,6 +8,7 @@ from dataclasses import asdict
 from importlib import metadata
 from io import StringIO
 from itertools import groupby
+from math import isfinite
 from typing import Any
 
 from strainwave.files import gear_file
@@ -159,6 +160,7 @@ def identify_summary(found: Identified) -> Iterator[str]:
         yield from (f"  {remark}" for remark in dict.fromkeys(remark for result in points for remark in result.remarks))
     yield ""
     yield from lines_of([*found.parameters, *_in_combination(found)])
+    yield from _not_identified(found)
     passed = [check for check in found.checks if check.name == AGREEMENT and not check.failed and check.message]
     yield from (f"{check.source}: {check.message}" for check in passed)
     if refused := [file.name for file in found.files if file.refused]:
@@ -179,6 +181,18 @@ def _in_combination(found: Identified) -> Iterator[CombinedParameter]:
         for each in file.estimates:
             if each.in_combination and each.label not in alone:
                 yield CombinedParameter(each, f"{file.name}, identified in combination")
+
+
+def _not_identified(found: Identified) -> Iterator[str]:
+    """Yield a line for each file and reason with the parameters of the gear that it does not determine, nor another file."""
+    determined = {each.estimate.path for each in found.parameters}
+    for file in found.files:
+        reasons: dict[str, list[str]] = {}
+        for each in file.estimates:
+            if each.state == "not identified" and each.path.startswith("gear.") and each.path not in determined:
+                sigma = f" ± {each.sigma:.2g}" if isfinite(each.sigma) else ""
+                reasons.setdefault(each.why, []).append(f"{each.label} {each.value:.3g}{sigma} {each.unit}")
+        yield from (f"  not identified: {', '.join(numbers)}, {file.name}: {why}" for why, numbers in reasons.items())
 
 
 def first_remarks(remarks: Sequence[str], before: str) -> Iterator[str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.checks import comparisons, sizes, unexplained
+from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
 from strainwave.identification.results import combined_parameter, file_result, identifiability
@@ -42,6 +43,7 @@ def percent(share: float) -> str:
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
         f"with {percent(comparisons.REPEATABILITY['friction_input'])} of friction and hysteresis and "
         f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers from run to run",
+        f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

@@ -11,6 +11,7 @@ import numpy as np
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
+from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
 from strainwave.identification.checks.motion import checks_of_motion
@@ -24,13 +25,16 @@ from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
 
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
+COULOMB = f"{INPUT}coulomb"
+DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
+ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -127,15 +131,17 @@ def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
 
 
 def _with_friction(known: GearSoFar, best: MotionCandidate, estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
-    """Return the set with the friction of a log, whole, if no earlier file determines friction.
+    """Return the set with the friction of a log, whole, unless an earlier file determines friction no worse.
 
     The loss under load was fitted with this Coulomb torque: with that of another file it would be a friction of neither.
     """
     gear, before = best.fit.parts[0].model.gear, known.gear_set.gear
-    laws = {part: getattr(gear, part) for part in FRICTION if getattr(gear, part) != getattr(before, part)}
-    if known.determined & set(FRICTION) or not laws:
+    laws = [part for part in FRICTION if getattr(gear, part) != getattr(before, part)]
+    earlier = COULOMB in map(plain, known.determined_by)
+    own = any(each.path == COULOMB and not each.why for each in estimates)
+    if not laws or (known.determined & set(FRICTION) and (earlier or not own)):
         return known
-    return known.with_parts(laws, {each.path: each.sigma for each in estimates}, name)
+    return known.with_fit(gear, laws, estimates, name)
 
 
 def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
@@ -184,7 +190,9 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
         found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
         found = found.sharing(taken.rotor) if estimate.path == "load.inertia" else found
-        if not found.is_phase:
+        if estimate.path in DRY_TORQUES and not best.log.both_ways:
+            found = replace(found, sigma=np.inf, why=ONE_WAY)
+        elif not found.is_phase:
             found = found.unless_uncertain()
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")

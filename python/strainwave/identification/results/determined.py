@@ -113,7 +113,8 @@ def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, spee
     gradient = slopes[:, 0, 0]
     acting = gradient != 0.0
     known = np.array(used, int)[acting]
-    variance = float(gradient[acting] @ covariance[np.ix_(known, known)] @ gradient[acting])
+    with np.errstate(invalid="ignore"):  # of infinite variances
+        variance = float(gradient[acting] @ covariance[np.ix_(known, known)] @ gradient[acting])
     return friction_at(speed, float(torque[0, 0]), float(np.sqrt(variance)) if variance >= 0.0 else np.inf)
 
 

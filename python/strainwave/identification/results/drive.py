@@ -20,7 +20,7 @@ from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import moving
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import IN_CURRENT, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import is_of, plain, source_of
 from strainwave.messages import listed, one_line
 
@@ -28,9 +28,10 @@ Array = NDArray[np.float64]
 
 MAX_NAME = 60  # letters of the name of a gear that is made of those of its files
 MIN_LOAD_DIFFERENCE = 3.0  # standard deviations: two logs that differ by more carry different loads
-NO_LOAD = (
-    "the load is not written: the torque constant is not known, and its numbers are in A (give --constant torque_constant)"
-)
+PARTS_OF_TORQUE = {
+    "load.": "load", "gear.friction_": "friction", "gear.stiffness.": "stiffness", "gear.hysteresis.": "hysteresis",
+    "gear.damping": "damping",
+}  # fmt: skip
 
 
 def drive_set(
@@ -80,14 +81,28 @@ def _note(start: GearSet, files: Sequence[FileResult], logs: Sequence[FileResult
     if best is not None and (others := [each for each in logs if each is not best and _differs(best, each)]):
         carried = (f"{each.name} ({_load_in_words(each)})" for each in others)
         notes.append(f"Its load is that of {best.name}; other logs carry other loads: {', '.join(carried)}.")
-    if best is None and (why := why_no_load(files)):
-        notes.append(f"{why[0].upper()}{why[1:]}.")
+    if lacking := not_written(files):
+        notes.append(f"{lacking[0].upper()}{lacking[1:]}.")
     return " ".join(notes)
 
 
-def why_no_load(files: Sequence[FileResult]) -> str:
-    """Return why the load of logs is not written; empty if it is, or if there are none."""
-    return NO_LOAD if any(each.is_in_current for each in files) and not any(map(_has_load, files)) else ""
+def not_written(files: Sequence[FileResult]) -> str:
+    """Return the parts that files determine only in A, so that the gear lacks them, and why; empty if there are none."""
+    determined = [each for file in files for each in file.estimates if each.is_of_torque and not each.why]
+    in_current = [each.path for file in files for each in file.estimates if each.law == IN_CURRENT and not each.why]
+    parts = [
+        name for start, name in PARTS_OF_TORQUE.items()
+        if any(path.startswith(start) for path in in_current)
+        and not any(each.path.startswith(start) for each in determined)
+        and not (name == "load" and any(map(_has_load, files)))
+    ]  # fmt: skip
+    if not parts:
+        return ""
+    kept = [part for part in parts if part != "load"]
+    return (
+        f"without the measured {listed(parts)}: the torque constant is not known, and these numbers are in A "
+        f"(give --constant torque_constant=…){f'; the gear keeps {listed(kept)} of the start set' if kept else ''}"
+    )
 
 
 # ---- Load and motor --------------------------------------------------------------------------------------------------
@@ -240,7 +255,7 @@ def _identified(whole: GearSet, parameters: Sequence[CombinedParameter]) -> Iter
     for path, entry in whole.sources.items():
         if not entry.source.startswith("identified") or entry.uncertainty is None:
             continue
-        own = [each for each in parameters if each.estimate.path in (path, plain(path)) and each.estimate.law != "in A"]
+        own = [each for each in parameters if each.estimate.path in (path, plain(path)) and each.estimate.law != IN_CURRENT]
         of_file = [each for each in own if each.source in entry.source]
         if own:
             yield path, (of_file or own)[0]

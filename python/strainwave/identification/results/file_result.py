@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 State = Literal["identified", "identified in combination", "not identified", "kept"]
 Look = Literal["table", "loop", "series", "means"]
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
+IN_CURRENT = "in A"  # law of an estimate without the torque constant
 TOO_UNCERTAIN = "standard deviation exceeds half the value"
 
 
@@ -88,7 +89,7 @@ class FileEstimate:
         """Return the same estimate in A, for a torque constant that is not known."""
         if not self.is_of_torque:
             return self
-        return replace(self, unit=self.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad"), law="in A")
+        return replace(self, unit=self.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad"), law=IN_CURRENT)
 
     @property
     def label(self) -> str:
@@ -171,7 +172,7 @@ class FileResult(ComparedByFields):
     @property
     def is_in_current(self) -> bool:
         """True if its torques are in A, as the torque constant is not known."""
-        return any(each.law == "in A" for each in self.estimates)
+        return any(each.law == IN_CURRENT for each in self.estimates)
 
     @property
     def friction(self) -> str:

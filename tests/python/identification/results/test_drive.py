@@ -114,16 +114,19 @@ def test_other_loads_of_other_logs_are_stated(folder: Path) -> None:
     assert "other logs carry other loads: " in found.note
 
 
-def test_a_load_in_current_is_not_written_and_this_is_stated(folder: Path) -> None:
+def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> None:
     found = sw.identify(START, [folder / "joint.csv"], mapping=mapping(ratio=100.0)).gear_set
+    lacking = "ithout the measured load, friction: the torque constant is not known, and these numbers are in A"
     assert found.load is None
-    assert "The load is not written: the torque constant is not known, and its numbers are in A" in found.note
+    assert found.gear.friction_input == sw.load(START).friction_input
+    assert f"W{lacking}" in found.note
     options = ("--joint", "1", "--constant", "ratio=100", "--out", "amperes")
     result = strainwave("identify", START, "joint.csv", *options, folder=folder)
-    assert "gear.toml: gear of joint 1 of joint, without a load: the load is not written" in result.stdout
+    assert f"gear.toml: gear of joint 1 of joint, w{lacking}" in result.stdout
+    assert result.stdout.endswith("; the gear keeps friction of the start set\n")
     page = (folder / "amperes" / "report.html").read_text()
     assert "<h1>gear of joint 1 of joint</h1>" in page
-    assert "The load is not written" in page
+    assert f"W{lacking}" in page
 
 
 def test_a_measured_torque_gives_a_motor_of_torque(folder: Path) -> None:

@@ -1,0 +1,79 @@
+"""Logs along their motion: which friction is identified, against torques written down here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from numpy.typing import NDArray
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.kinds.along_motion import ONE_WAY
+
+from tests.python.command import strainwave
+
+Array = NDArray[np.float64]
+
+START, RATIO, CONSTANT = "hfuc-20-80", -80.0, 0.08
+COULOMB, VISCOUS = "gear.friction_input.coulomb", "gear.friction_input.viscous"
+TRUTH = {COULOMB: 0.05, VISCOUS: 3e-4, "load.gravity_torque": 10.0}
+MOTOR = {"torque_constant": CONSTANT, "motor_inertia": 1e-4}
+TIME = np.arange(0.0, 20.0, 0.004)
+
+
+def record(steady: float, zero: float, seed: int) -> sw.Recording:
+    """A log of a joint with an arm; a steady speed [rad/s] of more than 0.9 makes it turn one way only, zero [A] is that of the
+    current."""
+    waves = ((0.45, 0.7, 0.3), (0.45, 2.9, 1.0))  # of the speed: amplitude, frequency, phase
+    angle = steady * TIME - sum(a / w * np.cos(w * TIME + p) for a, w, p in waves)
+    speed = steady + sum(a * np.sin(w * TIME + p) for a, w, p in waves)
+    rise = sum(a * w * np.cos(w * TIME + p) for a, w, p in waves)
+    turning: Array = RATIO * speed
+    rotor = (MOTOR["motor_inertia"] + GearSet.read(START).gear.input_inertia) * RATIO
+    torque = rotor * rise + (0.8 * rise + 10.0 * np.sin(angle)) / RATIO + 0.05 * np.sign(turning) + 3e-4 * turning
+    random = np.random.default_rng(seed)
+    current = torque / CONSTANT + zero + 0.05 * random.standard_normal(len(TIME))
+    columns = {"time": TIME, "input_angle": RATIO * angle + 1e-4 * random.standard_normal(len(TIME)), "current": current}
+    return sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("logs")
+    record(1.0, 0.5, 1).to_csv(place / "one_way.csv")
+    record(0.1, 0.5, 2).to_csv(place / "both_ways.csv")
+    return place
+
+
+def test_one_direction_does_not_separate_coulomb_friction_from_the_zero_of_the_torque(folder: Path) -> None:
+    options = [f"--constant={name}={value}" for name, value in MOTOR.items()]
+    printed = strainwave("identify", START, "one_way.csv", *options, "--out=one", folder=folder).stdout
+    gear_set = GearSet.read(folder / "one" / "gear.toml")
+    coulomb = gear_set.gear.friction_input.coulomb
+    assert coulomb == pytest.approx(0.05 - 0.5 * CONSTANT, abs=1e-3)  # with the zero in it, as the input turns backward
+    assert gear_set.sources[COULOMB] == sw.Entry(f"fitted but not identified: {ONE_WAY}")
+    assert gear_set.sources[VISCOUS].source == "identified from one_way.csv"
+    assert f"not identified: {COULOMB} {coulomb:.3g} N.m, one_way.csv: {ONE_WAY}" in " ".join(printed.split())
+
+
+def test_both_directions_separate_them_and_their_log_gives_the_friction(folder: Path) -> None:
+    found = sw.identify(START, [folder / "one_way.csv", folder / "both_ways.csv"], mapping=sw.FileMapping(constants=MOTOR))
+    both = {each.path: each for each in found.files[1].estimates}
+    for path, truth in TRUTH.items():
+        assert both[path].state == "identified"
+        assert abs(both[path].value - truth) < 4.0 * both[path].sigma < 0.1 * truth
+    assert found.gear_set.gear.friction_input.coulomb == both[COULOMB].value
+    assert found.gear_set.sources[COULOMB].source == "identified from both_ways.csv"
+
+
+def test_friction_that_noise_hides_is_not_written_as_identified() -> None:
+    log = record(0.1, 0.0, 3)
+    noise = 40.0 * np.random.default_rng(4).standard_normal(len(TIME))
+    rough = log.with_column("current", log["current"] + noise, "A")
+    found = sw.identify(START, {"log": rough}, mapping=sw.FileMapping(constants=MOTOR), accept=True)
+    own = {each.path: each for each in found.files[0].estimates if each.path in (COULOMB, VISCOUS)}
+    assert any(each.why for each in own.values())
+    for path, each in own.items():
+        word = "fitted but not identified: " if each.why else "identified from "
+        assert found.gear_set.sources[path].source.startswith(word)
