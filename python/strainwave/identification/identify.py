@@ -29,6 +29,7 @@ from strainwave.identification.results.combined_parameter import CombinedParamet
 from strainwave.identification.results.drive import drive_set, name_of_files
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
@@ -150,6 +151,7 @@ def identify(
     fits = _Fits.of(start, recognised, mapping, accept, progress)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
+    results = without_motor(results, accept=accept)
     loads = other_loads(results)
     results = tuple(
         replace(each, remarks=(loads[each.name], *each.remarks)) if each.name in loads else each for each in results

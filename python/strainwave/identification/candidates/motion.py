@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +50,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
+GRAVITY = ("load.gravity_torque", "load.gravity_phase")
 BENDS = np.geomspace(3e-3, 1.0, 16)  # rad of the input, in which bristles bend
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
@@ -71,7 +71,7 @@ def fit_motion(
     Args:
         logs: one log as it may be compared, in several bands; the first unless another one predicts clearly better
         drive: to start from, with a load of inertia or pendulum
-        inertia: the inertia that is not known, as a path of the drive
+        inertia: the inertia that is not known, `load.inertia` or `motor.inertia`
         priors: what is known of free parameters: value and standard deviation
 
     Returns:
@@ -293,10 +293,12 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
     if inertia == "load.inertia":
         rotor = drive.motor.inertia + drive.gear.input_inertia
         carried = max(total - rotor, MIN_INERTIA_SHARE * total) * ratio**2
-        load: Any = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
-        return drive.replace(load=load), [inertia, "load.gravity_torque", "load.gravity_phase"]
+        load = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
+        return drive.replace(load=load), [inertia, *GRAVITY]
     rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
-    return drive.replace(motor=drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total))), [inertia]
+    moved = drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total))
+    load = loads.Pendulum(inertia=inertia_of(drive), gravity_torque=plain.gravity, gravity_phase=plain.phase)
+    return drive.replace(motor=moved, load=load), [inertia, *GRAVITY]
 
 
 def natural_frequency(drive: Drive, carried: float) -> float:

@@ -27,6 +27,8 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
+from strainwave.identification.results.motor_inertia import LOAD as INERTIA
+from strainwave.identification.results.motor_inertia import MOTOR
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
 
@@ -57,8 +59,9 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
         between, known = between_encoders(taken, best, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
-        surer = {each.path for each in between.estimates}
-        estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
+        along = {each.path: each for each in estimates if not each.why}
+        surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
+        estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
@@ -93,7 +96,10 @@ def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:
 def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
     """Return the models of a log, best first."""
     priors = {path: (value, RELATIVE_SIGMA_OF_GIVEN * value) for path, value in taken.given.items()}
-    return fit_motion([log] if taken.in_current else bands(log, taken.drive), taken.drive, priors=priors)
+    logs = [log] if taken.in_current else bands(log, taken.drive)
+    if INERTIA in taken.given and not taken.motor_known:
+        return fit_motion(logs, taken.drive.replace({INERTIA: taken.given[INERTIA]}), inertia=MOTOR)
+    return fit_motion(logs, taken.drive, priors=priors)
 
 
 def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
@@ -155,11 +161,11 @@ def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
 
 def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     """Yield the check that a given inertia of the load agrees with the log."""
-    if "load.inertia" not in taken.given:
+    if INERTIA not in taken.given:
         return
     drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
-    given = drive.motor.inertia + drive.gear.input_inertia + taken.given["load.inertia"] / drive.gear.kinematics.ratio**2
-    off = abs(shown - given) / given
+    given = drive.motor.inertia + drive.gear.input_inertia + taken.given[INERTIA] / drive.gear.kinematics.ratio**2
+    off = (abs(shown - given) if taken.motor_known else max(given - shown, 0.0)) / given
     yield Check(
         "given inertia of the load", name, off, MAX_OFF_INERTIA, "1", off > MAX_OFF_INERTIA,
         f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
@@ -172,7 +178,12 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
     """Yield the estimates of a log; each is as uncertain as the torque constant too, and inertia as that of the rotor."""
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
-    independent = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
+    squared = drive.gear.kinematics.ratio**2
+    independent = {  # parts of the torque that do not grow with the constant
+        INERTIA: (drive.motor.inertia + drive.gear.input_inertia) * squared,
+        MOTOR: drive.gear.input_inertia + taken.given.get(INERTIA, 0.0) / squared,
+    }
+    rotors = {INERTIA: taken.rotor, MOTOR: taken.rotor / squared}
     induced = {}
     if taken.log.effort == "voltage":
         induced["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
@@ -189,7 +200,7 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
         offset = independent.get(estimate.path, 0.0)
         found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
-        found = found.sharing(taken.rotor) if estimate.path == "load.inertia" else found
+        found = found.sharing(rotors.get(estimate.path, 0.0))
         if estimate.path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
         elif not found.is_phase:

@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, stiffness, structure
+from strainwave import Drive, loads, stiffness, structure
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.confirmed import spread_by_blocks
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion import motion_of
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.prepared_log import PreparedLog
@@ -23,6 +25,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of
+from strainwave.identification.results.motor_inertia import MOTOR
 from strainwave.orders.two_encoders import TransmissionError
 
 Array = NDArray[np.float64]
@@ -32,6 +35,7 @@ MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the 
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
 PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
+START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
 
 def between_encoders(
@@ -54,8 +58,9 @@ def between_encoders(
         found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
     except (ValueError, FloatingPointError) as error:
         return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
+    of_gear = tuple(_estimates(found, scale, known, taken.in_current))
     result = FileResult(
-        source, model=found.name, estimates=tuple(_estimates(found, scale, known, taken.in_current)),
+        source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
         remarks=tuple(_remarks(found, scale, taken)),
         checks=tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source)),
         pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),),
@@ -101,11 +106,14 @@ class _Scale:
 def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) -> _Scale:
     """Return what torques count from: gravity, which slow motion determines without the motor's inertia, or the load's inertia.
 
+    An inertia of the load that a person gave is exact.
     The load's inertia is the total less the rotor's; a small one has a large uncertainty.
 
     Raises:
         ValueError: the log determines neither
     """
+    if INERTIA in taken.given:
+        return _Scale(INERTIA, 0.0, 0.0)
     gravity, inertia = (each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY, INERTIA))
     by_gravity = [] if gravity is None else [_Scale(GRAVITY, gravity.sigma / gravity.value, taken.relative)]
     by_inertia = []
@@ -156,6 +164,43 @@ def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_curr
             own = replace(own, sigma=float(np.hypot(sigma, scale.own * own.value))).resting_on(scale.common)
         own = own.unless_uncertain()
         yield own.in_current() if in_current else own
+
+
+def _motor(
+    found: ElasticCandidate,
+    of_gear: Sequence[FileEstimate],
+    taken: PreparedLog,
+    best: MotionCandidate,
+    errors: TransmissionError,
+) -> Iterator[FileEstimate]:
+    """Yield the inertia of a motor that is not known, if that of the load is: its torque less what moves the output.
+
+    The output moves as its encoder measured it. That of a rigid gear lacks what the spring amplifies.
+    """
+    load = next((each for each in of_gear if each.path == INERTIA and not each.why), None)
+    if taken.motor_known or (load is None and INERTIA not in taken.given):
+        return
+    drive, motion = best.fit.parts[0].model, best.log.motion
+    carried: Any = found.drive.load
+    ratio, input_inertia = drive.gear.kinematics.ratio, drive.gear.input_inertia
+    recording = _sense(taken.recording, errors, drive)
+    output = motion_of(recording.time, recording.values("output_angle", "rad"), taken.log.motion.cutoff)
+    late = next((each.value for each in found.fit.estimates if each.path == DELAY), 0.0)
+    torque = carried.inertia * np.interp(motion.time + late, output.time, output.acceleration)
+    if isinstance(carried, loads.Pendulum):
+        torque += carried.gravity_torque * np.sin(motion.angle / ratio + carried.gravity_phase)
+    model = replace(
+        best.model, log=replace(best.log, extra=best.log.extra + torque),
+        drive=drive.replace(load=loads.Inertia(inertia=MIN_INERTIA), motor=drive.motor.replace(inertia=START_MOTOR)),
+        free=(MOTOR, *(path for path in best.model.free if not path.startswith(("load.", MOTOR)))),
+    )  # fmt: skip
+    candidate = replace(best, model=model, priors={})
+    (own,) = (each for each in candidate.fit.estimates if each.path == MOTOR)
+    of_load = 0.0 if load is None else load.own / ratio**2
+    sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR]), of_load))
+    estimate = FileEstimate(MOTOR, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
+    estimate = estimate.sharing(taken.rotor / ratio**2).unless_uncertain()
+    yield estimate.in_current() if taken.in_current else estimate
 
 
 def _has_kinematic_error(found: ElasticCandidate) -> bool:

@@ -14,13 +14,12 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
 from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
-from strainwave.identification.experiments.motion_log import MotionLog, spoilt
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
 from strainwave.messages import as_option, listed
 
-NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
 
 
@@ -55,7 +54,7 @@ class PreparedLog(ComparedByFields):
     @property
     def motor_known(self) -> bool:
         """True if the inertia of the motor is known; else that of the load includes it."""
-        return self.drive.motor.inertia > NO_ROTOR
+        return self.drive.motor.inertia > MIN_INERTIA
 
 
 def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
@@ -144,11 +143,6 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     if in_current:
         remarks.append("the torque constant is not known: torques are in A; give --constant torque_constant=… for N.m")
         gear = gear.replace(input_inertia=0.0)
-    elif inertia is None:
-        remarks.append(
-            "the inertia of the motor is not known: load.inertia is that of the load, "
-            "plus that of the motor times the ratio squared"
-        )
     elif "motor_inertia" in constants:
         remarks.append(
             f"at the input turn the motor's {inertia:.3g} kg·m² and the set's {gear.input_inertia:.3g} kg·m² of the gear; "
@@ -156,7 +150,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         )
     motor_there = motor.CurrentSource(
         torque_constant=1.0 if constant is None else constant,
-        inertia=NO_ROTOR if inertia is None or in_current else inertia,
+        inertia=MIN_INERTIA if inertia is None or in_current else inertia,
         resistance=constants.get("resistance", getattr(given, "resistance", 0.0)),
     )
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
@@ -176,7 +170,7 @@ def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> moto
             f"of currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
         )
     induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
-    return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or NO_ROTOR)
+    return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
 
 
 def _loaded(file: Recognised) -> Recording:

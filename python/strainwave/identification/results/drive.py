@@ -18,10 +18,11 @@ from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validati
 from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import moving
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
 from strainwave.identification.results.file_result import IN_CURRENT, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import is_of, plain, source_of
+from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -53,12 +54,12 @@ def drive_set(
         validation=(),
     )  # fmt: skip
     if best is not None:
-        whole = _with_bristles(_with_motor(_with_load(whole, best), best), files)
+        whole = _with_bristles(_with_motor(_with_load(whole, best), best, parameters), files)
     unchanged = {path for path, entry in start.sources.items() if whole.sources.get(path) == entry}
     before = None if start.covariance is None else start.covariance.among(unchanged)
     ordered = sorted(files, key=lambda each: each is not best)
     return replace(
-        whole, covariance=_covariance(whole, parameters, files, before), validation=tuple(_validation(whole, ordered))
+        whole, covariance=_covariance(whole, parameters, files, before), validation=tuple(_validation(whole, ordered, best))
     )
 
 
@@ -108,12 +109,6 @@ def not_written(files: Sequence[FileResult]) -> str:
 # ---- Load and motor --------------------------------------------------------------------------------------------------
 
 
-def _drive_of(result: FileResult) -> Drive | None:
-    """Return the drive fitted to a file; None if it was no drive."""
-    model = None if result.fit is None else result.fit.parts[0].model
-    return model if isinstance(model, Drive) else None
-
-
 def _loads_of(result: FileResult) -> dict[str, FileEstimate]:
     return {each.path: each for each in result.estimates if each.path.startswith("load.")}
 
@@ -122,7 +117,7 @@ def _has_load(result: FileResult) -> bool:
     """True if a file determines a number of the load, in its unit, or was fitted with one that a person gave."""
     given = result.recognised is not None and "load_inertia" in result.recognised.constants
     determined = any(not each.why for each in _loads_of(result).values())
-    return _drive_of(result) is not None and (determined or given) and not result.is_in_current
+    return drive_of(result) is not None and (determined or given) and not result.is_in_current
 
 
 def _load_sigma(result: FileResult) -> float:
@@ -146,7 +141,7 @@ def _load_in_words(result: FileResult) -> str:
 
 def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     """Return the set with the load of a log; numbers that the log does not determine state so."""
-    drive, own = _drive_of(log), _loads_of(log)
+    drive, own = drive_of(log), _loads_of(log)
     assert drive is not None
     given = {} if log.recognised is None else log.recognised.constants
     load: Any = drive.load
@@ -154,6 +149,7 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     for path in own_paths("load", load):
         if path in own:
             sources[path] = source_of(own[path], log.name)
+            load = load.replace(inertia=own[path].value) if path == LOAD and own[path].value > 0.0 else load
         elif path == "load.inertia" and "load_inertia" in given:
             sources[path] = Entry(f"given with {log.name}")
         elif path == "load.inertia" and hasattr(whole.load, "inertia"):  # fitted without one, no step would be short enough
@@ -164,9 +160,9 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     return _with_part(whole, "load", load, sources)
 
 
-def _with_motor(whole: GearSet, log: FileResult) -> GearSet:
+def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log: with its torque constant if that is known, else one that gives a torque."""
-    given, drive = ({} if log.recognised is None else log.recognised.constants), _drive_of(log)
+    given, drive = ({} if log.recognised is None else log.recognised.constants), drive_of(log)
     assert drive is not None
     fitted: Any = drive.motor
     if whole.motor is not None:
@@ -176,18 +172,25 @@ def _with_motor(whole: GearSet, log: FileResult) -> GearSet:
         sources = {path: entry for path, entry in whole.sources.items() if path.startswith("motor.")}
         sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in changed}
         return _with_part(whole, "motor", whole.motor.replace(**changed), sources)
-    known: Any = fitted
-    if "torque_constant" not in given:
-        known = motor.TorqueSource(inertia=fitted.inertia)
-    inertia = given.get("motor_inertia")
-    known = known.replace(inertia=0.0 if inertia is None and whole.gear.input_inertia > 0.0 else known.inertia)
+    inertia, source = _motor_inertia(whole, log, parameters)
+    known = (fitted if "torque_constant" in given else motor.TorqueSource()).replace(inertia=inertia)
     sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", known)}
     sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in given}
     if "motor.back_emf" in sources and "torque_constant" in given:
         sources["motor.back_emf"] = Entry(f"torque constant given with {log.name}")
-    inside = Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")
-    sources["motor.inertia"] = inside if inertia is None else Entry(f"given with {log.name}")
+    sources[MOTOR] = source
     return _with_part(whole, "motor", known, {path: sources[path] for path in own_paths("motor", known)})
+
+
+def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> tuple[float, Entry]:
+    """Return the inertia of a motor that the set lacks, with its source: given, else of all files, else of the log alone."""
+    if log.recognised is not None and "motor_inertia" in log.recognised.constants:
+        return log.recognised.constants["motor_inertia"], Entry(f"given with {log.name}")
+    least = 0.0 if whole.gear.input_inertia > 0.0 else MIN_INERTIA
+    combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR]
+    for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR)):
+        return max(estimate.value, least), source_of(estimate, name)
+    return least, Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")
 
 
 def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
@@ -282,10 +285,17 @@ def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], file
     return found
 
 
-def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validation]:
-    """Yield the errors of the saved model on the files that it was identified from."""
+def _saved(drive: Drive, whole: GearSet) -> Drive:
+    """Return the drive of a log with the gear, the load and the inertia of the motor that are saved."""
+    motor_there: Any = drive.motor
+    inertia = float(getattr(whole.motor, "inertia", motor_there.inertia))
+    return drive.replace(gear=whole.gear, load=whole.load, motor=motor_there.replace(inertia=inertia))
+
+
+def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | None) -> Iterator[Validation]:
+    """Yield the errors of the saved model on the files that it was identified from; its load is that of the best log."""
     for each in files:
-        held_out, drive = each.held_out, _drive_of(each)
+        held_out, drive = each.held_out, drive_of(each)
         if (
             held_out is None
             or each.recognised is None
@@ -297,7 +307,8 @@ def _validation(whole: GearSet, files: Sequence[FileResult]) -> Iterator[Validat
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):
             unknown = dict(zip([part.name for part in log.nuisances], nuisances_of(each.fit).tolist(), strict=True))
             rows = moving(log)
-            left = log.residual(drive.replace(gear=whole.gear), nuisances_of(each.fit))[rows]
+            saved = _saved(drive, whole) if each is best else drive.replace(gear=whole.gear)
+            left = log.residual(saved, nuisances_of(each.fit))[rows]
             error, varies = float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[rows]))
             zero, delay = unknown.get(f"{log.effort}_zero", 0.0), unknown.get("delay", 0.0)
         yield Validation(
