@@ -54,7 +54,11 @@ def _without_motor(file: FileResult, motors: Mapping[str, CombinedParameter]) ->
     else:
         remark = TOGETHER
     estimates = tuple(load if each.path == LOAD else each for each in file.estimates)
-    return replace(file, estimates=estimates, remarks=(remark, *file.remarks))
+    read = () if file.recognised is None else file.recognised.remarks
+    place = max(
+        (file.remarks.index(each) + 1 for each in read if each in file.remarks), default=0
+    )  # how it was read comes first
+    return replace(file, estimates=estimates, remarks=(*file.remarks[:place], remark, *file.remarks[place:]))
 
 
 def _less(load: FileEstimate, motor: FileEstimate, factor: float) -> FileEstimate:
