@@ -18,7 +18,7 @@ TOGETHER = (
 )
 APART = (
     "the inertia of the motor is not known: motor.inertia is what the torque of the motor shows, less the load, which the "
-    "wind-up of the gear shows, and less "
+    "wind-up of the gear shows; "
 )
 
 
@@ -45,7 +45,8 @@ def _without_motor(file: FileResult, motors: Mapping[str, CombinedParameter]) ->
         return file
     load, motor = own[LOAD], motors.get(own[LOAD].law)
     if MOTOR in own:
-        remark = f"{APART}{'nothing' if load.law == IN_CURRENT else f'{drive.gear.input_inertia:.3g} kg·m² of the gear'}"
+        of_gear = drive.gear.input_inertia
+        remark = APART + (f"the gear's {of_gear:.3g} kg·m² are not in it" if of_gear else "the wave generator's is in it")
     elif motor is not None:
         load = _less(load, motor.estimate, drive.gear.kinematics.ratio**2)
         remark = f"the inertia of the motor is that of {motor.taken_from}, and load.inertia is without it"
