@@ -31,7 +31,7 @@ from strainwave.native.static_type import SCALARS, Scalar
 from strainwave.rig.virtual.printed import printed_gear
 
 Array = NDArray[np.float64]
-DURATION = 10.0  # s
+RUN_SECONDS = 10.0
 JOINT_STEP = 1e-3  # s, of Newton
 AMPLITUDE, FREQUENCY = 0.3, 0.5  # rad and Hz, of the joint
 STEPS_BETWEEN_KNOTS = 20  # of the command, which is straight between them
@@ -41,7 +41,7 @@ COMPARED = ("torque", "load_torque", "twist", "input_angle", "input_speed", "cur
 MAX_NATIVE_ERROR = 1e-5  # relative
 GEARS = 4096
 TIMED_STEPS = 20  # of Newton
-MANY_DURATION = 0.4  # s, of simulate_many
+MANY_RUN_SECONDS = 0.4  # s, of simulate_many
 MANY = 512  # drives of simulate_many
 LOOP = """
 extern "C" __attribute__((visibility("default"))) void run(int steps, const actuator::S* numbers, const float* joint, double dt,
@@ -134,10 +134,10 @@ def drives() -> dict[str, sw.Drive]:
 
 def motion(about: dict[str, Any]) -> tuple[sw.Scenario, sw.Scenario]:
     """Return the joint's angle and the command of a drive: both begin at rest."""
-    joint = sw.scenario.sine(AMPLITUDE, FREQUENCY, DURATION, phase=-0.5 * np.pi, offset=AMPLITUDE)
+    joint = sw.scenario.sine(AMPLITUDE, FREQUENCY, RUN_SECONDS, phase=-0.5 * np.pi, offset=AMPLITUDE)
     if about["command"] == "feedforward":
-        return joint, sw.scenario.pulse_train(PULSE, PULSE_PERIOD, 0.5 * PULSE_PERIOD, DURATION, start=0.1)
-    knots = np.linspace(0.0, DURATION, round(DURATION / JOINT_STEP / STEPS_BETWEEN_KNOTS) + 1)
+        return joint, sw.scenario.pulse_train(PULSE, PULSE_PERIOD, 0.5 * PULSE_PERIOD, RUN_SECONDS, start=0.1)
+    knots = np.linspace(0.0, RUN_SECONDS, round(RUN_SECONDS / JOINT_STEP / STEPS_BETWEEN_KNOTS) + 1)
     angle = AMPLITUDE * (1.0 - np.cos(2.0 * np.pi * FREQUENCY * knots))
     angle[1] = 0.0  # so that the controller begins at rest
     return joint, sw.scenario.table(knots, 1.01 * angle)
@@ -197,8 +197,8 @@ def speed(follower: Follower, count: int, device: str) -> tuple[float, bool]:
 
 def speed_of_ensemble(follower: Follower) -> float:
     """Return drives times steps a second of `sw.simulate_many`, with a compiled kernel."""
-    joint = sw.scenario.sine(0.02, 2.5, MANY_DURATION, phase=-0.5 * np.pi, offset=0.02)
-    command = sw.scenario.table([0.0, 0.02, MANY_DURATION], [0.0, 0.0, 0.02])
+    joint = sw.scenario.sine(0.02, 2.5, MANY_RUN_SECONDS, phase=-0.5 * np.pi, offset=0.02)
+    command = sw.scenario.table([0.0, 0.02, MANY_RUN_SECONDS], [0.0, 0.0, 0.02])
     numbers = {"gear.damping": np.full(MANY, follower.drive.gear.damping)}
     best = 0.0
     for _ in range(4):  # the first ones compile
@@ -206,7 +206,7 @@ def speed_of_ensemble(follower: Follower) -> float:
         sw.simulate_many(
             follower.drive, command, numbers, dt=follower.about["step"], inputs={"output_angle": joint}, record=["torque"]
         )
-        best = max(best, MANY * MANY_DURATION / follower.about["step"] / (time.perf_counter() - begin))
+        best = max(best, MANY * MANY_RUN_SECONDS / follower.about["step"] / (time.perf_counter() - begin))
     return best
 
 

@@ -1,4 +1,4 @@
-"""What differs between Windows and the other systems: locks, owners of files, and the end of processes."""
+"""Locks, owners of files and the end of processes, on Windows and on other systems."""
 
 from __future__ import annotations
 

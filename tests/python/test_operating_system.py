@@ -20,7 +20,7 @@ from tests.python.dataset.plans import write
 AS_WINDOWS = Path(__file__).parent / "as_windows.py"
 MAX_SECONDS = 400.0  # of the process, beside other tests
 FRICTION = sw.friction.Stribeck(coulomb=0.02, breakaway=0.03, stribeck_speed=20.0, viscous=1e-4)
-NOISE = 2e-5  # N.m
+TORQUE_NOISE = 2e-5  # N.m
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="open files are looked up in /proc")
 
 SCRIPT = """
@@ -83,7 +83,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (place / "script.py").write_text(SCRIPT, "utf-8")
     write(place)
     speeds = np.concatenate([-np.geomspace(2.0, 300.0, 15)[::-1], np.geomspace(2.0, 300.0, 15)])
-    torques = FRICTION.steady(speeds) + np.random.default_rng(1).normal(0.0, NOISE, len(speeds))
+    torques = FRICTION.steady(speeds) + np.random.default_rng(1).normal(0.0, TORQUE_NOISE, len(speeds))
     lines = [f"{speed:.6g},{torque:.6g}" for speed, torque in zip(speeds, torques, strict=True)]
     (place / "friction.csv").write_text("\n".join(["Speed [rad/s],Torque [N.m]", *lines, ""]), "utf-8")
     flags = ["-X", "warn_default_encoding", *(["-S"] if sys.flags.no_site else [])]

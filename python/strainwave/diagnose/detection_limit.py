@@ -46,16 +46,10 @@ class DetectionLimit:
         remarks: what limits the limit, in words
 
     >>> import strainwave as sw
-    >>> drive = sw.Drive(
-    ...     gear=sw.Gear(kinematics=sw.kinematics.StrainWave(), stiffness=sw.stiffness.Linear(k=8000.0), damping=2.0),
-    ...     motor=sw.motor.CurrentSource(torque_constant=0.05, inertia=1.5e-4),
-    ...     control=sw.control.PI(proportional=4.0, integral=100.0, limit=50.0),
-    ...     load=sw.loads.Inertia(inertia=0.05),
-    ... )
-    >>> record = {"speed": 20.0, "duration": 2.0, "sample_rate": 500.0, "noise": 0.02, "order": 2.0}
-    >>> limit = sw.detection_limit(drive, load_torque=20.0, **record)
+    >>> record = {"speed": 20.0, "duration": 2.0, "sample_rate": 500.0, "noise": 0.02}
+    >>> limit = sw.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, order=2.0, **record)
     >>> round(limit.arcminutes, 3), round(1e3 * limit.current, 1), limit.insensitive  # arcmin at the output, mA
-    (0.022, 5.2, False)
+    (0.055, 12.5, False)
     """
 
     order: float

@@ -11,7 +11,7 @@ from strainwave.files.gear_set import GearSet
 
 mujoco = pytest.importorskip("mujoco")
 
-DURATION = 10.0  # s
+RUN_SECONDS = 10.0
 GEAR = GearSet.read("csg-20-100")
 
 
@@ -25,7 +25,7 @@ def turned(attributes: dict[str, str], torque: float, timestep: float) -> float:
     )
     data = mujoco.MjData(model)
     data.ctrl[0] = torque
-    mujoco.mj_step(model, data, nstep=round(DURATION / timestep))
+    mujoco.mj_step(model, data, nstep=round(RUN_SECONDS / timestep))
     return float(data.qpos[0])
 
 

@@ -46,15 +46,9 @@ class PartChange:
         smallest: difference from it that matters; a smaller one is none, however small its standard deviation
         limit: `smallest` in words, as `3 % of what the current varies`
 
-    >>> import numpy as np
-    >>> import strainwave as sw
-    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, viscous=3e-4))
-    >>> speed = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
-    >>> torque = 1.2 * gear.friction_input.steady(speed) + 1e-4 * np.array([1, -1, 0, 1, -1, 1, 0])
-    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
-    >>> change = sw.predict(gear, {"friction": table})[0].changed[0]
-    >>> change.name, round(change.value, 3), change.significant
-    ('dry friction', 1.2, True)
+    >>> change = PartChange("dry friction", 1.3, 0.02, "1", unchanged=1.0, smallest=0.03)
+    >>> round(change.significance, 9), change.significant
+    (15.0, True)
     """
 
     name: str

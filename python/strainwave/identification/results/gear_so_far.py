@@ -57,63 +57,51 @@ class GearSoFar:
     def with_fit(self, gear: Any, parts: Collection[str], estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
         """Return the same with parts of a fitted gear, each number with its source.
 
-        A number that a fit changed without estimating it follows from others: breakaway is then as uncertain as the Coulomb
-        torque that it follows.
-
         Args:
             gear: the fitted one
             parts: to take from it
             estimates: of the fit
             name: of the file
         """
-        fitted, before = {each.path: each for each in estimates}, gear_numbers(self.gear_set.gear)
-        changed = {part: getattr(gear, part) for part in parts}
-        sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
-        after = self.gear_set.gear.replace(**changed)
-        numbers = {path: value for path, (value, _) in gear_numbers(after).items() if is_of(path, parts)}
-        for path, value in numbers.items():
-            if path in fitted:
-                sources[path] = source_of(fitted[path], name)
-            elif path in before and value == before[path][0] and path in self.gear_set.sources:
-                sources[path] = self.gear_set.sources[path]
-            else:
-                sources[path] = _not_estimated(path, path in before, {each.path: each.sigma for each in estimates})
-        determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
-        determined_by |= {each.path: name for each in estimates if each.path in numbers and not each.why}
-        gear_set = replace(self.gear_set, gear=after, sources=sources)
-        own = {part for part in parts if any(is_of(path, {part}) for path in determined_by)}
-        return replace(self, gear_set=gear_set, determined=self.determined | own, determined_by=determined_by)
+        laws, entries = {part: getattr(gear, part) for part in parts}, {each.path: source_of(each, name) for each in estimates}
+        return self._with_laws(laws, entries, {each.path for each in estimates if not each.why}, name)
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> GearSoFar:
-        """Return the same with parts of the gear that a file determines; numbers that it takes over keep their source.
-
-        Other numbers without a standard deviation have the source that `with_fit` gives them.
+        """Return the same with parts of the gear that a file determines.
 
         Args:
             parts: the new laws, by name
             sigmas: standard deviations of the numbers that the file determines, by path; infinite for one that it does not
             name: of the file
         """
+        determined = {path for path, sigma in sigmas.items() if np.isfinite(sigma)}
+        unknown = Entry(source=f"fitted but not identified: {one_line(name)} does not determine it")
+        known = {path: Entry(source=f"identified from {one_line(name)}", uncertainty=sigmas[path]) for path in determined}
+        return self._with_laws(parts, dict.fromkeys(sigmas, unknown) | known, determined, name)
+
+    def _with_laws(
+        self, laws: Mapping[str, Any], entries: Mapping[str, Entry], determined: Collection[str], name: str
+    ) -> GearSoFar:
+        """Return the same with other laws; numbers without an entry keep their source if they keep their value."""
         before, values = self.gear_set.sources, gear_numbers(self.gear_set.gear)
-        known = {plain(each): each for each in before}
-        gear = self.gear_set.gear.replace(**parts)
+        by_plain_path = {plain(each): each for each in before}
+        gear = self.gear_set.gear.replace(**laws)
         numbers = gear_numbers(gear)
-        sources = {path: entry for path, entry in before.items() if not is_of(path, parts)}
-        determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
-        for path in (path for path in numbers if is_of(path, parts)):
-            old = known.get(plain(path), "")
-            if np.isfinite(sigmas.get(path, np.inf)):
-                sources[path] = Entry(source=f"identified from {one_line(name)}", uncertainty=sigmas[path])
-                determined_by[path] = name
-            elif path in sigmas:
-                sources[path] = Entry(source=f"fitted but not identified: {one_line(name)} does not determine it")
+        sources = {path: entry for path, entry in before.items() if not is_of(path, laws)}
+        determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, laws)}
+        for path in (path for path in numbers if is_of(path, laws)):
+            old = by_plain_path.get(plain(path), "")
+            if path in entries:
+                sources[path] = entries[path]
+                determined_by |= {path: name} if path in determined else {}
             elif old and values.get(old) == numbers[path]:
                 sources[path] = before[old]
                 determined_by |= {path: self.determined_by[old]} if old in self.determined_by else {}
             else:
-                sources[path] = _not_estimated(path, path in values, sigmas)
+                sources[path] = _not_estimated(path, path in values, entries)
+        own = {part for part in laws if any(is_of(path, {part}) for path in determined_by)}
         gear_set = replace(self.gear_set, gear=gear, sources=sources)
-        return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
+        return replace(self, gear_set=gear_set, determined=self.determined | own, determined_by=determined_by)
 
     def sliding(self) -> Any:
         """Return the friction of the input as it slides, without what modulates it over angle and temperature."""
@@ -141,11 +129,13 @@ class GearSoFar:
         return self.with_parts({"friction_input": law}, named, name)
 
 
-def _not_estimated(path: str, was_there: bool, sigmas: Mapping[str, float]) -> Entry:
+def _not_estimated(path: str, was_there: bool, entries: Mapping[str, Entry]) -> Entry:
     """Return the source of a number that a fit changed without estimating it: breakaway is as uncertain as Coulomb's torque."""
-    sigma = sigmas.get(path.replace(".breakaway", ".coulomb"), np.inf)
+    followed = entries.get(path.replace(".breakaway", ".coulomb"))
     why = "follows from the parameters fitted with it" if was_there else "set by the method of the fit"
-    return Entry(source=f"assumed: {why}; no file determines it", uncertainty=sigma if np.isfinite(sigma) else None)
+    return Entry(
+        source=f"assumed: {why}; no file determines it", uncertainty=None if followed is None else followed.uncertainty
+    )
 
 
 def is_of(path: str, parts: Collection[str]) -> bool:

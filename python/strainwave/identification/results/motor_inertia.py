@@ -56,9 +56,7 @@ def _without_motor(file: FileResult, motors: Mapping[str, CombinedParameter]) ->
         remark = TOGETHER
     estimates = tuple(load if each.path == LOAD else each for each in file.estimates)
     read = () if file.recognised is None else file.recognised.remarks
-    place = max(
-        (file.remarks.index(each) + 1 for each in read if each in file.remarks), default=0
-    )  # how it was read comes first
+    place = 1 + max((file.remarks.index(each) for each in read if each in file.remarks), default=-1)  # behind how it was read
     return replace(file, estimates=estimates, remarks=(*file.remarks[:place], remark, *file.remarks[place:]))
 
 
