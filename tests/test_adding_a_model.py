@@ -155,6 +155,7 @@ ELSEWHERE = {
     "Inertia": {
         "drive_model.hpp": MODEL,
         "diagnose/response.py": "what a joint carries besides its inertia is in the recording",
+        "identification/kinds/between_encoders.py": "what the load asks for is in the log, so that the motor has none",
         "identification/kinds/prepared_log.py": RIGID,
     },
     "StrainWave": {
@@ -182,6 +183,8 @@ ELSEWHERE = {
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
+        "identification/kinds/between_encoders.py": "gravity of the load that was fitted, along the motion of the log",
+        "identification/kinds/predicted_log.py": "gravity depends on where the angle of a log counts from",
     },
     "Linear": {
         "drive_model.hpp": MODEL,
