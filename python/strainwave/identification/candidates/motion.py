@@ -203,10 +203,11 @@ def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
 
 
 def _is_small(best: MotionCandidate, path: str, unit: Array) -> bool:
-    """True if a number makes so little of the effort that the model may do without: `unit` is what one unit of it makes."""
+    """True if the model may do without a number that nobody gave: it makes little of the effort, `unit` for one unit of it."""
     value = next((value for name, value, *_ in _core.parameters(best.model.drive) if name == path), 0.0)
     scale = per_torque(best.model.drive, best.log.effort)
-    return path in best.model.free and float(np.std(scale * value * unit)) < MAX_SMALL_PART * best.error
+    is_free = path in best.model.free and path not in best.priors
+    return is_free and float(np.std(scale * value * unit)) < MAX_SMALL_PART * best.error
 
 
 def _without_gravity(best: MotionCandidate) -> MotionModel | None:

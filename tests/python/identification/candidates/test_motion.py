@@ -203,6 +203,17 @@ def test_ripple_that_grows_with_the_speed_has_no_outliers() -> None:
     assert np.mean(spoilt(values)) < 0.01
 
 
+def test_an_inertia_that_a_person_gave_stays_where_a_slow_motion_hardly_shows_it() -> None:
+    angle, slow = 0.5 * np.sin(0.3 * TIME), 0.15 * np.cos(0.3 * TIME)
+    friction = (0.05 + 3e-4 * np.abs(RATIO * slow)) * np.sign(RATIO * slow)
+    noise = np.random.default_rng(4).standard_normal(len(TIME))
+    columns = {"time": TIME, "input_angle": RATIO * angle, "current": friction / 0.08 + 0.02 * noise}
+    recording = sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
+    log = MotionLog.of(recording, drive())
+    best, *_ = fit_motion([log], drive(), priors={"load.inertia": (0.7, 7e-7)})
+    assert best.fit.parts[0].model.load.inertia == pytest.approx(0.7, rel=1e-5)
+
+
 def ringing(truth: dict[str, float], stiffness: float, seed: int) -> sw.Recording:
     """A record of a load on a spring, its motor moved as by a stiff servo: joint and motor by semi-implicit Euler."""
     step, damping = 1e-4, 12.0
