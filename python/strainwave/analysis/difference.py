@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import isfinite
+from math import hypot, isfinite
 from typing import Any
 
 from strainwave import Drive
@@ -24,6 +24,7 @@ class Difference:
         path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", or of a rating
         first, second: the numbers, or the models' names; None where one of them does not have it
         unit: of the numbers, empty for names
+        sigma: standard deviation of the second less the first, as if they were independent; None unless both sets state one
 
     >>> import strainwave as sw
     >>> gear = sw.load("csg-25-100")
@@ -36,6 +37,14 @@ class Difference:
     first: float | str | None
     second: float | str | None
     unit: str = ""
+    sigma: float | None = None
+
+    @property
+    def deviations(self) -> float | None:
+        """The second less the first in standard deviations; None where none is stated, or it is 0."""
+        if isinstance(self.first, str | None) or isinstance(self.second, str | None) or not self.sigma:
+            return None
+        return (self.second - self.first) / self.sigma
 
     @property
     def change(self) -> float | None:
@@ -49,7 +58,9 @@ class Difference:
         """The difference in one line."""
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
         first, second = (text if value is None else text + unit for text, value in zip(self.texts, self._values, strict=True))
-        change = "" if self.change is None else f" ({100.0 * self.change:+.3g} %)"
+        parts = [f"{100.0 * self.change:+.3g} %"] if self.change is not None else []
+        parts += [f"{self.deviations:+.2g} σ"] if self.deviations is not None else []
+        change = f" ({', '.join(parts)})" if parts else ""
         return f"{self.path}: {first} against {second}{change}"
 
     @property
@@ -75,8 +86,16 @@ def differences(first: Model, second: Model) -> list[Difference]:
         return _between("gear", ours["gear"], theirs["gear"])
     found = [each for name in ours for each in _between(name, ours[name], theirs[name])]
     if isinstance(first, GearSet) and isinstance(second, GearSet):
-        found += _ratings(first, second)
+        found = [_with_sigma(each, first, second) for each in found] + _ratings(first, second)
     return found
+
+
+def _with_sigma(each: Difference, first: GearSet, second: GearSet) -> Difference:
+    """Return a difference of numbers with its standard deviation, if both sets state that of theirs."""
+    if isinstance(each.first, str | None) or isinstance(each.second, str | None):
+        return each
+    one, other = (of.sources[each.path].sigma(value) for of, value in ((first, each.first), (second, each.second)))
+    return each if one is None or other is None else replace(each, sigma=hypot(one, other))
 
 
 def _parts(model: Model) -> dict[str, Any]:

@@ -61,18 +61,20 @@ def agreement_table(found: Sequence[Agreement]) -> str:
 
 
 def difference_table(found: Sequence[Difference]) -> str:
-    """Return the places where two models differ, one to a line.
+    """Return the places where two models differ, one to a line; differences in standard deviations where both sets state them.
 
-    >>> print(difference_table([Difference("gear.damping", 4.0, 5.0, "N.m.s/rad"), Difference("motor", None, "dc")]))
-                    first  second  unit       change
-    gear.damping        4       5  N.m.s/rad   +25 %
+    >>> print(difference_table([Difference("gear.damping", 4.0, 5.0, "N.m.s/rad", 0.5), Difference("motor", None, "dc")]))
+                    first  second  unit       change    σ
+    gear.damping        4       5  N.m.s/rad   +25 %  2.0
     motor         nothing      dc
     """
-    rows = [("", "first", "second", "unit", "change")]
+    rows = [("", "first", "second", "unit", "change", "σ")]
     for each in found:
         change = "" if each.change is None else f"{100.0 * each.change:+.3g} %"
-        rows.append((each.path, *each.texts, "" if each.unit == "1" else each.unit, change))
-    return "\n".join(aligned(rows, "<>><>"))
+        apart = "" if each.deviations is None else f"{abs(each.deviations):.1f}"
+        rows.append((each.path, *each.texts, "" if each.unit == "1" else each.unit, change, apart))
+    columns = 6 if any(apart for *_, apart in rows[1:]) else 5
+    return "\n".join(aligned([row[:columns] for row in rows], "<>><>>"[:columns]))
 
 
 def range_table(recording: Recording) -> str:

@@ -206,6 +206,20 @@ def test_sources_are_no_part_of_the_comparison() -> None:
     assert compare(gear, renamed) == []
 
 
+def test_a_difference_is_as_uncertain_as_both_numbers_are() -> None:
+    """Of independent numbers variances add; a number that one set does not know the uncertainty of has no distance."""
+    gear = sw.GearSet.read("csg-25-100")
+    path, k1, damping = "gear.stiffness.k1", gear.gear.stiffness.k1, gear.gear.damping
+    one = gear.replace(sources={**gear.sources, path: Entry("log", uncertainty=300.0)})
+    changed = gear.gear.replace({"stiffness.k1": k1 + 1000.0, "damping": 2.0 * damping})
+    sources = {**gear.sources, path: Entry("log", uncertainty=400.0), "gear.damping": Entry("log", uncertainty=0.1)}
+    found = {each.path: each for each in compare(one, gear.replace(gear=changed, sources=sources))}
+    assert found[path].sigma == pytest.approx(500.0)
+    assert found[path].deviations == pytest.approx(2.0)
+    assert found["gear.damping"].deviations is None
+    assert compare(one.gear, changed)[0].sigma is None
+
+
 @pytest.mark.parametrize(
     ("difference", "text"),
     [
@@ -217,6 +231,8 @@ def test_sources_are_no_part_of_the_comparison() -> None:
         (Difference("a", None, 1.0, "m"), "a: nothing against 1 m"),
         (Difference("a", "input", "output"), "a: input against output"),
         (Difference("a", 1e-300, 1e300), "a: 1e-300 against 1e+300"),
+        (Difference("a", 2.0, 1.0, "m", 0.25), "a: 2 m against 1 m (-50 %, -4 σ)"),
+        (Difference("a", 0.0, 1.0, "m", 0.5), "a: 0 m against 1 m (+2 σ)"),
     ],
 )
 def test_a_difference_in_one_line(difference: Difference, text: str) -> None:
