@@ -97,7 +97,8 @@ def cards() -> str:
 def page(example: Example) -> str:
     """Return the page of an example: its words, its picture, its code, and where more is said."""
     more = ", ".join(f"[](../{path})" for path in PAGES.get(example.name[:2], ()))
-    words = f"{theory.linked(example.line)}\n\n{theory.linked(example.words)}"
+    beyond = example.line.partition(":")[2].strip()  # the title
+    words = "\n\n".join(theory.linked(each) for each in (beyond[:1].upper() + beyond[1:], example.words) if each)
     parts = [
         f"# {theory.escaped(example.title)}", theory.titled(words),
         f"![{theory.escaped(example.title)}](../drawn/{example.name}/{example.picture})",
