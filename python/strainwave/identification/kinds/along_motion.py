@@ -76,7 +76,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     return (
         FileResult(
             name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
-            fit=best.fit, bend=best.bend,
+            fit=best.fit, bend=best.bend, between=between.between,
         ),
         known,
     )  # fmt: skip

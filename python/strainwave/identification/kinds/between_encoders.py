@@ -63,7 +63,7 @@ def between_encoders(
         source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
         remarks=tuple(_remarks(found, scale, taken)),
         checks=tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source)),
-        pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),),
+        pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),), between=found.fit,
     )  # fmt: skip
     parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
     return result, _with_parts(known, found, [part for part in parts if part not in known.determined], result)

@@ -19,6 +19,7 @@ from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import moving
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
+from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
 from strainwave.identification.results.file_result import IN_CURRENT, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import is_of, plain, source_of
@@ -270,19 +271,28 @@ def _signed_common(estimate: FileEstimate) -> float:
 
 
 def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], files: Sequence[FileResult]) -> Array:
-    """Return the correlation of estimates by the fits of their files, shape (n, n); 0 between files."""
+    """Return the correlation of estimates by the fits of their files, shape (n, n); 0 between fits."""
     found = np.eye(len(estimates))
     for file in files:
-        if file.fit is None:
-            continue
-        prefix = "" if isinstance(file.fit.model, Drive) else "gear."
-        places = {prefix + each.path: place for place, each in enumerate(file.fit.estimates)}
-        own = [k for k, source in enumerate(sources) if source == file.name and estimates[k].path in places]
-        at = [places[estimates[k].path] for k in own]
-        block = file.fit.correlation[np.ix_(at, at)]
-        if own and np.isfinite(block).all():
-            found[np.ix_(own, own)] = block
+        for fit in file.fits:
+            own, at = list[int](), list[int]()
+            for k, (estimate, source) in enumerate(zip(estimates, sources, strict=True)):
+                if source == file.name and (place := _place(estimate, fit)) is not None:
+                    own.append(k)
+                    at.append(place)
+            block = fit.correlation[np.ix_(at, at)]
+            if own and np.isfinite(block).all():
+                found[np.ix_(own, own)] = block
     return found
+
+
+def _place(estimate: FileEstimate, fit: Fit) -> int | None:
+    """Return the place of an estimate in the fit that determined it, where its path may be another; None if another one did."""
+    prefix = "" if isinstance(fit.model, Drive) else "gear."
+    paths = [prefix + each.path for each in fit.estimates]
+    part = estimate.path.split(".")[:2]
+    same = [k for k, each in enumerate(fit.estimates) if each.value == estimate.value and paths[k].split(".")[:2] == part]
+    return min(same, key=lambda k: paths[k] != estimate.path, default=None)
 
 
 def _saved(drive: Drive, whole: GearSet) -> Drive:

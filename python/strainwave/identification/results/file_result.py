@@ -146,6 +146,7 @@ class FileResult(ComparedByFields):
         candidates: name of each model tried and its error on data held out, in the unit of the fit, best first
         fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
         bend: angle of the input in which bristles of its friction bend at reversals [rad]; 0 if it does not show them
+        between: the fit of the gear between both encoders; None without one
     """
 
     name: str
@@ -163,6 +164,12 @@ class FileResult(ComparedByFields):
     candidates: tuple[tuple[str, float], ...] = ()
     fit: Fit | None = None
     bend: float = 0.0
+    between: Fit | None = None
+
+    @property
+    def fits(self) -> tuple[Fit, ...]:
+        """All fits of the file."""
+        return tuple(each for each in (self.fit, self.between) if each is not None)
 
     @property
     def title(self) -> str:

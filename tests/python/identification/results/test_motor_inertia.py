@@ -54,6 +54,11 @@ def test_two_encoders_separate_motor_and_load_and_the_gear_file_has_what_is_prin
     for path, value in (("motor.inertia", saved.motor.inertia), ("load.inertia", saved.load.inertia)):
         assert value == both[path].value
         assert sources[path] == sw.Entry("identified from both.csv", uncertainty=both[path].sigma)
+    covariance = saved.covariance  # the friction is of another fit than the inertia of the load
+    assert covariance is not None
+    assert covariance.correlation("load.inertia", "gear.friction_input.viscous") == pytest.approx(0.0, abs=1e-9)
+    assert covariance.correlation("load.gravity_torque", "gear.friction_input.viscous") > 0.1
+    assert covariance.correlation("gear.hysteresis.stiffness[0]", "gear.hysteresis.breakaway[0]") > 0.1
 
 
 def test_one_encoder_determines_both_together(folder: Path) -> None:
