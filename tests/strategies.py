@@ -117,7 +117,7 @@ def models_of(part: Any) -> set[str]:
 
 
 def values(field: Field, length: int) -> st.SearchStrategy[Any]:
-    """What a field may be; a sequence has this length, for those of one model are equally long."""
+    """Any value of a field; a sequence has this length, because all sequences of a model are equally long."""
     match field["kind"]:
         case "part" if field["name"] == "structure":
             return st.just(field["default"])  # random stages are as fast as no step can follow; tests/structure has its own
@@ -133,19 +133,31 @@ def values(field: Field, length: int) -> st.SearchStrategy[Any]:
             return numbers(field)
 
 
+@cache
+def members(model: Any, length: int) -> dict[str, st.SearchStrategy[Any]]:
+    """Any value of each field of a model, by name.
+
+    Made once, because hypothesis examines a new strategy for longer than it draws from it.
+    """
+    return {
+        field["name"]: values(field, length) if field["kind"] == "sequence" or length == 0 else members(model, 0)[field["name"]]
+        for field in model.fields
+    }
+
+
 @st.composite
 def drawn(draw: st.DrawFn, model: Any) -> Any:
     """A model with every field drawn; tried again where a relation between fields, as t2 >= t1, does not hold."""
     for _ in range(8):
         length = draw(st.integers(0, 8))
-        members = {field["name"]: draw(values(field, length)) for field in model.fields}
-        if "kinematics" in members:
-            members |= {name: suited(members[name], members["kinematics"]) for name in SUITED}
+        made_of = {name: draw(strategy) for name, strategy in members(model, length).items()}
+        if "kinematics" in made_of:
+            made_of |= {name: suited(made_of[name], made_of["kinematics"]) for name in SUITED}
         try:
             with warnings.catch_warnings(action="ignore", category=_core.PassivityWarning):
                 if model is sw.Drive:
-                    members["control"] = suited(members["control"], members["gear"].kinematics)
-                return model(**members)
+                    made_of["control"] = suited(made_of["control"], made_of["gear"].kinematics)
+                return model(**made_of)
         except ValueError:
             continue
     return reject()
