@@ -22,6 +22,9 @@ PENALTY_PER_PARAMETER = 2.0  # in logarithms of the number of points [1]; noise 
 NEGLIGIBLE_RESIDUAL = 3e-5  # share of the span of the angle [1]: rounding of the digits in a file leaves as much
 KNEE_TOLERANCE = 1e-7  # share of the span of torque [1]: a point this near to a knee lies on it
 MAX_GAUSS_NEWTON_STEPS = 25  # count
+STEP_SHARES = 0.5 ** np.arange(10)  # of a Gauss-Newton step [1], tried one after the other
+MISFIT_ROUNDING = 1e-9  # share of a misfit [1] by which rounding changes it at most, unless it is negligible
+NEGLIGIBLE_MISFIT = 1e-18  # share of the sum of squares of the angle [1]: a smaller misfit is rounding itself
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,19 +199,12 @@ def _misfits(torque: Array, angle: Array, variance: Array, chosen: Array) -> Arr
 
 def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
     """Moves the knees to the best place: the lines are linear in the rest, and a knee moves by what its hinge calls for."""
-    span = float(torque[-1] - torque[0])
     best = _lines(torque, angle, variance, knees)
     for _ in range(MAX_GAUSS_NEWTON_STEPS if len(knees) else 0):
         lengths = _lengths(best.columns)
         step = np.linalg.lstsq(best.columns / lengths, best.residual / np.sqrt(variance), rcond=1e-10)[0] / lengths
         step = step[2 + len(knees) :]
-        scale, better = 1.0, None
-        while better is None and scale > 1e-3:
-            moved = best.knees + scale * step
-            if np.all(np.diff([torque[0], *moved, torque[-1]]) > MIN_SEGMENT_SHARE * span):
-                tried = _lines(torque, angle, variance, moved)
-                better = tried if tried.misfit < best.misfit else None
-            scale *= 0.5
+        better = _first_better(torque, angle, variance, best, step)
         if better is None:
             break
         done = best.misfit - better.misfit <= 1e-9 * best.misfit
@@ -216,6 +212,24 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
         if done:
             break
     return best
+
+
+def _first_better(torque: Array, angle: Array, variance: Array, best: _Chain, step: Array) -> _Chain | None:
+    """Return the chain after the longest of the halved steps of the knees that lowers the misfit; None if all are in vain.
+
+    A knee that lies best on a point is left by no step: `_misfits` finds this for all halved steps at once.
+    """
+    moved = best.knees + STEP_SHARES[:, np.newaxis] * step
+    gaps = np.diff(moved, prepend=torque[0], append=torque[-1], axis=1)
+    moved = moved[np.all(gaps > MIN_SEGMENT_SHARE * (torque[-1] - torque[0]), axis=1)]
+    for number, knees in enumerate(moved):
+        if number == 1 and best.misfit > NEGLIGIBLE_MISFIT * np.sum(angle**2 / variance):
+            promising = _misfits(torque, angle, variance, moved) < (1.0 + MISFIT_ROUNDING) * best.misfit
+        elif number == 0:
+            promising = np.ones(len(moved), bool)
+        if promising[number] and (tried := _lines(torque, angle, variance, knees)).misfit < best.misfit:
+            return tried
+    return None
 
 
 def _past(torque: Array, knees: Array) -> Array:
@@ -234,9 +248,12 @@ def _lengths(columns: Array) -> Array:
 def _lines(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
     weights = 1.0 / np.sqrt(variance)
     past = _past(torque, knees)
-    columns = np.column_stack((np.ones_like(torque), torque, np.maximum(past, 0.0)))
-    found = np.linalg.lstsq(weights[:, np.newaxis] * columns, weights * angle)[0]
-    residual = angle - columns @ found
+    columns = np.empty((len(torque), 2 + 2 * len(knees)))
+    linear = columns[:, : 2 + len(knees)]
+    linear[:, 0], linear[:, 1], linear[:, 2:] = 1.0, torque, np.maximum(past, 0.0)
+    found = np.linalg.lstsq(weights[:, np.newaxis] * linear, weights * angle)[0]
+    residual = angle - linear @ found
     slopes = np.cumsum(found[1:])
-    columns = np.column_stack((columns, -found[2:] * np.heaviside(past, 0.5))) * weights[:, np.newaxis]
+    columns[:, 2 + len(knees) :] = -found[2:] * np.heaviside(past, 0.5)
+    columns *= weights[:, np.newaxis]
     return _Chain(slopes, knees, float(np.sum((weights * residual) ** 2)), columns, residual)
