@@ -19,6 +19,7 @@ both = pytest.mark.parametrize("name", ["g++", "clang++"])
 SOURCES = sorted(path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src").rglob("*.cpp"))
 # Headers of other projects, whose warnings are no errors here.
 FOREIGN = (f"-isystem{nanobind.include_dir()}", f"-isystem{sysconfig.get_path('include')}")
+INSTANTIATED = ("-Xclang", "-fpch-instantiate-templates")  # templates of what was compiled before: once, not in each source
 SOURCE_HEADERS = """#include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -83,8 +84,8 @@ def read_before(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, ...]:
     """What most sources include, read by clang once: it takes as long as the rest of a source."""
     command = tuple(word for word in checker("clang++") if word != "-fsyntax-only")
     folder = tmp_path_factory.mktemp("before")
-    option, name = compiled_before(command, folder, SOURCE_HEADERS, *FOREIGN)
-    return option, str(folder / name)
+    option, name = compiled_before(command, folder, SOURCE_HEADERS, *FOREIGN, *INSTANTIATED)
+    return *INSTANTIATED, option, str(folder / name)
 
 
 @pytest.mark.parametrize("source", SOURCES)
