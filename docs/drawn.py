@@ -1,4 +1,7 @@
-"""Draws the pictures that pages show: of examples, each a script, and of pages whose own code writes pictures."""
+"""Draws the pictures that pages show: of examples, each a script, and of pages whose own code writes pictures.
+
+The tests take the pictures, and what a script printed, of the same run.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,15 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from kept import MAX_PROCESSES, kept
+from kept import COMPILED, MAX_PROCESSES, kept
 
 ROOT = Path(__file__).resolve().parent.parent
 SHOWN = re.compile(r"(?<![\w/])(?:\.\./)?drawn/([\w-]+)/[\w-]+\.png")  # a picture on a page: drawn/NAME/PICTURE.png
+PRINTED, WARNINGS = "printed.txt", "warnings.txt"  # in the folder of a script: its standard output and error
 BLOCK = re.compile(r"^```python\n(?!>>>)(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -21,13 +26,10 @@ def draw(source: Path) -> None:
     """Draw each picture that a page shows, in the folder `drawn/NAME`; `NAME` is that of an example or of a page."""
     pages = {page: page.read_text(encoding="utf-8") for page in source.rglob("*.md")}
     names = sorted({name for text in pages.values() for name in SHOWN.findall(text)})
-    code = {page.stem: "\n".join(BLOCK.findall(text)) for page, text in pages.items()}
-    scripts = {
-        name: example.read_text(encoding="utf-8") if (example := path_of(name)).is_file() else code[name] for name in names
-    }
+    scripts = {name: script_of(name, pages) for name in names}
     with ThreadPoolExecutor(MAX_PROCESSES) as pool:
         for name, folder in zip(names, pool.map(drawn, names, scripts.values()), strict=True):
-            shutil.copytree(folder, source / "drawn" / name)
+            shutil.copytree(folder, source / "drawn" / name, ignore=shutil.ignore_patterns(PRINTED, WARNINGS))
 
 
 def path_of(name: str) -> Path:
@@ -35,12 +37,27 @@ def path_of(name: str) -> Path:
     return ROOT / "examples" / f"{name}.py"
 
 
+def script_of(name: str, pages: Mapping[Path, str]) -> str:
+    """Return the code that draws the pictures of a name: that of an example, or the programs of the page."""
+    if (example := path_of(name)).is_file():
+        return example.read_text(encoding="utf-8")
+    (text,) = (text for page, text in pages.items() if page.stem == name)
+    return "\n".join(BLOCK.findall(text))
+
+
 def drawn(name: str, script: str) -> Path:
-    """Return the folder with the pictures of a script."""
+    """Return the folder with the pictures of a script, with what it printed and its warnings."""
 
     def make(folder: Path) -> None:
         path = path_of(name)
         command = [sys.executable, str(path)] if path.is_file() else [sys.executable, "-c", script]
-        subprocess.run(command, cwd=folder, env=os.environ | {"MPLBACKEND": "agg"}, stdout=subprocess.DEVNULL, check=True)
+        done = subprocess.run(
+            command, cwd=folder, env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, encoding="utf-8", check=False
+        )
+        warned = COMPILED.sub("", done.stderr)
+        sys.stderr.write(warned)
+        done.check_returncode()
+        (folder / PRINTED).write_text(done.stdout, encoding="utf-8")
+        (folder / WARNINGS).write_text(warned, encoding="utf-8")
 
-    return kept(name, script.encode(), make)
+    return kept(name, Path(__file__).read_bytes() + script.encode(), make)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -13,6 +14,7 @@ from strainwave import _core
 
 KEPT = Path(__file__).resolve().parent.parent / "build" / "pages"
 DIGEST_DIGITS = 16  # of the name of a folder
+COMPILED = re.compile(r"^strainwave: compiling a kernel .*\n", re.MULTILINE)  # printed only if no earlier run compiled it
 MAX_PROCESSES = 2  # scripts at a time; most use all cores for a part of their time
 
 

@@ -19,13 +19,12 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-from kept import MAX_PROCESSES, kept
+from kept import COMPILED, MAX_PROCESSES, kept
 
 SCRIPTS = Path(__file__).resolve().parents[1] / "examples" / "tutorials"
 HEAD = re.compile(r"^# %%(?: \[(markdown|console)\])?$", re.MULTILINE)  # of a cell
 COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)$", re.MULTILINE)
 MYST_COMMENT = re.compile(r"^ {0,3}%", re.MULTILINE)
-COMPILED = re.compile(r"^strainwave: compiling a kernel .*\n", re.MULTILINE)  # printed only if no earlier run compiled it
 DOTS_PER_INCH = 110
 
 

@@ -13,7 +13,7 @@ from strainwave.parameters import every
 
 stated = sw.GearSet.read("robot-joint")
 joint = stated.replace(sources=dict.fromkeys(stated.sources, Entry("measured", spread=0.05)))
-found = sw.compensate(joint, encoder="output", members=4, travel=0.1)
+found = sw.compensate(joint, encoder="output", members=3, travel=0.05)
 before, after = (1e6 * each.median("tracking error") for each in (found.baseline, found.chosen))
 print(f"{found.chosen.candidate.name}:")
 print(f"tracking error {before:.0f} urad with the cascade, {after:.0f} urad with it")

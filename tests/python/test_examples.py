@@ -13,6 +13,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
+import drawn as pictures
 import pytest
 import strainwave as sw
 
@@ -102,8 +103,18 @@ def run(example: Example, names: dict[str, object], page: Path) -> None:
         run_program(example, names, page)
 
 
+def draws_pictures(page: Path) -> bool:
+    """True for a page of programs alone that draw its pictures: the run that drew them serves."""
+    text = page.read_text(encoding="utf-8")
+    programs_alone = all(not example.code.startswith((">>>", "$ ")) for example in examples(page))
+    return programs_alone and page.stem in pictures.SHOWN.findall(text)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if draws_pictures(page):
+        pictures.drawn(page.stem, pictures.script_of(page.stem, {page: page.read_text(encoding="utf-8")}))
+        return
     monkeypatch.chdir(tmp_path)
     write_files(page, tmp_path)
     names: dict[str, object] = {"__name__": "__main__"}
