@@ -53,6 +53,17 @@ class Floor:
         """Return series over the root of the floor, shape (n,) or (n, k): white, of variance 1, if they are noise."""
         return self._divided(series, 0.5)
 
+    def coordinates(self, series: Array) -> Array:
+        """Return whitened series in an orthonormal basis of cosines and sines, shape (m,) or (m, k).
+
+        Their inner products are those of `whitened` (Parseval), without a transform back.
+        """
+        from scipy.fft import rfft
+
+        count = len(series)
+        lines = rfft(series.T) * np.sqrt(_lines_weight(count) / self.at(np.fft.rfftfreq(count)))
+        return np.concatenate([lines.real, lines.imag], axis=-1).T
+
     def weighed(self, series: Array) -> Array:
         """Return the series over its floor: its product with a shape is the amount of the shape in it (a matched filter)."""
         return self._divided(series, 1.0)
@@ -65,6 +76,15 @@ class Floor:
         level = self.at(frequency) ** power
         divided: Array = irfft(rfft(series, axis=0) / (level if series.ndim == 1 else level[:, None]), count, axis=0)
         return divided
+
+
+def _lines_weight(count: int) -> Array:
+    """Return the weight of each |DFT|² of a real series in the sum of its squares: a line stands for its mirror image, too."""
+    weight = np.full(count // 2 + 1, 2.0 / count)
+    weight[0] = 1.0 / count
+    if count % 2 == 0:
+        weight[-1] = 1.0 / count
+    return weight
 
 
 def floor_of(power: Array, count: int) -> Floor:

@@ -271,8 +271,7 @@ def _overlap(moving: Moving, line: SpectrumLine, other: SpectrumLine, floor: Flo
     """Return the largest squared canonical correlation of the waves of two lines under the noise."""
     bases = []
     for each in (line, other):
-        white = np.stack([floor.whitened(wave) for wave in waves(moving, each)], axis=1)
-        bases.append(np.linalg.qr(white)[0])
+        bases.append(np.linalg.qr(floor.coordinates(np.stack(waves(moving, each), axis=1)))[0])
     return float(np.linalg.norm(bases[0].T @ bases[1], 2) ** 2)
 
 
@@ -316,9 +315,9 @@ def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tup
 
 def weighed_fit(columns: Array, series: Array, floor: Floor) -> tuple[Array, Array]:
     """Fit by least squares under coloured noise. Return coefficients and covariance, shapes (k,) and (k, k)."""
-    white = np.stack([floor.whitened(column) for column in columns.T], axis=1)
+    white = floor.coordinates(columns)
     size = np.linalg.norm(white, axis=0)
     size[size == 0.0] = 1.0
     inverse = np.asarray(np.linalg.pinv((white / size).T @ (white / size), rcond=1e-10)) / np.outer(size, size)
-    values: Array = inverse @ (white.T @ floor.whitened(series))
+    values: Array = inverse @ (white.T @ floor.coordinates(series))
     return values, inverse
