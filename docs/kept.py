@@ -8,6 +8,7 @@ import shutil
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import strainwave
 from strainwave import _core
@@ -22,12 +23,17 @@ def kept(name: str, depends_on: bytes, make: Callable[[Path], None]) -> Path:
     """Return the folder that `make` fills; it is called if `depends_on` or the package changed since the last build."""
     folder = KEPT / f"{name}-{hashlib.sha256(depends_on + package_digest()).hexdigest()[:DIGEST_DIGITS]}"
     if not folder.is_dir():
-        for old in KEPT.glob(f"{name}-{'[0-9a-f]' * DIGEST_DIGITS}*"):
-            shutil.rmtree(old)
-        begun = folder.with_suffix(".begun")
-        begun.mkdir(parents=True)
-        make(begun)
-        begun.rename(folder)
+        for old in {*KEPT.glob(f"{name}-{'[0-9a-f]' * DIGEST_DIGITS}")} - {folder}:
+            shutil.rmtree(old, ignore_errors=True)
+        KEPT.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=KEPT) as begun:
+            (made := Path(begun, "made")).mkdir()
+            make(made)
+            try:
+                made.rename(folder)
+            except OSError:  # another process has made it meanwhile
+                if not folder.is_dir():
+                    raise
     return folder
 
 
