@@ -198,7 +198,7 @@ class MotionLog(ComparedByFields):
 
     def whole(self, model: Drive, nuisances: Array) -> Array:
         """Return the effort that a model predicts at every instant of the grid, shape (m,)."""
-        return self._on_grid(model, [], nuisances)[0]
+        return self._on_grid(model, [], nuisances, is_differentiated=False)[0]
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
         """Return measured less predicted effort at every instant of the grid, shape (m,).
@@ -211,8 +211,13 @@ class MotionLog(ComparedByFields):
         held = np.sign(left) * np.maximum(np.abs(left) - hold, 0.0)
         return np.where(self.sound, np.where(self.motion.resting, held, left), 0.0)
 
-    def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
+    def _on_grid(
+        self, model: Drive, numbers: Sequence[int], nuisances: Array, *, is_differentiated: bool = True
+    ) -> tuple[Array, Array]:
+        """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances.
+
+        Without `is_differentiated` there are no derivatives, shape (0, m).
+        """
         unknown = dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
         zeros = [value for name, value in unknown.items() if name.endswith("_zero")]
         shares = nuisances[len(nuisances) - len(self.regressors) :]
@@ -226,12 +231,16 @@ class MotionLog(ComparedByFields):
             self._by_motor(model, number, others, effort) if path in OF_MOTOR else scale * by
             for number, path, by in zip(numbers, paths, by_numbers, strict=True)
         ]
-        by_load = scale * self._by_load(model, others, torque) if self.regressors else torque
-        of_shares = [by_load * each for each in self.regressors.values()]
+        of_shares = list[Array]()
+        if is_differentiated and self.regressors:
+            by_load = scale * self._by_load(model, others, torque)
+            of_shares = [by_load * each for each in self.regressors.values()]
         series, by_delay = np.stack([effort, *slopes, *of_shares]), list[Array]()
         if self.delayed:
             series, change = self.motion.late(series, unknown["delay"])
             by_delay = [change]
+        if not is_differentiated:
+            return series[0] + sum(zeros), np.zeros((0, len(effort)))
         own, of_nuisances = series[1 : 1 + len(slopes)], series[1 + len(slopes) :]
         by_zero = [np.ones_like(effort) for _ in zeros]
         found = np.array([*own, *by_zero, *by_delay, *of_nuisances]).reshape(-1, len(effort))
