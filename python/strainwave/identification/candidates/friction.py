@@ -25,9 +25,10 @@ from strainwave.identification.candidates.steady_shapes import (
 )
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
 from strainwave.identification.fitting.loss import NORMAL_MAD
 from strainwave.identification.fitting.noise import chance_of_gain
+from strainwave.identification.fitting.unknowns import plan
 
 Array = NDArray[np.float64]
 
@@ -358,11 +359,13 @@ def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandid
     start = gear.replace(friction_input=shape.law, friction_mesh=shape.mesh or gear.friction_mesh)
     whole = fit(start, table, shape.paths, ties=shape.followers)
     fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(MAX_FOLDS, len(table.speed))
-    held_out = np.empty(len(table.speed))
+    held_out, asked = np.empty(len(table.speed)), plan(whole.gear, [""], shape.paths, ties=shape.followers)
     for part in np.unique(fold):
         left_out = fold == part
-        rest = fit(whole.gear, table, shape.paths, ties=shape.followers, training=~left_out)
-        held_out[left_out] = rest.predicted[0, left_out]
+        problem = problem_of(asked, whole.gear, [table], [~left_out])  # of one channel: its weight changes nothing
+        x = problem.solve(problem.start(), problem.first_weights(), EXACT_TOLERANCE)
+        ((predicted, _),) = problem.predict(x)
+        held_out[left_out] = predicted[0, left_out]
     squares = (table.torque - held_out) ** 2
     error = float(np.sqrt(np.mean(squares)))
     spread = float(np.std(squares, ddof=1) / np.sqrt(len(squares)))
