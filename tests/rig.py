@@ -9,13 +9,16 @@ gears make must be as wide as the true ones, within 3 %.
 from __future__ import annotations
 
 import argparse
+import atexit
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +52,15 @@ class Case:
     distances: dict[str, float]
     widths: dict[str, float]
     found: Identified
+
+
+@cache
+def measured(seed: int) -> Path:
+    """Return the folder with the measurement files of a seed, written once in a process; no test changes what is in it."""
+    folder = Path(tempfile.mkdtemp(prefix="independent-joint-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    subprocess.run([sys.executable, RIG / "measure.py", folder, f"seed={seed}"], check=True, capture_output=True)
+    return folder
 
 
 def cases(folder: Path, seed: int) -> Iterator[Case]:

@@ -9,8 +9,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
-import sys
 from math import radians, tau
 from pathlib import Path
 
@@ -21,26 +19,25 @@ from strainwave.identification.reading.recognise import recognise
 from strainwave.orders.measured import OrdersFound, orders_found
 from strainwave.orders.ripple import Ripple
 
+from tests.rig import RIG, measured
 from tests.samples import sample
 
 SHARED = Path(__file__).parents[3] / "shared"
-JOINT = Path(os.environ.get("STRAINWAVE_RIG", SHARED / "independent-rig")) / "measure.py"
 ROBOT = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "cobot-temperature" / "dataset_02052023.csv"
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
 ZERO = 2971.3  # of its motor's encoder in degrees
 
 joint_is_here = pytest.mark.skipif(
-    not JOINT.is_file() or shutil.which("cc") is None, reason=f"no independent joint: {JOINT} (set STRAINWAVE_RIG), or no cc"
+    not (RIG / "measure.py").is_file() or shutil.which("cc") is None,
+    reason=f"no independent joint: {RIG} (set STRAINWAVE_RIG), or no cc",
 )
 robot_is_here = pytest.mark.skipif(not ROBOT.is_file(), reason=f"measured data not found: {ROBOT} (set STRAINWAVE_DATA)")
 arms_are_here = pytest.mark.skipif(not ARMS.is_dir(), reason=f"measured data not found: {ARMS} (set STRAINWAVE_DATA)")
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("joint")
-    subprocess.run([sys.executable, str(JOINT), str(out), "seed=11"], check=True, timeout=120)
-    return out
+def folder() -> Path:
+    return measured(3)
 
 
 def told(path: Path) -> OrdersFound:

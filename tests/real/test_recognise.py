@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +11,15 @@ import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 
+from tests.rig import RIG, measured
+
 SHARED = Path(__file__).parents[3] / "shared"
 DATA = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data"))
-RIG = Path(os.environ.get("STRAINWAVE_RIG", SHARED / "independent-rig")) / "measure.py"
 
-measured = pytest.mark.skipif(not DATA.is_dir(), reason=f"measured data not found: {DATA} (set STRAINWAVE_DATA)")
+needs_data = pytest.mark.skipif(not DATA.is_dir(), reason=f"measured data not found: {DATA} (set STRAINWAVE_DATA)")
 needs_rig = pytest.mark.skipif(
-    not RIG.is_file() or shutil.which("cc") is None, reason=f"no independent joint: {RIG} (set STRAINWAVE_RIG), or no cc"
+    not (RIG / "measure.py").is_file() or shutil.which("cc") is None,
+    reason=f"no independent joint: {RIG} (set STRAINWAVE_RIG), or no cc",
 )
 
 # Kind, side and channels of each file that measure.py writes.
@@ -41,10 +41,8 @@ JOINT = {
 
 
 @pytest.fixture(scope="module")
-def joint(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("joint")
-    subprocess.run([sys.executable, str(RIG), str(folder), "seed=1"], check=True, capture_output=True)
-    return folder
+def joint() -> Path:
+    return measured(3)
 
 
 @needs_rig
@@ -68,7 +66,7 @@ def test_the_clock_of_the_link_side_is_put_right(joint: Path) -> None:
     assert scatter == pytest.approx(0.6, abs=0.03)
 
 
-@measured
+@needs_data
 @pytest.mark.parametrize("name", ["DATA_EMPS.mat", "DATA_EMPS_PULSES.mat"])
 def test_the_positioning_system(name: str) -> None:
     found = recognise(DATA / "emps" / name)
@@ -78,7 +76,7 @@ def test_the_positioning_system(name: str) -> None:
     assert any("gtau = 35.15" in remark for remark in found.remarks)
 
 
-@measured
+@needs_data
 def test_loops_of_printed_gears() -> None:
     files = sorted((DATA / "cycloidal-loops").glob("*.csv"))
     whole = [path for path in files if len(path.read_text().splitlines()) > 5]
@@ -89,7 +87,7 @@ def test_loops_of_printed_gears() -> None:
         assert any("torque of the motor, counted at the output" in remark for remark in found.remarks)
 
 
-@measured
+@needs_data
 def test_the_joints_of_a_robot_arm() -> None:
     (path,) = (DATA / "cobot-temperature").glob("*.csv")
     with pytest.raises(ValueError, match=r"it has 6 joints \(0, 1, 2, 3, 4, 5\), as Current_J0, .*; choose with --joint 0"):
@@ -102,7 +100,7 @@ def test_the_joints_of_a_robot_arm() -> None:
     assert 300.0 < found.recording["temperature"].min() < found.recording["temperature"].max() < 330.0
 
 
-@measured
+@needs_data
 def test_locked_torque_moves_nothing() -> None:
     for path in (DATA / "locked-torque").glob("*.csv"):
         found = recognise(path)

@@ -26,7 +26,7 @@ def is_fast(case: assumptions.Case) -> bool:
 @pytest.fixture(scope="module")
 def seed(tmp_path_factory: pytest.TempPathFactory) -> Seed:
     folder = tmp_path_factory.mktemp("joint")
-    return folder, assumptions.made(folder, 4)
+    return folder, assumptions.made(folder, 3)
 
 
 @pytest.mark.parametrize("case", [*filter(is_fast, assumptions.wrong())], ids=lambda case: f"{case.kind}, {case.name}")

@@ -19,7 +19,7 @@ from strainwave.report.predict import predict_summary, verdict_sentence
 
 from tests.arms import Joint, Recorder, fourier, rtde, run
 from tests.python.command import refused, strainwave
-from tests.rig import RIG
+from tests.rig import RIG, measured
 from tests.samples import sample
 
 JOINT = Joint()
@@ -175,11 +175,11 @@ def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
 @pytest.mark.parametrize("seed", range(3, 3 + sample(1, 2)))
 def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
     """Friction scaled by 1.3 in another record, and the loads of two other logs: 0.85 to 0.3 kg.m2, 11 to 25 N.m."""
-    for name, more in (("first", [f"seed={seed}"]), ("worn", [f"seed={seed + 20}", "Fc=0.0611", "Fs=0.0806"])):
-        subprocess.run([sys.executable, RIG / "measure.py", tmp_path / name, *more], check=True)
+    first, more = measured(seed), (f"seed={seed + 20}", "Fc=0.0611", "Fs=0.0806")
+    subprocess.run([sys.executable, RIG / "measure.py", tmp_path / "worn", *more], check=True)
     stated = sw.FileMapping(constants={"torque_constant": 0.0755, "motor_inertia": 7.5e-5})
-    saved = sw.identify("hfuc-20-80", [tmp_path / "first" / "log.csv"], mapping=stated).gear_set
-    loads = [tmp_path / "first" / "two_loads" / f"{name}.csv" for name in ("heavy", "light", "middle")]
+    saved = sw.identify("hfuc-20-80", [first / "log.csv"], mapping=stated).gear_set
+    loads = [first / "two_loads" / f"{name}.csv" for name in ("heavy", "light", "middle")]
     logs = [tmp_path / "worn" / "log.csv", *loads]
     worn, heavy, light, middle = sw.predict(saved, logs, mapping=stated)
     dry = change(worn, "dry friction")
