@@ -13,7 +13,6 @@ from strainwave.identification.identify import identify
 from strainwave.identification.joints import identify_joints
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
-from strainwave.report.joints import joints_report, joints_summary
 
 from tests import arms
 from tests.python.command import strainwave
@@ -25,9 +24,9 @@ JOINT = arms.Joint(loss=0.0)
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of an arm without masses beyond those of its base, whose third joint rests."""
     light = arms.Links(base=1.0, masses=(0.0, 0.0), inertias=(0.4, 0.1))
-    done = arms.run((JOINT,) * 3, arms.fourier(20.0, (0, 1), seed=1), light)
+    done = arms.run((JOINT,) * 3, arms.fourier(10.0, (0, 1), seed=1), light)
     path: Path = tmp_path_factory.mktemp("arm") / "log.csv"
-    arms.panda(path, arms.Recorder(rate=200.0)(done))
+    arms.panda(path, arms.Recorder(rate=100.0)(done))
     return path
 
 
@@ -36,8 +35,12 @@ def _said(joint: str, path: Path) -> FileMapping:
 
 
 def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Path, log: Path) -> None:
+    """So do files that determine no joint."""
     assert joints_of(log) == ("1", "2")
-    done = strainwave("identify", "hfuc-25-100", log, "--joint", "all", "--out", "out", folder=tmp_path)
+    (tmp_path / "table.csv").write_text("speed [rad/s],torque [N.m]\n" + "".join(f"{v},{0.05 + v}\n" for v in range(1, 9)))
+    (tmp_path / "text.csv").write_text("nothing\n")
+    files = (log, "table.csv", "text.csv")
+    done = strainwave("identify", "hfuc-25-100", *files, "--joint", "all", "--out", "out", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     with (tmp_path / "out" / "joints.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -51,6 +54,9 @@ def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Pa
         assert {each["path"]: each["value"] for each in results["parameters"]} == told
         assert f'<a href="joint-{joint}/report.html">' in page
         assert f"joint {joint}: log.csv " in done.stdout
+    for name in files[1:]:
+        assert f"\n{name}: NOT USED: " in done.stdout
+        assert f"{name} is not used" in page
 
 
 def test_a_file_of_one_joint_has_no_others(tmp_path: Path, log: Path) -> None:
@@ -60,17 +66,6 @@ def test_a_file_of_one_joint_has_no_others(tmp_path: Path, log: Path) -> None:
         ValueError, match=r"leave out --joint, or name one: one.csv: its columns are not named as angles of several joints"
     ):
         identify_joints("hfuc-25-100", [tmp_path / "one.csv"])
-
-
-def test_files_that_tell_no_joints_apart_are_named(tmp_path: Path, log: Path) -> None:
-    (tmp_path / "arm.csv").write_bytes(log.read_bytes())
-    (tmp_path / "table.csv").write_text("speed [rad/s],torque [N.m]\n" + "".join(f"{v},{0.05 + v}\n" for v in range(1, 9)))
-    (tmp_path / "text.csv").write_text("nothing\n")
-    joints = identify_joints("hfuc-25-100", [tmp_path])
-    assert joints.found.keys() == {"1", "2"}
-    assert joints.left_out.keys() == {"table.csv", "text.csv"}
-    assert any(line.startswith("table.csv: NOT USED: ") for line in joints_summary(joints))
-    assert "table.csv is not used" in joints_report(joints)
 
 
 def test_more_joints_than_any_robot_has_are_refused(tmp_path: Path) -> None:
