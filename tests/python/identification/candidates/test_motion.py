@@ -226,7 +226,7 @@ def ringing(truth: dict[str, float], stiffness: float, seed: int) -> sw.Recordin
         friction = truth["coulomb"] * np.tanh(speed / 0.05) + truth["viscous"] * speed
         rate = (wanted[min(k + 1, len(time) - 1)] - wanted[k]) / step
         servo = 1.0 * (wanted[k] - angle) + 0.03 * (rate - speed)
-        if k % 20 == 0:
+        if k % 40 == 0:
             rows.append((time[k], angle, servo))
         speed += step * (servo - friction - spring / RATIO) / MOTOR
         turning += step * (spring - truth["gravity"] * np.sin(turned + truth["phase"])) / truth["inertia"]

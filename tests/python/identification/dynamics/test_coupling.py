@@ -70,8 +70,8 @@ def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:
 
 
 def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Path) -> None:
-    done = arms.run((arms.Joint(),) * 3, arms.fourier(20.0, (1, 2), seed=5))
-    arms.headerless(tmp_path / "arm.csv", arms.Recorder(rate=250.0, step=1e-4)(done))
+    done = arms.run((arms.Joint(),) * 3, arms.fourier(12.0, (1, 2), seed=5))
+    arms.headerless(tmp_path / "arm.csv", arms.Recorder(rate=200.0, step=1e-4)(done))
     columns = {"time": "1", "output_angle": "3", "output_speed": "9", "current": "15"}
     alone = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: FileMapping(columns=columns))
     said = FileMapping(columns={**columns, "other_angles": "4"})
