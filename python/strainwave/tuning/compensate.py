@@ -148,7 +148,7 @@ def compensate(
             does not use a number that is given
 
     >>> import strainwave as sw
-    >>> found = compensate("robot-joint", members=3, travel=0.05)
+    >>> found = compensate("robot-joint", members=3, travel=0.02)
     >>> found.chosen.candidate.effects, found.gain > 0.3
     (('torsion',), True)
     """

@@ -10,7 +10,7 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.tuning.candidates import baseline, candidates
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.compensate import _drawn, _of_the_drive, _remarks
+from strainwave.tuning.compensate import _drawn, _of_the_drive, _remarks, best_cascade, goal_of
 from strainwave.tuning.goals import position, smooth, speed
 from strainwave.tuning.judging import Judged, judged
 from strainwave.tuning.loops import sharpest
@@ -24,7 +24,7 @@ MEMBERS = 3  # with the gear as its numbers have it four, which fill the registe
 
 @pytest.fixture(scope="module")
 def known() -> sw.Compensated:
-    return sw.compensate(KNOWN, members=MEMBERS, travel=0.05)
+    return sw.compensate(KNOWN, members=MEMBERS, travel=0.03)
 
 
 def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated) -> None:
@@ -47,9 +47,11 @@ def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: 
 
 def test_an_error_of_unknown_phase_is_not_fed_forward() -> None:
     """It adds to the error as often as it takes away."""
-    found = sw.compensate(STATED, goal="speed", members=7, seed=3)
+    found = sw.compensate(STATED, goal="speed", members=MEMBERS, seed=3)
     with_error = [each for each in found.tried if each.candidate.is_plain and "kinematic error" in each.candidate.effects]
-    assert all(each.median("speed ripple") > each.nominal["speed ripple"] for each in with_error)
+    assert len(with_error) == 2
+    assert all(each.median("speed ripple") > 2.0 * each.nominal["speed ripple"] for each in with_error)
+    assert "kinematic error" not in found.chosen.candidate.effects
     assert any("kinematic error is assumed" in remark and "both encoders" in remark for remark in found.remarks)
 
 
@@ -89,8 +91,10 @@ def test_a_gear_without_effects_needs_none() -> None:
 
 
 def test_a_delay_beyond_the_motion_is_stated() -> None:
-    found = sw.compensate(KNOWN, members=3, travel=0.02, speed=0.1, period=5e-3, delay=5e-3)
-    assert any("a shorter period or delay would gain" in remark for remark in found.remarks)
+    plant = Plant.read(KNOWN, 5e-3, 5e-3)
+    goal = goal_of("position", plant, travel=0.02, speed=0.1)
+    best = best_cascade(plant, goal, _drawn(KNOWN, plant, MEMBERS, 0, known_load=False), "input")
+    assert any("a shorter period or delay would gain" in remark for remark in _remarks(KNOWN, plant, goal, best))
 
 
 @pytest.mark.parametrize(
@@ -136,7 +140,7 @@ def test_a_gear_alone_is_refused() -> None:
 @pytest.mark.parametrize("name", ["tilt-actuator", "two-inertia-gear"])
 def test_drives_of_the_catalogue_run_on_gears_drawn_from_them(name: str) -> None:
     """Of one the pressure angle stands in two parts, which must agree; the other has no friction from which a limit follows."""
-    found = sw.compensate(name, members=MEMBERS, travel=0.01)
+    found = sw.compensate(name, members=MEMBERS, travel=0.004)
     assert found.baseline.failures == 0
     assert found.baseline.upper("tracking error") < 2e-3
 
