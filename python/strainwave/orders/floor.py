@@ -61,7 +61,8 @@ class Floor:
         from scipy.fft import rfft
 
         count = len(series)
-        lines = rfft(series.T) * np.sqrt(_lines_weight(count) / self.at(np.fft.rfftfreq(count)))
+        frequency: Array = np.fft.rfftfreq(count).astype(np.float64)
+        lines = rfft(series.T) * np.sqrt(_lines_weight(count) / self.at(frequency))
         return np.concatenate([lines.real, lines.imag], axis=-1).T
 
     def weighed(self, series: Array) -> Array:
