@@ -235,8 +235,7 @@ def test_so_is_any_other(tmp_path: Path, part: sw.Compensation) -> None:
 COMPILED = [
     TOGETHER,
     {"feedforward": "lost_motion_map", "learning": "repetitive", "observer": "disturbance_observer"},
-    {"feedforward": "model_feedforward", "observer": "bristle_observer", "dither": "dither"},
-    {"feedforward": "lost_motion_map", "learning": "iterative_learning", "observer": "disturbance_observer"},
+    {"feedforward": "lost_motion_map", "learning": "iterative_learning", "observer": "bristle_observer", "dither": "dither"},
     {"feedforward": "model_feedforward", "learning": "twist_identification", "observer": "disturbance_observer"},
 ]
 
