@@ -188,5 +188,6 @@ def test_the_best_friction_predicts_the_second_record_better_than_coulombs(
 
 
 def as_joint(log: Log) -> sw.Recording:
-    columns = {"time": log.time, "output_angle": log.position, "joint_torque": log.force}
+    """Return a record at 500 Hz, five times the cut-off."""
+    columns = {"time": log.time[::2], "output_angle": log.position[::2], "joint_torque": log.force[::2]}
     return sw.Recording(columns, {"time": "s", "output_angle": "rad", "joint_torque": "N.m"})
