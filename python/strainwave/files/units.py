@@ -58,6 +58,14 @@ _DEFINITIONS = (
     "pixel = [pixel] = px",  # of an image
 )
 
+# Standard spellings that most recordings and models have. pint, whose import takes half a second, is not needed for them.
+STANDARD = frozenset(
+    {"1", "1/(N.m)", "1/(N.m.rad)", "1/K", "1/m", "1/rad", "1/s", "A", "A.s/rad", "A/rad", "H", "Hz", "J", "J/K", "K", "K/W"}
+    | {"N.m", "N.m.s/rad", "N.m/A", "N.m/rad", "N.m/rad2", "N.m/rad3", "N.m/s", "N.s/m", "N/m", "Ohm", "V", "V.s/rad"}
+    | {"V/(A.s)", "V/(N.m)", "V/(rad.s)", "V/A", "V/rad", "W", "W/K", "kg", "kg.m2", "kg/m3", "m", "m/s", "m2", "rad"}
+    | {"rad/s", "rad/s2", "s", "s/rad"}
+)
+
 _MAX_UNIT_CHARACTERS = 100  # a bound for the work that a text from outside can cause
 
 _CHARACTERS = str.maketrans(
@@ -120,10 +128,12 @@ def convert(values: Values, unit: str, to: str) -> Values:
     Traceback (most recent call last):
     ValueError: cannot convert "1" to "rad"
     """
-    import pint
-
     if np.isnan(arguments.numbers("values", values)).any():
         raise ValueError("values must be numbers, and nan is none")
+    if isinstance(unit, str) and unit == to and unit in STANDARD:
+        return values
+    import pint
+
     if any(isinstance(each, str) and (_COUNTED.fullmatch(each) or _SHARE.fullmatch(each)) for each in (unit, to)):
         return _convert_scaled(values, unit, to)
     source, target = _parse(unit), _parse(to)
@@ -252,6 +262,8 @@ def check(unit: str) -> str:
     >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)"), check("inc/4096"), check("‰ of 0.4 Nm")
     ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad', 'counts/4096', 'permille of 0.4 N.m')
     """
+    if isinstance(unit, str) and unit in STANDARD:
+        return unit
     if isinstance(unit, str) and (counted := _COUNTED.fullmatch(unit)):
         return f"counts/{counted[1]}{counted[2] or ''}"
     if isinstance(unit, str) and (share := _SHARE.fullmatch(unit)):

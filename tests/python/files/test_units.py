@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strainwave import _core
+from strainwave.files import units
 from strainwave.files.units import check, convert, counts, is_share, measures
 
 from tests.work import calls
@@ -24,6 +26,15 @@ def check_told(error: ValueError) -> None:
     """The message is one short line."""
     assert str(error).isprintable()
     assert len(str(error)) < 200
+
+
+def test_units_known_without_pint_are_in_its_standard_spelling() -> None:
+    assert {unit: units._spelling(units._parse(unit)) for unit in units.STANDARD} == {unit: unit for unit in units.STANDARD}
+
+
+def test_every_unit_of_a_model_is_known_without_pint() -> None:
+    models = [model for family in _core.families.values() for model in family.values()]
+    assert {field["unit"] for model in models for field in model.fields if field.get("unit")} <= units.STANDARD
 
 
 def exactly(message: str) -> str:
