@@ -198,7 +198,12 @@ class MotionLog(ComparedByFields):
 
     def whole(self, model: Drive, nuisances: Array) -> Array:
         """Return the effort that a model predicts at every instant of the grid, shape (m,)."""
-        return self._on_grid(model, [], nuisances, is_differentiated=False)[0]
+        torque, _ = needed_torque(model, self.motion, self._others(nuisances))
+        effort = per_torque(model, self.effort) * torque + self.induced(model)
+        unknown = self._unknown(nuisances)
+        if self.delayed:
+            effort = self.motion.late(effort[np.newaxis], unknown["delay"])[0][0]
+        return np.asarray(effort + sum(_zeros(unknown)))
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
         """Return measured less predicted effort at every instant of the grid, shape (m,).
@@ -211,17 +216,10 @@ class MotionLog(ComparedByFields):
         held = np.sign(left) * np.maximum(np.abs(left) - hold, 0.0)
         return np.where(self.sound, np.where(self.motion.resting, held, left), 0.0)
 
-    def _on_grid(
-        self, model: Drive, numbers: Sequence[int], nuisances: Array, *, is_differentiated: bool = True
-    ) -> tuple[Array, Array]:
-        """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances.
-
-        Without `is_differentiated` there are no derivatives, shape (0, m).
-        """
-        unknown = dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
-        zeros = [value for name, value in unknown.items() if name.endswith("_zero")]
-        shares = nuisances[len(nuisances) - len(self.regressors) :]
-        others: Array = sum((share * each for share, each in zip(shares, self.regressors.values(), strict=True)), self.extra)
+    def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
+        unknown, others = self._unknown(nuisances), self._others(nuisances)
+        zeros = _zeros(unknown)
         described = _core.parameters(model)
         paths = [described[number][0] for number in numbers]
         scale = per_torque(model, self.effort)
@@ -231,20 +229,25 @@ class MotionLog(ComparedByFields):
             self._by_motor(model, number, others, effort) if path in OF_MOTOR else scale * by
             for number, path, by in zip(numbers, paths, by_numbers, strict=True)
         ]
-        of_shares = list[Array]()
-        if is_differentiated and self.regressors:
-            by_load = scale * self._by_load(model, others, torque)
-            of_shares = [by_load * each for each in self.regressors.values()]
+        by_load = scale * self._by_load(model, others, torque) if self.regressors else torque
+        of_shares = [by_load * each for each in self.regressors.values()]
         series, by_delay = np.stack([effort, *slopes, *of_shares]), list[Array]()
         if self.delayed:
             series, change = self.motion.late(series, unknown["delay"])
             by_delay = [change]
-        if not is_differentiated:
-            return series[0] + sum(zeros), np.zeros((0, len(effort)))
         own, of_nuisances = series[1 : 1 + len(slopes)], series[1 + len(slopes) :]
         by_zero = [np.ones_like(effort) for _ in zeros]
         found = np.array([*own, *by_zero, *by_delay, *of_nuisances]).reshape(-1, len(effort))
         return series[0] + sum(zeros), found
+
+    def _unknown(self, nuisances: Array) -> dict[str, float]:
+        """Return the value of each nuisance by its name."""
+        return dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
+
+    def _others(self, nuisances: Array) -> Array:
+        """Return the torque of other bodies that hold the output back [N.m], by the shares among the nuisances, shape (m,)."""
+        shares = nuisances[len(nuisances) - len(self.regressors) :]
+        return sum((share * each for share, each in zip(shares, self.regressors.values(), strict=True)), self.extra)
 
     def induced(self, model: Drive) -> Array:
         """Return the part of the effort that makes no torque: the voltage that a motor induces as it turns [V]; else 0."""
@@ -264,6 +267,11 @@ class MotionLog(ComparedByFields):
         )
         there, _ = needed_torque(model, self.motion, others + step)
         return np.asarray((there - torque) / step)
+
+
+def _zeros(unknown: Mapping[str, float]) -> list[float]:
+    """Return the zeros of channels among nuisances."""
+    return [value for name, value in unknown.items() if name.endswith("_zero")]
 
 
 def inertia_of(drive: Drive) -> float:
