@@ -8,6 +8,7 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -215,7 +216,7 @@ class CsvTable:
                 reason = f": {one_line(str(error))}"
         raise ValueError(f"{self.file}{self._fault(sources) or reason}")
 
-    @property
+    @cached_property
     def contents(self) -> list[Content]:
         """Return the content of each column by the cells of the first rows that are not empty."""
         seen: list[list[str]] = [[] for _ in self.labels]

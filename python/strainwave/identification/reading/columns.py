@@ -9,7 +9,7 @@ from itertools import compress
 
 import numpy as np
 
-from strainwave.files.labels import ColumnSource, Content, places_of
+from strainwave.files.labels import ColumnSource, places_of
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
@@ -36,9 +36,8 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
     Returns:
         the columns, and what was decided between duplicates
     """
-    contents = table.contents  # once: a text table reads its first rows anew each time
-    by_user = _by_user(table, contents, mapping)
-    named = _of_one_time(_by_name(table, contents, mapping, by_user))
+    by_user = _by_user(table, mapping)
+    named = _of_one_time(_by_name(table, mapping, by_user))
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
     found = by_user + _of_one_joint(table, own, mapping)
     is_stated = any(column.channel.quantity in EFFORTS for column in by_user)
@@ -51,7 +50,7 @@ def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     if mapping.joint is not None or "output_angle" in mapping.columns or "input_angle" in mapping.columns:
         return []
     groups = dict[Channel, dict[str, int]]()
-    for column in _by_name(table, table.contents, mapping):
+    for column in _by_name(table, mapping):
         if column.channel.quantity == "angle" and column.channel.measured and column.which:
             angles = groups.setdefault(column.channel, {})
             if column.which in angles:
@@ -69,13 +68,11 @@ def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
 # ---- By their names --------------------------------------------------------------------------------------------------
 
 
-def _by_name(
-    table: OpenTable, contents: Sequence[Content], mapping: FileMapping, by_user: Sequence[Column] = ()
-) -> list[Column]:
+def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
     """Return the columns with a known name, but for channels that a person named."""
     taken = {column.position for column in by_user}
     columns = []
-    for position, (label, content) in enumerate(zip(table.labels, contents, strict=True)):
+    for position, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
         if content == "other" or position in taken:
             continue
         found = meaning(label._replace(unit=None) if label.name in mapping.units else label)
@@ -163,7 +160,7 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
 # ---- By a person -----------------------------------------------------------------------------------------------------
 
 
-def _by_user(table: OpenTable, contents: Sequence[Content], mapping: FileMapping) -> list[Column]:
+def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
     """Return the columns that a person named.
 
     Raises:
@@ -177,7 +174,7 @@ def _by_user(table: OpenTable, contents: Sequence[Content], mapping: FileMapping
         place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[ALIASES.get(name, name)]
         label, by_name = table.labels[place], meaning(table.labels[place])
         unit = label.unit or (by_name.unit if by_name and by_name.quantity == channel.quantity else None) or None
-        unit = "s" if contents[place] == "dates" else unit
+        unit = "s" if table.contents[place] == "dates" else unit
         if name == "regressors":  # of one, any unit is that of torque over that of its share
             found.append(Column(place, label, channel, by_user=True, regressor=True, unit=channel.unit))
             continue
