@@ -113,7 +113,8 @@ def draws_pictures(page: Path) -> bool:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if draws_pictures(page):
-        pictures.drawn(page.stem, pictures.script_of(page.stem, {page: page.read_text(encoding="utf-8")}))
+        folder = pictures.drawn(page.stem, pictures.script_of(page.stem, {page: page.read_text(encoding="utf-8")}))
+        assert (folder / pictures.WARNINGS).read_text(encoding="utf-8") == ""
         return
     monkeypatch.chdir(tmp_path)
     write_files(page, tmp_path)

@@ -15,7 +15,7 @@ import pytest
 import strainwave as sw
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "arms" / "ur10e"
-CONSTANT = 0.1  # N.m/A, rough
+TORQUE_CONSTANT = 0.1  # N.m/A, rough
 MAX_CHANGE_SIGMA = 3.0  # standard deviations between halves of one record
 
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"measured data not found: {FOLDER} (set STRAINWAVE_DATA)")
@@ -43,7 +43,7 @@ def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float]
     def by_the_first_half(joint: int, constant: float) -> sw.Prediction:
         folder = tmp_path_factory.mktemp("halves")
         first, second = halves(joint, folder)
-        found = sw.identify("csg-20-100", [first], mapping=mapping(joint, constant), accept=constant != CONSTANT)
+        found = sw.identify("csg-20-100", [first], mapping=mapping(joint, constant), accept=constant != TORQUE_CONSTANT)
         found.gear_set.save(folder / "gear.toml")
         (prediction,) = sw.predict(folder / "gear.toml", [second], mapping=mapping(joint, constant))
         return prediction
@@ -53,7 +53,7 @@ def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float]
 
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
 def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int, float], sw.Prediction]) -> None:
-    found = predicted(joint, CONSTANT)
+    found = predicted(joint, TORQUE_CONSTANT)
     errors = f"error {found.error:.3f} A of {found.varies:.3f}, {found.allowed:.3f} allowed, plain {found.plain:.3f}"
     print(f"\njoint {joint}: {errors}")
     for each in found.changes:
@@ -66,7 +66,7 @@ def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int
 
 
 def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int, float], sw.Prediction]) -> None:
-    assert predicted(2, 4.0 * CONSTANT).error == pytest.approx(predicted(2, CONSTANT).error, rel=0.05)
+    assert predicted(2, 4.0 * TORQUE_CONSTANT).error == pytest.approx(predicted(2, TORQUE_CONSTANT).error, rel=0.05)
 
 
 def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: P
     files = [tmp_path / name for name in ("a.csv", "b.csv")]
     for joint, file in zip((1, 2), files, strict=True):
         file.write_bytes((FOLDER / f"ur-20_01_22-joint_{joint}.csv").read_bytes())
-    found = sw.identify("csg-20-100", files, mapping=lambda path: mapping(1 + files.index(path), CONSTANT))
+    found = sw.identify("csg-20-100", files, mapping=lambda path: mapping(1 + files.index(path), TORQUE_CONSTANT))
     coulomb, mesh = found.gear_set.gear.friction_input.coulomb, found.gear_set.gear.friction_mesh
     fitted = [each.fit.gear for each in found.files if each.fit is not None]
     assert (coulomb, mesh) in [(each.friction_input.coulomb, each.friction_mesh) for each in fitted]
@@ -85,5 +85,5 @@ def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: P
 def test_halves_of_a_joint_do_not_contradict_each_other(tmp_path: Path) -> None:
     for joint in (1, 2):
         (tmp_path / str(joint)).mkdir()
-        found = sw.identify("csg-20-100", list(halves(joint, tmp_path / str(joint))), mapping=mapping(joint, CONSTANT))
+        found = sw.identify("csg-20-100", list(halves(joint, tmp_path / str(joint))), mapping=mapping(joint, TORQUE_CONSTANT))
         assert not any(check.failed for check in found.checks if check.name == "agreement of files")

@@ -207,7 +207,7 @@ def test_sources_are_no_part_of_the_comparison() -> None:
 
 
 def test_a_difference_is_as_uncertain_as_both_numbers_are() -> None:
-    """Of independent numbers variances add; a number that one set does not know the uncertainty of has no distance."""
+    """Variances of independent numbers add. The difference has no deviation where one set states none."""
     gear = sw.GearSet.read("csg-25-100")
     path, k1, damping = "gear.stiffness.k1", gear.gear.stiffness.k1, gear.gear.damping
     one = gear.replace(sources={**gear.sources, path: Entry("log", uncertainty=300.0)})

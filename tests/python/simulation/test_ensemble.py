@@ -154,7 +154,7 @@ def machine_flags() -> set[str]:
 
 
 def digest(*, by_kernel: bool) -> str:
-    """Of many runs of a drive, by a kernel or by the general drive: equal only if all bits are."""
+    """Return the digest of many runs of a drive, by a kernel or by the general drive."""
     _core.forget_kernels(ONE_OF_BOTH)
     assert kernels.load(ONE_OF_BOTH, "simulate_many", compile_it=True) if by_kernel else True
     assert ("simulate_many" in _core.loaded_jobs(ONE_OF_BOTH)) == by_kernel
@@ -185,8 +185,8 @@ def test_a_kernel_of_each_instruction_set_gives_the_bits_of_the_general_drive(in
         "import json; from strainwave import _core; from tests.python.simulation.test_ensemble import digest; "
         "print(json.dumps([_core.instruction_set(), digest(by_kernel=True)]))"
     )
-    told, _ = script(code, STRAINWAVE_INSTRUCTION_SET=instruction_set).communicate(timeout=120)
-    assert json.loads(told) == [instruction_set, general_digest()]
+    printed, _ = script(code, STRAINWAVE_INSTRUCTION_SET=instruction_set).communicate(timeout=120)
+    assert json.loads(printed) == [instruction_set, general_digest()]
 
 
 def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> None:

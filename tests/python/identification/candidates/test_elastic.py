@@ -68,5 +68,5 @@ def test_a_twist_that_noise_hides_is_not_told() -> None:
 
 
 def test_no_delay_between_encoders_is_longer_than_five_samples() -> None:
-    told = found(1e-5, delay=0.03, seconds=4.0)  # 15 samples
-    assert not any(each.path == "output_angle_delay" for each in told.fit.estimates)
+    fitted = found(1e-5, delay=0.03, seconds=4.0).fit  # 15 samples
+    assert not any(each.path == "output_angle_delay" for each in fitted.estimates)
