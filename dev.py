@@ -267,7 +267,7 @@ def wheel(options: Sequence[str]) -> int:
     complete(made, clean / "bin" / "python")
     install_into(clean, made)
     say(f"trying {made.relative_to(ROOT)}, {made.stat().st_size / 1e6:.1f} MB, where no compiler is found")
-    return attempt(clean / "bin" / "python", "-I", ROOT / "tests" / "wheel.py", PATH=str(clean / "bin"))
+    return attempt(clean / "bin" / "python", "-I", ROOT / "tests" / "evidence" / "wheel.py", PATH=str(clean / "bin"))
 
 
 def install_into(clean: Path, made: Path) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from strainwave import _core
 
-from tests.cplusplus import INCLUDE_FOLDER, ROOT, STRICT, compilation, compiler
+from tests.support.cplusplus import INCLUDE_FOLDER, ROOT, STRICT, compilation, compiler
 
 HEADERS = INCLUDE_FOLDER / "strainwave"
 SOURCE = ROOT / "src"

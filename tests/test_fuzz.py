@@ -17,7 +17,7 @@ import strainwave as sw
 from tests.fuzz.kinds import KINDS, drawn, kind_of
 from tests.fuzz.laws import Case, judged
 from tests.fuzz.run import Task, outcomes
-from tests.workers import CRASHES, HANGS, answers
+from tests.support.workers import CRASHES, HANGS, answers
 
 FEW = {
     "csv": 40,

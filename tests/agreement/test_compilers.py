@@ -12,7 +12,18 @@ import pytest
 import strainwave as sw
 from strainwave.native import kernel, kernels
 
-from tests.cplusplus import HEADERS, INCLUDE_FOLDER, ROOT, STRICT, checker, compilation, compiled_before, compiler, drives, zig
+from tests.support.cplusplus import (
+    HEADERS,
+    INCLUDE_FOLDER,
+    ROOT,
+    STRICT,
+    checker,
+    compilation,
+    compiled_before,
+    compiler,
+    drives,
+    zig,
+)
 
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 

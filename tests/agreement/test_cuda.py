@@ -9,8 +9,8 @@ import strainwave as sw
 from strainwave.native import device, nvrtc
 from strainwave.native.compilers import CompileError
 
-from tests.cplusplus import HEADERS, drives
-from tests.strategies import made
+from tests.support.cplusplus import HEADERS, drives
+from tests.support.strategies import made
 
 KERNEL = """
 extern "C" __global__ void run_{number}(const {drive}* drive, {drive}::State* state,

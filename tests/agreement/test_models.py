@@ -21,9 +21,9 @@ from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
-from tests.samples import sample
-from tests.side_by_side import side_by_side
-from tests.strategies import built, models, suited
+from tests.support.samples import sample
+from tests.support.side_by_side import side_by_side
+from tests.support.strategies import built, models, suited
 
 Array = NDArray[np.float64]
 

@@ -16,10 +16,10 @@ from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 
-from tests.reference_drive import DRIVE, command
-from tests.samples import sample
-from tests.side_by_side import side_by_side
-from tests.strategies import made
+from tests.support.reference_drive import DRIVE, command
+from tests.support.samples import sample
+from tests.support.side_by_side import side_by_side
+from tests.support.strategies import made
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""A few of the random drives of tests/stress.py, which runs them by the thousand."""
+"""A few of the random drives of tests/evidence/stress.py, which runs them by the thousand."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import strainwave as sw
 from strainwave import _core
 from strainwave.simulation.excitation import Excitation
 
-from tests.strategies import models_of
-from tests.stress import WRONG, check, model, outcome, outcomes
-from tests.workers import HANGS
+from tests.evidence.stress import WRONG, check, model, outcome, outcomes
+from tests.support.strategies import models_of
+from tests.support.workers import HANGS
 
 
 @pytest.mark.parametrize("number", [*range(10), 64311])

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.compensation import ModelFeedforward
 
-from tests.each import each
-from tests.strategies import models, suited
+from tests.support.each import each
+from tests.support.strategies import models, suited
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from strainwave.compensation import Repetitive
 
 from tests.compensation.ideal import PERIOD, RATIO, Course, following, state
-from tests.each import each
-from tests.samples import sample
+from tests.support.each import each
+from tests.support.samples import sample
 
 Array = NDArray[np.float64]
 

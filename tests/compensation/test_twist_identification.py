@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.compensation import ModelFeedforward, TwistIdentification
 
 from tests.compensation.ideal import DAMPING, KINEMATICS, PERIOD, RATIO, STIFFNESS, state
-from tests.cplusplus import INCLUDE_FOLDER, compiler
+from tests.support.cplusplus import INCLUDE_FOLDER, compiler
 
 Array = NDArray[np.float64]
 

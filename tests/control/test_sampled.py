@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.geared import RATIO, geared
-from tests.little_memory import little_memory
+from tests.support.geared import RATIO, geared
+from tests.support.little_memory import little_memory
 
 Array = NDArray[np.float64]
 LAW = sw.control.PID(proportional=2.0, integral=15.0, derivative=0.05, limit=24.0)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import tutorials
 
-from tests import tutorial_joint
+from tests.evidence import tutorial_joint
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "examples" / "tutorials"

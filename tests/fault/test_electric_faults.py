@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 
-from tests.flywheel import course, settled, torque_of
-from tests.geared import geared
+from tests.support.flywheel import course, settled, torque_of
+from tests.support.geared import geared
 
 PMSM = sw.motor.PMSM(
     resistance=0.4,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cplusplus import checker, compilation
+from tests.support.cplusplus import checker, compilation
 
 USE = """
 #include <strainwave/fault/models.hpp>

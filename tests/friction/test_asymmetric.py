@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.friction import Asymmetric, Coulomb, LuGre, MaxwellSlipFriction, Stribeck, Viscous
 
-from tests.strategies import built, log_uniform, made
+from tests.support.strategies import built, log_uniform, made
 
 shares = st.floats(-1.0, 1.0)
 speeds = log_uniform(1e-3, 1e3)

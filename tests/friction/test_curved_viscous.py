@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.friction import CurvedViscous, Stribeck
 
-from tests.strategies import log_uniform
+from tests.support.strategies import log_uniform
 
 LAW = CurvedViscous(coulomb=0.02, breakaway=0.035, stribeck_speed=3.0, viscous_torque=0.04, exponent=0.6, reference_speed=150.0)
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from strainwave.friction import LuGre
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 COULOMB, STRIBECK_SPEED, STIFFNESS, DAMPING = 0.05, 0.1, 50.0, 0.02
 

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from strainwave.friction import MaxwellSlipFriction
 from strainwave.hysteresis import MaxwellSlip
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 STIFFNESS, SHARE = [60.0, 30.0, 10.0], [0.2, 0.3, 0.5]
 COULOMB, BREAKAWAY, STRIBECK_SPEED, ATTRACTION, VISCOUS = 0.05, 0.07, 0.1, 0.5, 4e-4

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy.special import lambertw
 from strainwave.friction import MixedLubrication, Stribeck, Thermal
 
-from tests.geared import geared
-from tests.strategies import log_uniform
+from tests.support.geared import geared
+from tests.support.strategies import log_uniform
 
 LAW = MixedLubrication(
     coulomb=0.02, breakaway=0.05, stribeck_speed=5.0, viscous=1e-3, viscosity_fall=0.03, load_sensitivity=0.01

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.friction import PositionDependent
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 PUBLISHED = PositionDependent(
     quadratic=1.5738e-6,

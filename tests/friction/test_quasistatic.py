@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from strainwave import friction, hysteresis
 
 from tests.laws.test_friction import in_bounds, laws
-from tests.strategies import log_uniform, made, models, signed
+from tests.support.strategies import log_uniform, made, models, signed
 
 paths = st.lists(st.just(0.0) | signed(log_uniform(1e-6, 1e2)), min_size=1, max_size=8)
 there_and_back = [0.0, 0.0, 0.5, 0.5, -0.5, 1.0]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 from strainwave.friction import LoadDependent, TorqueEfficiency
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 LAW = TorqueEfficiency(average_loss=0.3, difference_loss=0.1, presliding=0.01, viscous=0.0)
 SPEED = 0.5  # rad/s

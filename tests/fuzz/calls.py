@@ -25,7 +25,7 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
-from tests.strategies import made as usual_of
+from tests.support.strategies import made as usual_of
 
 MODULES = (
     *("files.units", "files.gear_set", "files.entries", "files.recording", "parameters", "simulation.scenario"),

@@ -13,9 +13,9 @@ from numpy.random import Generator
 from strainwave import _core
 from strainwave.simulation.run import METHODS
 
+from tests.evidence.stress import model
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
-from tests.stress import model
 
 SMALLEST = float(np.finfo(np.float32).tiny)
 SIZES = (SMALLEST, 1e-30, 1e-20, 1e-9, 1e-3, 1.0, 1e3, 1e9, 1e20, 1e30, 1e100, 1e160, 1e300)

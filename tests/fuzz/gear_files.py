@@ -14,7 +14,7 @@ from strainwave.files.identified_tables import Covariance, Validation
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import encoded, mutated, picked
-from tests.strategies import made
+from tests.support.strategies import made
 
 WORDS = (
     "[gear]", "[friction_input]", "[ratings]", "[motor]", "[control]", "[load]", "[[gear]]", "[gear.stiffness]",

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
-from tests.strategies import made as usual_of
+from tests.support.strategies import made as usual_of
 
 Array = NDArray[np.float64]
 SCALES = (1e-300, 1e-150, 1e-30, 1e-9, 1e-3, *12 * (1.0,), 1e3, 1e9, 1e30, 1e150, 1e300)

@@ -15,7 +15,7 @@ from typing import IO, NamedTuple
 
 from tests.fuzz.kinds import KINDS, drawn
 from tests.fuzz.laws import Outcome, judged
-from tests.workers import answers
+from tests.support.workers import answers
 
 LIMIT = 60.0  # s, for one case, and for what it needs once in a process
 LARGEST = 4 << 30  # bytes, for what makes a case

@@ -10,7 +10,7 @@ from numpy.random import Generator
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import encoded, mutated, picked
-from tests.scenarios import RAMP_AND_SINE, TURNED
+from tests.support.scenarios import RAMP_AND_SINE, TURNED
 
 UNDER_CONTROL = sw.Drive(control=sw.control.PID(proportional=1.0), load=sw.loads.Inertia(inertia=0.05))
 OPEN_LOOP = sw.Drive(load=sw.loads.Prescribed())

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import hyp2f1
 from strainwave.hysteresis import BoucWen, FadingMemory, MaxwellSlip
 
-from tests.strategies import log_uniform, made
+from tests.support.strategies import log_uniform, made
 
 Array = NDArray[np.float64]
 

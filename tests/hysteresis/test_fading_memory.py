@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 from strainwave.hysteresis import FadingMemory
 
-from tests.strategies import log_uniform
+from tests.support.strategies import log_uniform
 
 Array = NDArray[np.float64]
 

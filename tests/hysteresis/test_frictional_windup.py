@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from strainwave.hysteresis import FrictionalWindup, MaxwellSlip
 from strainwave.stiffness import Linear, MultiCompliance
 
-from tests.strategies import log_uniform
+from tests.support.strategies import log_uniform
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.hysteresis import Regimes
 
-from tests.strategies import log_uniform
+from tests.support.strategies import log_uniform
 
 Array = NDArray[np.float64]
 

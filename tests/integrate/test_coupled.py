@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from tests.cplusplus import STRICT, compiler
+from tests.support.cplusplus import STRICT, compiler
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent

@@ -13,7 +13,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from tests.cplusplus import STRICT, compiler
+from tests.support.cplusplus import STRICT, compiler
 
 HERE = Path(__file__).parent
 INERTIA, STIFFNESS, FRICTION, TORQUE, DURATION = 0.5, 200.0, 0.8, 0.3, 0.6

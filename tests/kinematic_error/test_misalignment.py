@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from strainwave.kinematic_error import Misalignment
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 Array = NDArray[np.float64]
 

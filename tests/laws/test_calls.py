@@ -14,9 +14,9 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 
-from tests.each import each
-from tests.interrupts import ctrl_c
-from tests.strategies import made
+from tests.support.each import each
+from tests.support.interrupts import ctrl_c
+from tests.support.strategies import made
 
 FAMILIES = [*_core.families.values(), *_core.fault_families.values()]
 LAWS = [made(kind) for family in FAMILIES for kind in family.values()]

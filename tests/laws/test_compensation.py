@@ -19,9 +19,9 @@ from strainwave.native.cache import find_kernel, make_kernel
 from strainwave.native.kernel import Kernel
 from strainwave.native.static_type import in_words, static_type
 
-from tests.cplusplus import INCLUDE_FOLDER, ROOT, compiler
-from tests.samples import sample
-from tests.strategies import built
+from tests.support.cplusplus import INCLUDE_FOLDER, ROOT, compiler
+from tests.support.samples import sample
+from tests.support.strategies import built
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 
 from tests.control.discrete import ARM, CURRENT, DC, RATIO, TORQUE, drive
-from tests.strategies import built, models, suited, usual
+from tests.support.strategies import built, models, suited, usual
 
 LOOPS = {"position_gain": 25.0, "speed_proportional": 0.1, "speed_integral": 2.0, "speed_feedforward": 0.9}
 # Gains that suit the drive of these tests; another law has those that it has by default.

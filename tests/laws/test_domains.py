@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core
 
-from tests.strategies import models
+from tests.support.strategies import models
 
 NOT_FINITE = st.sampled_from([math.nan, math.inf, -math.inf])
 SOFT = sw.stiffness.MultiCompliance(

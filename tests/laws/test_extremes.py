@@ -20,7 +20,7 @@ from strainwave.friction import Cyclic, LoadDependent, LuGre, PositionDependent,
 from strainwave.hysteresis import FadingMemory
 from strainwave.stiffness import Cubic, Piecewise, ThreeSegment
 
-from tests.strategies import made, models
+from tests.support.strategies import made, models
 
 Array = NDArray[np.float64]
 Contact = dict[str, float]

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.dataset.faults import changes, prepared, with_faults
 
-from tests.strategies import built
+from tests.support.strategies import built
 
 FAULTS = _core.fault_families["fault"]
 DRIVES = ("robot-joint", "space-pointing-joint", "position-drive", "tilt-actuator", "tilt-actuator-lumped", "two-inertia-gear")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.strategies import log_uniform, models, signed
+from tests.support.strategies import log_uniform, models, signed
 
 laws = models("friction")
 set_valued = laws.filter(lambda law: law.set_valued)

@@ -18,8 +18,8 @@ from strainwave.kinematic_error import Fourier, Misalignment, Scaled, Stochastic
 from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
-from tests.samples import sample
-from tests.strategies import SUITED, built, drives, gears, made, models, suited
+from tests.support.samples import sample
+from tests.support.strategies import SUITED, built, drives, gears, made, models, suited
 
 Array = NDArray[np.float64]
 

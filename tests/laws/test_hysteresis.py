@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.hysteresis import FadingMemory, MaxwellSlip
 
-from tests.strategies import built, log_uniform, models
+from tests.support.strategies import built, log_uniform, models
 
 Array = NDArray[np.float64]
 

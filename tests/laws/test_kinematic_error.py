@@ -15,7 +15,7 @@ from strainwave import _core
 from strainwave.kinematic_error import Fourier
 from strainwave.simulation.signals import outputs
 
-from tests.strategies import built, models
+from tests.support.strategies import built, models
 
 errors = models("kinematic_error")
 fourier = built(Fourier)

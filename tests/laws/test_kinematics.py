@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from strainwave.kinematics import StrainWave
 
-from tests.strategies import built, models
+from tests.support.strategies import built, models
 
 
 @given(models("kinematics"))

@@ -30,9 +30,9 @@ from strainwave.hysteresis import BoucWen, FadingMemory, MaxwellSlip, PowerDensi
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
-from tests.reference_drive import DRIVE, command
-from tests.samples import sample
-from tests.strategies import built, log_uniform, made, models, signed, suited
+from tests.support.reference_drive import DRIVE, command
+from tests.support.samples import sample
+from tests.support.strategies import built, log_uniform, made, models, signed, suited
 
 Array = NDArray[np.float64]
 

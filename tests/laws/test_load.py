@@ -10,10 +10,10 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.flywheel import instant
-from tests.geared import outputs
 from tests.load.free import free, placed
-from tests.strategies import log_uniform, models, signed
+from tests.support.flywheel import instant
+from tests.support.geared import outputs
+from tests.support.strategies import log_uniform, models, signed
 
 loads = models("loads")
 moved = loads.filter(lambda load: hasattr(load, "inertia"))  # by torques

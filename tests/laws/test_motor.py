@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core
 
-from tests.flywheel import instant, turning
-from tests.geared import geared
-from tests.strategies import log_uniform, models, signed
+from tests.support.flywheel import instant, turning
+from tests.support.geared import geared
+from tests.support.strategies import log_uniform, models, signed
 
 motors = models("motor").filter(lambda motor: motor.inertia > 0.0)
 asked = st.just(0.0) | signed(log_uniform(1e-2, 1e3))

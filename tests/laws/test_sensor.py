@@ -13,7 +13,7 @@ from strainwave import _core
 
 from tests.control.discrete import DC, drive
 from tests.sensor.probe import run_of
-from tests.strategies import models, usual
+from tests.support.strategies import models, usual
 
 LATE = sw.sensor.Delayed(law=sw.sensor.Encoder(counts=4096, eccentricity=1e-3), delay=2e-3)
 # Numbers that suit the drive of these tests; another sensor has those that it has by default. Nested ones besides.

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.strategies import log_uniform, models, signed
+from tests.support.strategies import log_uniform, models, signed
 
 springs = models("stiffness")
 torques = signed(log_uniform(1e-3, 1e3))

@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.files import units
 
-from tests.each import each
-from tests.strategies import Field, drives, fitting, gears, models, usual
+from tests.support.each import each
+from tests.support.strategies import Field, drives, fitting, gears, models, usual
 
 FAMILIES = [*_core.families.values(), *_core.fault_families.values()]
 LISTED = [model for family in FAMILIES for model in family.values()]

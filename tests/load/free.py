@@ -7,7 +7,7 @@ from typing import Any
 import strainwave as sw
 from strainwave.simulation.state import State
 
-from tests.geared import geared
+from tests.support.geared import geared
 
 NONE = sw.stiffness.Linear(k=1e-30)
 

@@ -8,8 +8,8 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import outputs
 from tests.load.free import free, placed, run_of
+from tests.support.geared import outputs
 
 FLAP = sw.loads.Aerodynamic(
     inertia=0.2, area=0.5, chord=0.3, airspeed=40.0, moment_coefficient=0.02, moment_slope=0.1, neutral_angle=0.05

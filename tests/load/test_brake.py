@@ -8,8 +8,8 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import RATIO, geared
 from tests.load.free import free, placed, run_of
+from tests.support.geared import RATIO, geared
 
 BRAKE = sw.loads.Brake(inertia=0.02)
 SOURCE = sw.motor.TorqueSource(inertia=1e-3)

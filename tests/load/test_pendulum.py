@@ -8,8 +8,8 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import outputs
 from tests.load.free import free, held, placed, run_of
+from tests.support.geared import outputs
 
 ARM = sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0)
 

@@ -10,7 +10,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import MOTOR, RATIO, K, geared
+from tests.support.geared import MOTOR, RATIO, K, geared
 
 LOCKED = geared(load=sw.loads.Prescribed(), motor=sw.motor.TorqueSource(inertia=2e-4), damping=0.0)
 

@@ -10,8 +10,8 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import outputs
 from tests.load.free import free, placed, run_of
+from tests.support.geared import outputs
 
 TABLE = sw.loads.TorqueTable(inertia=0.5, angle=[-1.0, 0.0, 0.5, 2.0], held_torque=[-3.0, 1.0, 5.0, -4.0])
 

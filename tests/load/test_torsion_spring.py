@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import ellipj, ellipk
 
-from tests.geared import K, outputs
 from tests.load.free import free, held, placed, run_of
+from tests.support.geared import K, outputs
 
 SPRING = sw.loads.TorsionSpring(inertia=0.05, stiffness=200.0, damping=0.0, rest_angle=0.3)
 ARM = sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0)

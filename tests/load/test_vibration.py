@@ -11,8 +11,8 @@ import strainwave as sw
 from hypothesis import given
 from strainwave import _core
 
-from tests.geared import RATIO, K, geared
-from tests.strategies import log_uniform
+from tests.support.geared import RATIO, K, geared
+from tests.support.strategies import log_uniform
 
 STIFF = sw.loads.TorsionSpring(inertia=0.01, stiffness=1e6, rest_angle=1e-3)
 FAST = [

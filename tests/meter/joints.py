@@ -8,7 +8,7 @@ import numpy as np
 import strainwave as sw
 from strainwave.simulation.signals import load_input
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 NOISE = sw.kinematic_error.Stochastic(amplitude=2e-5, seed=3, load_sensitivity=0.05, speed_sensitivity=0.01)
 FOURIER = sw.kinematic_error.Fourier(order=[2.0, 4.0], amplitude=[1e-4, 3e-5], phase=[0.3, -1.1])

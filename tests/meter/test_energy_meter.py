@@ -16,7 +16,7 @@ from strainwave.simulation.run import METHODS
 
 from tests.laws.test_gear import speeds
 from tests.meter.joints import COMMAND, DURATION, drawn, inputs
-from tests.strategies import models_of
+from tests.support.strategies import models_of
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.simulation.motion import InputMotion
 
-from tests.geared import MOTOR, RATIO, K, geared
+from tests.support.geared import MOTOR, RATIO, K, geared
 
 INERTIA, LOAD = 2e-4, 0.5
 MOVED = sw.motor.AccelerationSource(inertia=INERTIA)

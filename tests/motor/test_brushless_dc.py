@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.flywheel import course, flywheel, instant, settled, torque_of, turning
-from tests.geared import RATIO, SERVO, geared
+from tests.support.flywheel import course, flywheel, instant, settled, torque_of, turning
+from tests.support.geared import RATIO, SERVO, geared
 
 Array = NDArray[np.float64]
 MOTOR = sw.motor.BrushlessDC(

@@ -10,8 +10,8 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.flywheel import torque_of
-from tests.geared import K, geared
+from tests.support.flywheel import torque_of
+from tests.support.geared import K, geared
 
 MOTORS = [
     sw.motor.DC(torque_constant=0.1, back_emf=0.1, inertia=2e-4),

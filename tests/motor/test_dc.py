@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from tests.flywheel import course, flywheel, instant, settled, turning
-from tests.geared import RATIO, K, geared
+from tests.support.flywheel import course, flywheel, instant, settled, turning
+from tests.support.geared import RATIO, K, geared
 
 Array = NDArray[np.float64]
 PLAIN = sw.motor.DC(resistance=2.0, torque_constant=0.05, back_emf=0.05, inertia=1e-3)  # document P's, of another inertia

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from tests.flywheel import course, flywheel, settled, torque_of, turning
-from tests.geared import RATIO, SERVO, K, geared
+from tests.support.flywheel import course, flywheel, settled, torque_of, turning
+from tests.support.geared import RATIO, SERVO, K, geared
 
 Array = NDArray[np.float64]
 PMSM = sw.motor.PMSM

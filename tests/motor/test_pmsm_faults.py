@@ -17,9 +17,9 @@ from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 
-from tests.flywheel import course, flywheel, instant, settled, turning
-from tests.geared import geared
-from tests.side_by_side import side_by_side
+from tests.support.flywheel import course, flywheel, instant, settled, turning
+from tests.support.geared import geared
+from tests.support.side_by_side import side_by_side
 
 Array = NDArray[np.float64]
 PMSM = sw.motor.PMSM

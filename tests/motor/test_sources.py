@@ -8,7 +8,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import geared
+from tests.support.geared import geared
 
 COMMAND = sw.scenario.sine(0.5, 3.0, 0.5)
 DC = sw.motor.DC(resistance=1.0, back_emf=0.0, torque_constant=0.08, inertia=2e-5)  # its voltage is its current

@@ -1,4 +1,4 @@
-"""Document A's gear as tests/actuator_equations.py has it: its numbers, and the laws that Eq. 1 breaks as printed.
+"""Document A's gear as tests/support/actuator_equations.py has it: its numbers, and the laws that Eq. 1 breaks as printed.
 
 Nothing here is of the package. The numbers of the statics and of the modes were computed independently.
 """
@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from tests.actuator_equations import (
+from tests.support.actuator_equations import (
     IN,
     OUT,
     PRINTED,

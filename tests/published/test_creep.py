@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 COULOMB, BREAKAWAY = 0.072, 1.0388 * 0.072  # N.m, Table 1 and the static friction
 RESISTANCE, CONSTANT = 2.0, 0.05  # Ohm, N.m/A

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 ORDERS, AMPLITUDES, PHASES = (1, 2, 4), (0.8e-4, 3e-4, 0.5e-4), (0.4, -1.0, 2.0)
 K, DAMPING, OUTPUT_INERTIA = 8000.0, 4.0, 0.05  # N.m/rad, N.m.s/rad, kg.m2

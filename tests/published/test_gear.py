@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 INPUT_INERTIA, OUTPUT_INERTIA = 1.5e-4, 0.05  # kg.m2
 SPRING = sw.stiffness.Cubic(a1=8000.0, a3=4e7)

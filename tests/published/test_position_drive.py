@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 COULOMB = 0.072  # N.m, s3 of Table 1
 BREAKAWAY = 1.0388 * COULOMB

@@ -7,7 +7,7 @@ import pytest
 import strainwave as sw
 from reference import KNOWN
 
-from tests.reference_drive import DRIVE, command
+from tests.support.reference_drive import DRIVE, command
 
 COLUMNS = ("input_angle", "input_speed", "output_angle", "output_speed", "torque")
 

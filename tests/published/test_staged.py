@@ -1,4 +1,4 @@
-"""The gear in stages with document A's numbers, against what was computed independently and tests/actuator_equations.py."""
+"""The gear in stages with document A's numbers, against independent numbers and tests/support/actuator_equations.py."""
 
 from __future__ import annotations
 

@@ -21,8 +21,8 @@ from strainwave.equality import ComparedByFields, equal
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation.excitation import Excitation
 
-from tests.each import each
-from tests.strategies import made as usual
+from tests.support.each import each
+from tests.support.strategies import made as usual
 
 DRIVE = sw.Drive(
     control=sw.control.PID(proportional=2.0, derivative=0.05), load=sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)

@@ -18,8 +18,8 @@ import strainwave as sw
 from strainwave import _core
 from strainwave.native import kernels
 from strainwave.simulation import time_grid
-from tests.interrupts import ctrl_c
-from tests.reference_drive import DRIVE, command
+from tests.support.interrupts import ctrl_c
+from tests.support.reference_drive import DRIVE, command
 
 warnings.simplefilter("ignore")
 long = sw.scenario.sine(0.1, 1.0, 300.0)

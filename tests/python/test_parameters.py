@@ -9,8 +9,8 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 
-from tests.each import each
-from tests.reference_drive import DRIVE
+from tests.support.each import each
+from tests.support.reference_drive import DRIVE
 
 PATHS = [path for path, *_ in _core.parameters(DRIVE) if ".order" not in path and ".reduction" not in path]
 

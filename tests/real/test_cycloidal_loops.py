@@ -18,7 +18,7 @@ from strainwave.identification.candidates.torsion import fit_loop, held_out_bloc
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cycloidal-loops"
 LOOPS = [

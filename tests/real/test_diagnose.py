@@ -21,7 +21,7 @@ from strainwave.diagnose.refusals import JointRecording, usable
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "arms"
 SHARE = 3  # every third joint in the suite

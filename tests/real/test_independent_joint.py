@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests import independent_joint
-from tests.rig import measured
+from tests.evidence import independent_joint
+from tests.evidence.rig import measured
 
 pytestmark = pytest.mark.skipif(
     not (independent_joint.RIG / "joint.c").is_file(),

@@ -19,8 +19,8 @@ from strainwave.identification.reading.recognise import recognise
 from strainwave.orders.measured import OrdersFound, orders_found
 from strainwave.orders.ripple import Ripple
 
-from tests.rig import RIG, measured
-from tests.samples import sample
+from tests.evidence.rig import RIG, measured
+from tests.support.samples import sample
 
 SHARED = Path(__file__).parents[3] / "shared"
 ROBOT = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "cobot-temperature" / "dataset_02052023.csv"

@@ -1,10 +1,10 @@
-"""Real joints beside plain least squares of another program; `python -m tests.real_joints` measures all of them."""
+"""Real joints beside plain least squares of another program; `python -m tests.evidence.real_joints` measures all of them."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests import real_joints
+from tests.evidence import real_joints
 
 pytestmark = pytest.mark.skipif(
     not real_joints.ARMS.is_dir() or not real_joints.YARDSTICK.is_file(),

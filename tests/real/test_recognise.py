@@ -11,7 +11,7 @@ import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 
-from tests.rig import RIG, measured
+from tests.evidence.rig import RIG, measured
 
 SHARED = Path(__file__).parents[3] / "shared"
 DATA = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data"))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cplusplus import HEADERS, INCLUDE_FOLDER, compilation, compiled_before, compiler, drives, zig
+from tests.support.cplusplus import HEADERS, INCLUDE_FOLDER, compilation, compiled_before, compiler, drives, zig
 
 STEP = """
 using Drive{number} = {drive};

@@ -7,7 +7,7 @@ import pytest
 import strainwave as sw
 from scipy.integrate import solve_ivp
 
-from tests.geared import MOTOR, RATIO, geared
+from tests.support.geared import MOTOR, RATIO, geared
 
 LAW = sw.control.PID(proportional=2.0, derivative=0.05)
 COMMAND = sw.scenario.sine(0.2, 4.0, 0.3)

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core
 
-from tests.flywheel import HEAVY
-from tests.geared import RATIO, K, geared
+from tests.support.flywheel import HEAVY
+from tests.support.geared import RATIO, K, geared
 
 COLD = 293.15
 SOFT = sw.softening.ThermalSoftening(stiffness_fall=3e-3, hysteresis_fall=8e-3)

@@ -16,7 +16,7 @@ from strainwave import _core
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.stiffness import Backlash, Cubic, Linear, MultiCompliance, ThreeSegment
 
-from tests.strategies import built, log_uniform, made, signed
+from tests.support.strategies import built, log_uniform, made, signed
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from strainwave.stiffness import Linear, MultiCompliance
 
-from tests.strategies import log_uniform, signed
+from tests.support.strategies import log_uniform, signed
 
 # K_f0, C_f, K_w0, C_w, N
 SPRING = MultiCompliance(

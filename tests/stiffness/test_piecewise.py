@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from strainwave.stiffness import Linear, Piecewise, ThreeSegment
 
-from tests.strategies import log_uniform, signed
+from tests.support.strategies import log_uniform, signed
 
 stiffnesses = log_uniform(1e1, 1e5)
 knees = log_uniform(1e-6, 1e-2)

@@ -1,4 +1,4 @@
-"""The gear in stages against the equations of tests/actuator_equations.py, closed forms, and the lumped gear as its limit."""
+"""The gear in stages against the equations of tests/support/actuator_equations.py, closed forms, and the lumped gear."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from strainwave import _core
 from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.state import StateLayout
 
-from tests.actuator_equations import IN, OUT, WG, X2, Y1, Y2, damping_matrix, masses, stiffness_matrix
-from tests.samples import sample
-from tests.side_by_side import side_by_side
 from tests.structure.written_down import FIXED, NOTHING, Waves, by_scipy, document, free
+from tests.support.actuator_equations import IN, OUT, WG, X2, Y1, Y2, damping_matrix, masses, stiffness_matrix
+from tests.support.samples import sample
+from tests.support.side_by_side import side_by_side
 
 ERROR = sw.kinematic_error.Fourier(order=[2.0, 4.0, 1.0], amplitude=[3e-4, 0.8e-4, 1e-4], phase=[0.3, -1.1, 2.0])
 STRUCTURE = sw.structure.Staged(

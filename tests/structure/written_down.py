@@ -1,4 +1,4 @@
-"""A drive with a gear in stages, and the same as tests/actuator_equations.py has it, which shares nothing with the package."""
+"""A drive with a gear in stages, and the same by tests/support/actuator_equations.py, which shares nothing with the package."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from tests.actuator_equations import OUT, Gear, Spring, deformed, outputs, rates
+from tests.support.actuator_equations import OUT, Gear, Spring, deformed, outputs, rates
 
 Array = NDArray[np.float64]
 

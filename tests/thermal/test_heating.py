@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from tests.flywheel import HEAVY, flywheel, turning
-from tests.geared import RATIO, geared
+from tests.support.flywheel import HEAVY, flywheel, turning
+from tests.support.geared import RATIO, geared
 
 Array = NDArray[np.float64]
 AMBIENT = 293.15

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from strainwave import Agreement, Difference, Quantity, Recording, compare
 from strainwave.files.entries import Entry
 
-from tests.samples import sample
-from tests.strategies import drives, made
+from tests.support.samples import sample
+from tests.support.strategies import drives, made
 
 
 def series(time: Any, values: Any, unit: str = "N.m", name: str = "torque", time_unit: str = "s") -> Recording:

@@ -16,9 +16,9 @@ from strainwave import _core
 from strainwave.simulation import signals
 from strainwave.simulation.state import StateLayout
 
-from tests.geared import MOTOR, RATIO, K, geared, outputs
-from tests.reference_drive import DRIVE
-from tests.strategies import built, made, suited
+from tests.support.geared import MOTOR, RATIO, K, geared, outputs
+from tests.support.reference_drive import DRIVE
+from tests.support.strategies import built, made, suited
 
 DISC = sw.loads.Inertia(inertia=0.5)
 NO_TORQUE = sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=5e-4)

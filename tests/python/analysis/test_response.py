@@ -11,9 +11,9 @@ import pytest
 import strainwave as sw
 from strainwave.analysis.response import _change
 
-from tests.geared import RATIO, K, geared
-from tests.reference_drive import DRIVE
-from tests.strategies import made
+from tests.support.geared import RATIO, K, geared
+from tests.support.reference_drive import DRIVE
+from tests.support.strategies import made
 
 STUCK = sw.friction.Coulomb(coulomb=500.0)
 DISC = sw.loads.Inertia(inertia=0.5)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 
-from tests.reference_drive import DRIVE, command
+from tests.support.reference_drive import DRIVE, command
 
 TORQUE_CONSTANT, RESISTANCE, INERTIA = 0.05, 0.5, 1e-4  # N.m/A, ohm, kg.m2
 

@@ -14,12 +14,12 @@ from scipy.optimize import fsolve
 from strainwave import _core
 from strainwave.simulation.state import StateLayout
 
-from tests.actuator_equations import OUT, WG, X2, Y1, Y2, corrected
-from tests.geared import MOTOR, RATIO, K, geared, outputs
-from tests.reference_drive import DRIVE
-from tests.samples import sample
-from tests.strategies import made, smooth_drives
 from tests.structure.written_down import FIXED, document, start
+from tests.support.actuator_equations import OUT, WG, X2, Y1, Y2, corrected
+from tests.support.geared import MOTOR, RATIO, K, geared, outputs
+from tests.support.reference_drive import DRIVE
+from tests.support.samples import sample
+from tests.support.strategies import made, smooth_drives
 
 Array = NDArray[np.float64]
 BREAKAWAY = 4.66  # N.m, of document A's actuator at the output

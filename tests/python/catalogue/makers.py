@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.each import each
+from tests.support.each import each
 
 ROOT = Path(__file__).resolve().parents[3]
 TRANSCRIPTIONS = Path(os.environ.get("STRAINWAVE_DATA", ROOT.parent / "shared" / "data")) / "catalogue"

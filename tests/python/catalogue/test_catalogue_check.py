@@ -10,7 +10,6 @@ import catalogue_check as check
 import pytest
 import strainwave as sw
 
-from tests.each import each
 from tests.python.catalogue.makers import (
     ACCURACY,
     BACKDRIVING_TORQUE,
@@ -26,6 +25,7 @@ from tests.python.catalogue.makers import (
     column,
     identity,
 )
+from tests.support.each import each
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.each import each
 from tests.python.catalogue.makers import (
     BUCKLING,
     CSG_100,
@@ -34,6 +33,7 @@ from tests.python.catalogue.makers import (
     with_transcriptions,
 )
 from tests.python.catalogue.torsion import Torsion
+from tests.support.each import each
 
 # --- the transcriptions, and all that is wrong or odd in them ---
 

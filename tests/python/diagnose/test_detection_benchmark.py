@@ -8,8 +8,8 @@ from math import exp, inf, log
 import numpy as np
 import pytest
 
-from tests import detection_benchmark
-from tests.detection_benchmark import (
+from tests.evidence import detection_benchmark
+from tests.evidence.detection_benchmark import (
     BASE,
     DETECTORS,
     FAULTS,

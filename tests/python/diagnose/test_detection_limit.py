@@ -14,7 +14,7 @@ from strainwave.diagnose.order_lines import order_lines
 from strainwave.diagnose.steady_run import COLUMN
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 
-from tests.detection_limits import (
+from tests.evidence.detection_limits import (
     Case,
     PrintedLimit,
     bound_ratio,
@@ -77,7 +77,7 @@ def test_the_page_has_the_tables_of_load_speed_and_duration() -> None:
 
 
 @pytest.mark.parametrize(
-    "printed",  # those that take the least time; `python -m tests.detection_limits` computes all
+    "printed",  # those that take the least time; `python -m tests.evidence.detection_limits` computes all
     [
         each
         for each in printed_limits()

@@ -1,4 +1,4 @@
-"""False alarms on healthy units: a small version of `python -m tests.false_alarms`, and many runs of the comparison alone."""
+"""False alarms on healthy units: a small `python -m tests.evidence.false_alarms`, and many runs of the comparison alone."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from strainwave.diagnose.refusals import usable
 from strainwave.diagnose.replicates import JointMotion, joint_motion
 from strainwave.parameters import every
 
-from tests.false_alarms import (
+from tests.evidence.false_alarms import (
     RATES,
     Days,
     diagnoses,
@@ -23,8 +23,8 @@ from tests.false_alarms import (
     table,
     units_with_an_alarm,
 )
-from tests.samples import sample
-from tests.shares import share_interval
+from tests.support.samples import sample
+from tests.support.shares import share_interval
 
 DAYS = Days(baseline=3, later=3)
 RATE = 0.05  # stated rate of false alarms

@@ -16,8 +16,8 @@ from strainwave.diagnose.possible_drives import PossibleDrives, trend
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 
-from tests.recovered_misalignment import NOISE, units
-from tests.signature_drive import signature_ramp
+from tests.evidence.recovered_misalignment import NOISE, units
+from tests.support.signature_drive import signature_ramp
 
 SET = GearSet.read("tilt-actuator-lumped")
 RAMP = ActuatorRamp.of(SET.drive, stroke=float(np.radians(60.0)), duration=3.0)

@@ -14,7 +14,7 @@ from strainwave.diagnose.motion import motion_of
 from strainwave.diagnose.order_lines import OrderLine, order_lines, synchronous_average
 from strainwave.diagnose.regression import regressions
 
-from tests.detection_limits import false_alarms, interval, noises, signature_drive
+from tests.evidence.detection_limits import false_alarms, interval, noises, signature_drive
 
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "input_angle": "rad", "current": "A", "load": "N.m"}

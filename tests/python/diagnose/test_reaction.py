@@ -13,7 +13,7 @@ from strainwave.diagnose.inversion import displaced, harmonics
 from strainwave.diagnose.reaction import CurrentPerError, current_per_error, parts_over_load
 from strainwave.orders.order_spectrum import order_amplitudes
 
-from tests.signature_drive import AMPLITUDE, ORDER, ideal_current, signature_ramp
+from tests.support.signature_drive import AMPLITUDE, ORDER, ideal_current, signature_ramp
 
 RAMP = ActuatorRamp.of(sw.load("tilt-actuator-lumped"), stroke=np.pi / 2.0, duration=5.0)
 E1 = 20e-6

@@ -10,8 +10,8 @@ from strainwave.diagnose.diagnosis import Question, RunDiagnosis, diagnosed
 from strainwave.diagnose.refusals import usable
 from strainwave.diagnose.steady_run import COLUMN, SteadyRun
 
-from tests.detection_limits import signature_drive
-from tests.signature_drive import signature_ramp
+from tests.evidence.detection_limits import signature_drive
+from tests.support.signature_drive import signature_ramp
 
 NOISE = 0.05  # A
 SEEDS = 6  # the level of the noise of one record has a standard deviation of 11 %

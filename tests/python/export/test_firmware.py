@@ -15,10 +15,10 @@ from strainwave.export.firmware import FLAGS
 from strainwave.native.static_type import Scalar, parameters
 from strainwave.simulation.controller import Observation
 
-from tests.cplusplus import compiler, zig
-from tests.firmware import STRICT, Loaded, compiled, library, run_with, written
 from tests.realtime.test_firmware import CORTEX, LIBM, printed, undefined
-from tests.strategies import made, suited
+from tests.support.cplusplus import compiler, zig
+from tests.support.firmware import STRICT, Loaded, compiled, library, run_with, written
+from tests.support.strategies import made, suited
 
 PERIOD = 1e-3  # s
 COMMAND = sw.scenario.sine(amplitude=0.3, frequency=0.7, duration=2.0)

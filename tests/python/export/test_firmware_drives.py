@@ -16,8 +16,8 @@ from strainwave.export.firmware import FLAGS
 from strainwave.native.static_type import Scalar
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
-from tests.cplusplus import checker
-from tests.firmware import NO_LIBRARY, Array, Loaded, library, written
+from tests.support.cplusplus import checker
+from tests.support.firmware import NO_LIBRARY, Array, Loaded, library, written
 
 FLOAT_SHARE = 1e-4  # of the largest value of a signal
 # A shaft that has just stopped holds what drives it, which falls fast: there an instant later shows.

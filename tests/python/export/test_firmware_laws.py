@@ -13,9 +13,9 @@ import strainwave as sw
 from strainwave import _core
 from strainwave.export.firmware import FLAGS
 
-from tests.cplusplus import checker
-from tests.firmware import NO_LIBRARY, Loaded, library, written
-from tests.strategies import made, suited
+from tests.support.cplusplus import checker
+from tests.support.firmware import NO_LIBRARY, Loaded, library, written
+from tests.support.strategies import made, suited
 
 PERIOD = 2.0**-10  # s; its multiples are exact
 KINEMATICS = sw.load("csg-20-100").kinematics

@@ -19,9 +19,9 @@ from strainwave.export.slots import MAX_OVER_COMPENSATED_SHARE, SLOTS
 from strainwave.files.entries import Entry, Quantity
 from strainwave.tuning.drawn import drawn_gears
 
-from tests import strategies
 from tests.python.command import refused, strainwave
-from tests.samples import sample
+from tests.support import strategies
+from tests.support.samples import sample
 
 RATIO = -100.0
 KINEMATICS = sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed="circular_spline")

@@ -15,9 +15,9 @@ from strainwave import _core
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet, load
 
-from tests.each import each
 from tests.python.files.gear_file_texts import BASE, GRID, THERMAL, VISCOUS
-from tests.strategies import fitting, made
+from tests.support.each import each
+from tests.support.strategies import fitting, made
 
 TABLES = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", "motor", "control")
 PLACES = ("friction_input", "friction_mesh", "friction_output")

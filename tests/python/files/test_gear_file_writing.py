@@ -16,8 +16,8 @@ from strainwave.files.described import optional
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, load, save
 
-from tests.samples import sample
-from tests.strategies import drives, gears, models, suited
+from tests.support.samples import sample
+from tests.support.strategies import drives, gears, models, suited
 
 # Examples may share one folder; the first of them pays for the imports.
 untimed = settings(

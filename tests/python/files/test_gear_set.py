@@ -22,8 +22,8 @@ from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, catalogue, load, save
 from strainwave.files.identified_tables import Covariance, Validation
 
-from tests.samples import sample
-from tests.strategies import drives, made
+from tests.support.samples import sample
+from tests.support.strategies import drives, made
 
 ROOT = Path(__file__).resolve().parents[3]
 SHIPPED = {file.stem: file for file in (ROOT / "python" / "strainwave" / "catalogue").glob("*.toml")}

@@ -21,7 +21,7 @@ from strainwave.files.recording import Recording
 from strainwave.files.tables import open_table
 
 from tests.python.files.test_recording import EMPTY, RUN, exactly, untimed
-from tests.work import calls
+from tests.support.work import calls
 
 # Text
 

@@ -16,7 +16,7 @@ from strainwave import _core
 from strainwave.files import units
 from strainwave.files.units import check, convert, counts, is_share, measures
 
-from tests.work import calls
+from tests.support.work import calls
 
 untimed = settings(deadline=None)  # the first example pays for the import of pint
 finite = st.floats(-1e200, 1e200, allow_subnormal=False).filter(lambda number: number == 0.0 or abs(number) > 1e-200)

@@ -9,9 +9,9 @@ import pytest
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
 
-from tests import arms
+from tests.evidence import arms
 
-FAST = {"rtde.csv": 20.0, "hand.mat": 20.0, "headerless_all.csv": 40.0}  # `python -m tests.arms` tries all
+FAST = {"rtde.csv": 20.0, "hand.mat": 20.0, "headerless_all.csv": 40.0}  # `python -m tests.evidence.arms` tries all
 
 
 @pytest.mark.parametrize("sort", [sort for sort in arms.SORTS if sort.name in FAST], ids=lambda sort: sort.name)

@@ -1,4 +1,4 @@
-"""Wrong assumptions about an independent joint fail a check, right ones none; `python -m tests.assumptions` tries all."""
+"""Wrong assumptions about an independent joint fail a check, right ones none; all: `python -m tests.evidence.assumptions`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests import assumptions
-from tests.rig import RIG
+from tests.evidence import assumptions
+from tests.evidence.rig import RIG
 
 pytestmark = pytest.mark.skipif(
     not (RIG / "measure.py").is_file() or shutil.which("cc") is None,

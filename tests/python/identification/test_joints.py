@@ -14,7 +14,7 @@ from strainwave.identification.joints import identify_joints
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 
-from tests import arms
+from tests.evidence import arms
 from tests.python.command import strainwave
 
 JOINT = arms.Joint(loss=0.0)

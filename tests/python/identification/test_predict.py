@@ -17,10 +17,10 @@ from strainwave.files.identified_tables import Covariance, Validation
 from strainwave.identification.results.changes import PartChange
 from strainwave.report.predict import predict_summary, verdict_sentence
 
-from tests.arms import Joint, Recorder, fourier, rtde, run
+from tests.evidence.arms import Joint, Recorder, fourier, rtde, run
+from tests.evidence.rig import RIG, measured
 from tests.python.command import refused, strainwave
-from tests.rig import RIG, measured
-from tests.samples import sample
+from tests.support.samples import sample
 
 JOINT = Joint()
 STATED = sw.FileMapping(joint="1", constants={"torque_constant": 0.12, "motor_inertia": 4e-5, "ratio": 100.0})

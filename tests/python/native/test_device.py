@@ -16,8 +16,8 @@ import strainwave as sw
 from strainwave.native import device
 from strainwave.native.static_type import Scalar
 
-from tests.cplusplus import compiler
-from tests.strategies import made
+from tests.support.cplusplus import compiler
+from tests.support.strategies import made
 
 ON_THE_PROCESSOR = """
 #define __global__

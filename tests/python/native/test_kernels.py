@@ -18,7 +18,7 @@ from strainwave.native.static_type import in_words
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import differentiate
 
-from tests.reference_drive import DRIVE, command
+from tests.support.reference_drive import DRIVE, command
 
 Array = NDArray[np.float64]
 STEP = 2e-4

@@ -13,9 +13,9 @@ import pytest
 import strainwave as sw
 from strainwave.native.static_type import in_words, parameters, static_type
 
-from tests.cplusplus import HEADERS, checker, compilation
-from tests.strategies import made
-from tests.stress import model
+from tests.evidence.stress import model
+from tests.support.cplusplus import HEADERS, checker, compilation
+from tests.support.strategies import made
 
 # Its state is made, so that every member of the compiled drive has a complete type.
 USE = "inline auto started_{number}() {{ return {drive}{{}}.compile().initial_state(); }}\n"

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests import arms
-from tests.samples import sample
+from tests.evidence import arms
+from tests.support.samples import sample
 
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "output_angle": "rad", "torque": "N.m"}
@@ -167,7 +167,7 @@ def test_what_cannot_show_orders_is_refused_with_the_reason() -> None:
 
 
 def arm(seed: int, ratio: float, ripple: dict[float, float], jitter: float = 0.0) -> dict[str, Array]:
-    """A joint of an arm with presliding, a fall at low speed and a loss under load, from plain NumPy (tests.arms)."""
+    """A joint of an arm with presliding, a fall at low speed and a loss under load, from plain NumPy (tests.evidence.arms)."""
     joint = arms.Joint(ratio=ratio, ripple=ripple)
     seen = arms.Recorder(rate=250.0, jitter=jitter, seed=seed)(arms.run((joint,) * 3, arms.fourier(20.0, (1,), seed, size=1.2)))
     return {"time": seen["time"], "output_angle": seen["q"][1], "torque": seen["motor_torque"][1]}

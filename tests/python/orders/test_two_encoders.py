@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.orders.two_encoders import ErrorOrder
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "input_angle": "rad", "output_angle": "rad"}

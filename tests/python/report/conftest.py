@@ -13,7 +13,7 @@ from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.identify import identify_report
 
 from tests.python.report.measured import drive_log, friction_table, input_loop, swing, torsion_loop, with_drive
-from tests.strategies import made
+from tests.support.strategies import made
 
 
 @pytest.fixture(scope="session")

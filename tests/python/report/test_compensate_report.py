@@ -12,8 +12,8 @@ import strainwave as sw
 from strainwave.report.compensate import compensate_files, compensate_summary, too_much, verdict
 from strainwave.tuning.conditions import OverCompensation
 
-from tests.compensated_joint import robot_joint
 from tests.python.report.reading import Page
+from tests.support.compensated_joint import robot_joint
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,7 @@ from strainwave.report.provenance import Provenance
 
 from tests.python.report.measured import HOSTILE, swing
 from tests.python.report.reading import Node, Page, section
-from tests.samples import sample
+from tests.support.samples import sample
 
 START = GearSet.read("hfuc-20-80")
 COULOMB, STIFF = "gear.friction_input.coulomb", "gear.stiffness.k1"

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from strainwave import Agreement, Difference, Entry, Quantity, Recording
 from strainwave.report.listing import agreement_table, aligned, difference_table, listing, range_table
 
-from tests.samples import sample
-from tests.strategies import drives
+from tests.support.samples import sample
+from tests.support.strategies import drives
 
 GEAR = sw.Gear(
     kinematics=sw.kinematics.PlainRatio(reduction=100.0),

@@ -11,7 +11,7 @@ import strainwave as sw
 from tests.control import by_hand
 from tests.control.discrete import CURRENT, DC, PROMPT, TORQUE
 from tests.control.discrete import drive as linear
-from tests.reference_drive import DRIVE, STICKING
+from tests.support.reference_drive import DRIVE, STICKING
 
 OPEN = DRIVE.replace(control=sw.control.OpenLoop())
 STICKY = STICKING.replace(control=sw.control.OpenLoop())

@@ -29,9 +29,9 @@ from strainwave.simulation import ensemble
 from strainwave.simulation.ensemble import EnsembleWarning
 from strainwave.simulation.signals import outputs
 
-from tests.interrupts import ctrl_c
-from tests.reference_drive import DRIVE, command
-from tests.strategies import made
+from tests.support.interrupts import ctrl_c
+from tests.support.reference_drive import DRIVE, command
+from tests.support.strategies import made
 
 Array = NDArray[np.float64]
 

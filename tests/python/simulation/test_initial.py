@@ -10,8 +10,8 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.geared import RATIO, K, geared
-from tests.reference_drive import DRIVE
+from tests.support.geared import RATIO, K, geared
+from tests.support.reference_drive import DRIVE
 
 SHORT = sw.scenario.constant(0.0, 1e-3)
 LUGRE = sw.friction.LuGre(

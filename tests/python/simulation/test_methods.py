@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.simulation.run import METHODS
 
-from tests.cplusplus import INCLUDE_FOLDER, STRICT, compilation, compiler
-from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
-from tests.tolerance import difference
+from tests.evidence.tolerance import difference
+from tests.support.cplusplus import INCLUDE_FOLDER, STRICT, compilation, compiler
+from tests.support.reference_drive import DRIVE, SMOOTH, STICKING, command
 
 Array = NDArray[np.float64]
 

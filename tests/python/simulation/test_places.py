@@ -11,8 +11,8 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 
-from tests.side_by_side import side_by_side
-from tests.strategies import made
+from tests.support.side_by_side import side_by_side
+from tests.support.strategies import made
 
 COLUMNS = list(outputs(sw.Drive()))
 

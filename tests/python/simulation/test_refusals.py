@@ -19,9 +19,9 @@ from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 from strainwave.simulation.time_grid import LONG_RUN
 
-from tests.little_memory import little_memory
-from tests.reference_drive import DRIVE, command
-from tests.strategies import made
+from tests.support.little_memory import little_memory
+from tests.support.reference_drive import DRIVE, command
+from tests.support.strategies import made
 
 COLUMNS = list(outputs(sw.Drive()))
 EVERY = list(range(len(COLUMNS)))  # channel

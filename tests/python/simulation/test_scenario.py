@@ -370,7 +370,7 @@ def test_a_command_of_any_numbers_is_refused_or_finite_to_its_end(made: tuple[An
 
 TOO_LARGE = """
 from strainwave.simulation.scenario import pulse_train, step
-from tests.little_memory import little_memory
+from tests.support.little_memory import little_memory
 for attempt in (lambda: step(1.0, 1e4).recording(1e-4, "rad"), lambda: pulse_train(1.0, 1e-4, 1e-5, 100.0)):
     try:
         with little_memory(64 << 20):

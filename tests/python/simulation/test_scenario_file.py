@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from strainwave import scenario
 from strainwave.simulation.scenario_file import KINDS, ScenarioFile
 
-from tests.scenarios import RAMP_AND_SINE, TURNED
+from tests.support.scenarios import RAMP_AND_SINE, TURNED
 
 DRIVE = sw.Drive(control=sw.control.PID(proportional=1.0), load=sw.loads.Inertia(inertia=0.05))
 OPEN = DRIVE.replace(control=sw.control.OpenLoop())

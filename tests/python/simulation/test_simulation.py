@@ -19,8 +19,8 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.signals import outputs
 from strainwave.simulation.time_grid import TimeGrid
 
-from tests.interrupts import ctrl_c
-from tests.reference_drive import DRIVE, command
+from tests.support.interrupts import ctrl_c
+from tests.support.reference_drive import DRIVE, command
 
 DT = 2.0**-12  # s: its multiples are exact, so that the steps of a run and of a part of it are the same
 HELD = sw.scenario.constant(0.02, 0.25)

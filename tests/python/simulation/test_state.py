@@ -13,9 +13,9 @@ from strainwave import _core
 from strainwave.simulation.signals import outputs
 from strainwave.simulation.state import State, StateLayout
 
-from tests.reference_drive import DRIVE, SMOOTH
-from tests.samples import sample
-from tests.strategies import drives
+from tests.support.reference_drive import DRIVE, SMOOTH
+from tests.support.samples import sample
+from tests.support.strategies import drives
 
 
 @settings(max_examples=sample(6, 20))  # each of them has a hundred numbers

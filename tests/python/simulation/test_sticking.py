@@ -11,8 +11,8 @@ from strainwave import _core
 from strainwave.simulation.run import METHODS
 from strainwave.simulation.signals import outputs
 
-from tests.reference_drive import DRIVE
-from tests.strategies import made
+from tests.support.reference_drive import DRIVE
+from tests.support.strategies import made
 
 COULOMB = sw.friction.Coulomb(coulomb=0.03, breakaway=0.045)
 HOLDING = {

@@ -14,13 +14,13 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from strainwave import _core
 
+from tests.evidence.tolerance import COLUMNS, Excited, at_limit, difference, until, verdict
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
-from tests.little_memory import little_memory
-from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
-from tests.samples import sample
-from tests.strategies import suited
-from tests.tolerance import COLUMNS, Excited, at_limit, difference, until, verdict
+from tests.support.little_memory import little_memory
+from tests.support.reference_drive import DRIVE, SMOOTH, STICKING, command
+from tests.support.samples import sample
+from tests.support.strategies import suited
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
@@ -156,7 +156,7 @@ def test_a_gear_that_locks_itself_slips_as_far_as_the_closed_form_where_its_torq
 # Each is a drive that is compared: those drawn before it of its hundred are set aside, after runs of up to 5 s.
 @pytest.mark.parametrize("first", [10, 104, 201, 310, 401])
 def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> None:
-    """By a drive or three from each; `python -m tests.tolerance` takes two hundred, and says what is set aside and why."""
+    """By a drive or three from each; `python -m tests.evidence.tolerance` takes two hundred, and says what is left out."""
     verdicts = until(sample(1, 3), map(verdict, count(first)))
     assert [one for one in verdicts if one.missed] == []
 

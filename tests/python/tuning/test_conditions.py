@@ -14,7 +14,7 @@ from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import position
 from strainwave.tuning.judging import judged
 
-from tests.compensated_joint import robot_joint
+from tests.support.compensated_joint import robot_joint
 
 SET = sw.GearSet.read("robot-joint")
 

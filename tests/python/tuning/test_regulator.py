@@ -8,7 +8,7 @@ import strainwave as sw
 from strainwave.tuning.cascade import Plant
 from strainwave.tuning.linear_plant import LinearPlant
 
-from tests.compensated_joint import robot_joint
+from tests.support.compensated_joint import robot_joint
 
 ROTOR, ARM, RATIO = 1e-4, 0.6, 100.0
 ERROR, EFFORT = 1e-3, 0.2

@@ -10,7 +10,7 @@ import strainwave as sw
 from strainwave.identification.candidates.friction import cost_of, fit_friction, innermost
 from strainwave.identification.experiments.friction_table import FrictionTable
 
-from tests.strategies import made
+from tests.support.strategies import made
 
 # Document P, Table 2, measured column; its least-squares line as physics computes it independently.
 TABLE_2 = FrictionTable(np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165]))

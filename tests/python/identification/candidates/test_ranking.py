@@ -17,7 +17,7 @@ from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.candidates.torsion.springs import LINEAR, THREE_SEGMENT
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
-from tests.loops import KINDS
+from tests.evidence.loops import KINDS
 
 Array = NDArray[np.float64]
 

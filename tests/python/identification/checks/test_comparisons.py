@@ -21,7 +21,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 SMALL, LARGE = sw.GearSet.read("hfuc-20-80"), sw.GearSet.read("hfuc-32-50")
 FIRST = "gear.stiffness.k1"

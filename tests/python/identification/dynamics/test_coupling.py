@@ -13,13 +13,13 @@ from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
 
-from tests import arms
+from tests.evidence import arms
 
 
 @pytest.mark.parametrize("joint", ["1", "2", "3"])
 @pytest.mark.parametrize("named", [False, True])
 def test_terms_of_the_energy_make_up_the_torque_of_an_arm(joint: str, named: bool) -> None:
-    """By Lagrange's equations in closed form (tests.arms); names that tell no order allow more terms, and the same sum."""
+    """By Lagrange's equations in closed form (tests.evidence.arms); names without order allow more terms, and the same sum."""
     random = np.random.default_rng(int(joint))
     q, dq, ddq = random.uniform(-2.0, 2.0, (3, 3, 500))  # at any state: no motion is needed
     names = {"1": "a", "2": "b", "3": "c"} if named else {each: each for each in "123"}

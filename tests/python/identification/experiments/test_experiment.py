@@ -14,7 +14,7 @@ from strainwave import _core
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
-from tests.strategies import built, suited
+from tests.support.strategies import built, suited
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave.files.entries import Entry, Quantity
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
 COULOMB, VISCOUS = "friction_input.coulomb", "friction_input.viscous"

@@ -1,4 +1,4 @@
-"""Files of robot arms are read, or refused with the option that settles it; the arm is of plain NumPy (tests.arms)."""
+"""Files of robot arms are read, or refused with the option that settles it; the arm is of plain NumPy (tests.evidence.arms)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 
-from tests import arms
+from tests.evidence import arms
 
 JOINT = arms.Joint()
 

@@ -10,7 +10,7 @@ from strainwave.identification.identify import identify
 from strainwave.identification.reading.recognise import recognise
 from strainwave.identification.reading.several_files import joined
 
-from tests import arms
+from tests.evidence import arms
 
 
 @pytest.fixture(scope="module")

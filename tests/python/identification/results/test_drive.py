@@ -1,4 +1,4 @@
-"""The drive that files determine: what its file contains, and that other commands run it. Its joints are from tests.arms."""
+"""The drive that files determine: contents of its file, and other commands run it. Its joints are from tests.evidence.arms."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
 
-from tests.arms import Joint, Recorder, fourier, rtde, run
+from tests.evidence.arms import Joint, Recorder, fourier, rtde, run
 from tests.python.command import strainwave
 
 JOINT = Joint()

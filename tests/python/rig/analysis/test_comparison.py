@@ -9,7 +9,7 @@ from strainwave.rig import Loop, LoopAnalysis, analyse, compare
 from strainwave.rig.analysis.comparison import by_chi_square, by_welch
 
 from tests.python.rig.loops import PEAK, TABLE, loop_of_table, quarters
-from tests.samples import sample
+from tests.support.samples import sample
 
 
 def test_welch_of_two_groups_is_welchs_t_test() -> None:

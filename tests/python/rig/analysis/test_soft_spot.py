@@ -7,7 +7,7 @@ import pytest
 from strainwave.rig import Loop, LoopAnalysis, analyse, words_on_band
 
 from tests.python.rig.loops import PEAK, TABLE, loop_of_table, quarters, refined
-from tests.samples import sample
+from tests.support.samples import sample
 
 LOW, HIGH = 0.1, 0.2
 

@@ -12,7 +12,7 @@ from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.segments import fit_segments
 
 from tests.python.rig.loops import PEAK, TABLE, loop_of_table, quarters, refined, vertices
-from tests.samples import sample
+from tests.support.samples import sample
 
 HALF_A_DIGIT = 0.005  # N.m/rad: what document T's table leaves open
 

@@ -19,7 +19,7 @@ from strainwave.rig.loop import Loop
 from strainwave.rig.torque.torque import arm, blank, mass_sigma, torque_of, without_compliance
 from strainwave.rig.virtual.loading import load_by_steps
 
-from tests.samples import sample
+from tests.support.samples import sample
 
 RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81))
 STEPS_OF_CYCLE = [0.05 * abs(n) - 0.35 for n in range(14, -15, -1)]

@@ -1,5 +1,5 @@
-"""Exported MJCF in MuJoCo Warp, by `python -m tests.mujoco_warp_loops`: torsion loops against those of the gears, and runs of
-gears with each motor and friction, and of an arm with two gears, against MuJoCo.
+"""Exported MJCF in MuJoCo Warp, by `python -m tests.evidence.mujoco_warp_loops`: torsion loops against those of the gears,
+and runs of gears with each motor and friction, and of an arm with two gears, against MuJoCo.
 
 Warp compiles the step of MuJoCo Warp in about two minutes, and keeps it in its cache. Then the rest takes six minutes on a CPU.
 """

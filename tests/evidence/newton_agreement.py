@@ -1,4 +1,4 @@
-"""Exported actuators of Newton against the simulation and native code, by `python -m tests.newton_agreement`.
+"""Exported actuators of Newton against the simulation and native code, by `python -m tests.evidence.newton_agreement`.
 
 The joints of five drives follow a motion of 10 s. Differences are the largest ones, over the largest value of each output:
 

@@ -1,4 +1,4 @@
-"""Files of the tutorials, from a joint of another program: `python -m tests.tutorial_joint examples/tutorials`.
+"""Files of the tutorials, from a joint of another program: `python -m tests.evidence.tutorial_joint examples/tutorials`.
 
 The joint shares nothing with this package (STRAINWAVE_RIG is the folder of its program). Its current is recorded as the mean
 over the period of the log, as a drive with an averaging current sensor gives it.
@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.cplusplus import compiler
-from tests.rig import RIG
+from tests.evidence.rig import RIG
+from tests.support.cplusplus import compiler
 
 Array = NDArray[np.float64]
 STEP = 5  # rows of the program, 2 ms each, in a row of a log

@@ -1,4 +1,4 @@
-"""Recordings of real joints beside plain least squares of another program: `python -m tests.real_joints`.
+"""Recordings of real joints beside plain least squares of another program: `python -m tests.evidence.real_joints`.
 
 Each file of `data/arms` (STRAINWAVE_DATA points to `data`) is identified by one command. Its error on the last 30 % of the
 motion, in the full band at every sample, stands beside the best one of `tools/yardstick` (STRAINWAVE_YARDSTICK), which shares
@@ -34,7 +34,7 @@ from strainwave.identification.results.combined_parameter import difference
 from strainwave.identification.results.file_result import FileEstimate
 
 Array = NDArray[np.float64]
-SHARED = Path(__file__).parents[2] / "shared"
+SHARED = Path(__file__).parents[3] / "shared"
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
 YARDSTICK = Path(os.environ.get("STRAINWAVE_YARDSTICK", SHARED / "tools" / "yardstick"))
 START = "csg-20-100"

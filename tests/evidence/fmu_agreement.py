@@ -1,4 +1,4 @@
-"""FMUs of five drives against the simulation over 10 s, by `python -m tests.fmu_agreement`.
+"""FMUs of five drives against the simulation over 10 s, by `python -m tests.evidence.fmu_agreement`.
 
 Blocks for co-simulation follow a command with five reversals, under a load that rises, in both versions of FMI. All outputs are
 compared at the communication instants. Blocks for model exchange follow a command of five pulses: FMPy, whose CVODE solves
@@ -20,7 +20,7 @@ from strainwave.export.fmu import comparison
 from strainwave.export.fmu.variables import recorded, variables
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
-from tests.reference_drive import five_drives
+from tests.support.reference_drive import five_drives
 
 COMMAND_KNOTS, LOAD_KNOTS = five_drives.COMMAND_KNOTS, five_drives.LOAD_KNOTS
 

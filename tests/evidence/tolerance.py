@@ -1,11 +1,11 @@
 """Whether adaptive runs of random drives keep the tolerance asked, within a factor ten.
 
-    python -m tests.tolerance                      two hundred drives compared, some minutes on one core
-    python -m tests.tolerance --drives 1000 --first 5000
+    python -m tests.evidence.tolerance                      two hundred drives compared, some minutes on one core
+    python -m tests.evidence.tolerance --drives 1000 --first 5000
 
-A drive is any of `tests.stress`, all models at all places, controlled or not, whose gear has one spring, reduces the speed,
-makes no energy and has nothing faster than `FASTEST`; and a tolerance of its own, from 1e-7 to 1e-4. It is run to that and
-compared with a run ten thousand times as tight: what is recorded of the motion, and the torque of friction that rests on
+A drive is any of `tests.evidence.stress`, all models at all places, controlled or not, whose gear has one spring, reduces the
+speed, makes no energy and has nothing faster than `FASTEST`; and a tolerance of its own, from 1e-7 to 1e-4. It is run to that
+and compared with a run ten thousand times as tight: what is recorded of the motion, and the torque of friction that rests on
 bristles, which is all that shows them. That of set-valued friction jumps at events, where any shift in time is as large as
 the jump.
 
@@ -33,8 +33,8 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.simulation.signals import actuation, load_input, outputs
 
+from tests.evidence.stress import model
 from tests.laws.test_gear import PLACES, cannot_create_energy, has_memory
-from tests.stress import model
 
 LOOSEST, TIGHTEST = 1e-4, 1e-7
 TIGHTER, EXACT = 1e-2, 1e-4  # times the tolerance

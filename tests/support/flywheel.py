@@ -12,7 +12,7 @@ from strainwave import _core
 from strainwave.simulation import signals
 from strainwave.simulation.state import State
 
-from tests.geared import RATIO, geared
+from tests.support.geared import RATIO, geared
 
 Array = NDArray[np.float64]
 HEAVY = 1e12  # kg.m2: no torque of these tests changes its speed by more than rounding does

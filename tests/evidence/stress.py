@@ -1,7 +1,7 @@
 """Many random drives, of all models at all places, with numbers over the catalogue's range and beyond.
 
-    python -m tests.stress                         a thousand
-    python -m tests.stress --drives 100000 --first 5000 --processes 1
+    python -m tests.evidence.stress                         a thousand
+    python -m tests.evidence.stress --drives 100000 --first 5000 --processes 1
 
 Each is run a hundred steps by one of the methods, or by that which `simulate` chooses; every fifth to a tolerance too, every
 fifth with seven others beside it that differ in a few numbers, and every fifth with derivatives, neither of which may change
@@ -35,8 +35,8 @@ from strainwave.simulation.run import METHODS
 from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import has_memory, passive, speeds
-from tests.strategies import AROUND_ONE, SUITED, TYPICAL, Field, kinds_of, suited
-from tests.workers import answers
+from tests.support.strategies import AROUND_ONE, SUITED, TYPICAL, Field, kinds_of, suited
+from tests.support.workers import answers
 
 STEPS = 100
 MOST_STEPS = 2000  # of a run to a tolerance

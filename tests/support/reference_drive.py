@@ -8,7 +8,7 @@ Its numbers stand in benchmarks/reference_drive.py, whose folder is looked in wh
 import sys
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parent.parent / "benchmarks"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
 import five_drives
 import strainwave as sw

@@ -15,7 +15,7 @@ from strainwave.export.firmware import FLAGS, Firmware
 from strainwave.native.static_type import Scalar
 from strainwave.simulation.controller import Observation
 
-from tests.cplusplus import compiler
+from tests.support.cplusplus import compiler
 
 Array = NDArray[np.float64]
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")

@@ -1,4 +1,4 @@
-"""Creeping of a pointing joint by each compensation, on gears that differ from the model: `python -m tests.creeping`.
+"""Creeping of a pointing joint by each compensation, on gears that differ from the model: `python -m tests.evidence.creeping`.
 
 Three cases: friction at the input that falls with the speed, under a controller of 100 Hz by a speed that lags behind by 5 ms,
 and of 1 kHz by a lag of 0.5 ms; and such friction at the output as well, under the latter. Each compensation is tried in

@@ -1,4 +1,4 @@
-"""Coverage of the intervals of a misalignment from the current of drawn drives: `python -m tests.recovered_misalignment`.
+"""Coverage of intervals of a misalignment from the current of drives: `python -m tests.evidence.recovered_misalignment`.
 
 Each unit has other friction, stiffness, inertia, load and torque constant, drawn by what the set knows of them, other noise and
 another misalignment: an eccentricity, a tilt, or both. The diagnosis has the numbers of the nominal drive and their spreads.

@@ -1,4 +1,4 @@
-"""Wrong assumptions about an independent joint must fail a check, right ones none: `python -m tests.assumptions --seeds 3`.
+"""Wrong assumptions about an independent joint fail a check, right ones none: `python -m tests.evidence.assumptions --seeds 3`.
 
 The joint and its measurements are a program that shares nothing with this package (STRAINWAVE_RIG points to its folder). Of
 each seed its files are identified with a wrong ratio, torque constant, side, unit or start set, one mistake at a time, in files
@@ -23,7 +23,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
 
-from tests.rig import START, measured
+from tests.evidence.rig import START, measured
 
 FILES = (
     "friction.csv", "friction_de.csv", "torsion_input.csv", "torsion_output.csv", "branch.csv", "log.csv", "log_full.csv",

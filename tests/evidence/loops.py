@@ -1,4 +1,4 @@
-"""Every kind of spring and hysteresis on loops whose truth is known: `python -m tests.loops --truths 50`.
+"""Every kind of spring and hysteresis on loops whose truth is known: `python -m tests.evidence.loops --truths 50`.
 
 Of each truth, drawn at random, a path with minor loops makes a torsion loop with noise of 1 % of the torque. A fit of the same
 kinds, which knows nothing of the truth, must hold each number within two standard deviations in 90 % of the cases; scatter over

@@ -1,11 +1,11 @@
 """The bits of many runs, to compare before and after a change that must not alter them.
 
-    python -m tests.bits write bits.txt                 before the change
-    python -m tests.bits compare bits.txt               after it
-    python -m tests.bits kernels --drives 200           the general drive and kernels, which must give the same
+    python -m tests.evidence.bits write bits.txt                 before the change
+    python -m tests.evidence.bits compare bits.txt               after it
+    python -m tests.evidence.bits kernels --drives 200           the general drive and kernels, which must give the same
 
-Random drives of all models, as those of `tests.stress`: each run by every method, to a tolerance, in a pack of eight, and with
-derivatives. What is refused must be refused again. The file has a digest of each run; nobody needs to keep it.
+Random drives of all models, as those of `tests.evidence.stress`: each run by every method, to a tolerance, in a pack of eight,
+and with derivatives. What is refused must be refused again. The file has a digest of each run; nobody needs to keep it.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import METHODS, differentiate
 from strainwave.simulation.signals import outputs
 
-from tests.stress import MOST_STEPS, STEPS, acting_on, model, neighbours, step
-from tests.workers import answers
+from tests.evidence.stress import MOST_STEPS, STEPS, acting_on, model, neighbours, step
+from tests.support.workers import answers
 
 DERIVATIVES = 12
 LIMIT = 120.0  # s, for all runs of a drive

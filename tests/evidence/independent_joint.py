@@ -1,4 +1,4 @@
-"""From measurement files of a joint to a controller that runs in it: `python -m tests.independent_joint seed=3`.
+"""From measurement files of a joint to a controller that runs in it: `python -m tests.evidence.independent_joint seed=3`.
 
 The joint and its measurement files are those of another program, `independent-rig` (STRAINWAVE_RIG is its folder), which
 shares nothing with this package. One command identifies the joint. The controller compensates by the identified drive; it is
@@ -22,10 +22,10 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.export.firmware import FLAGS
 
-from tests.cplusplus import compiler
+from tests.evidence.rig import RIG
+from tests.evidence.rig import START as START_SET
 from tests.python.command import strainwave
-from tests.rig import RIG
-from tests.rig import START as START_SET
+from tests.support.cplusplus import compiler
 
 Array = NDArray[np.float64]
 FILES = ("friction.csv", "torsion_output.csv", "log_full.csv")

@@ -1,4 +1,4 @@
-"""All files of an independent joint in one call, whose truth is known: `python -m tests.mixture --seeds 10`.
+"""All files of an independent joint in one call, whose truth is known: `python -m tests.evidence.mixture --seeds 10`.
 
 The joint and its measurements are a program that shares nothing with this package (STRAINWAVE_RIG points to its folder). Of
 each seed the truth is varied, every file that it writes is identified together, and each number that they tell must lie within
@@ -32,7 +32,7 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.recognise import recognise
 
-from tests.rig import COVERED, RIG, START
+from tests.evidence.rig import COVERED, RIG, START
 
 Array = NDArray[np.float64]
 LEAST, MOST = 0.7, 1.4  # scatter over the standard deviation stated

@@ -1,4 +1,4 @@
-"""False alarms of the diagnosis against a baseline, by simulation: `python -m tests.false_alarms`.
+"""False alarms of the diagnosis against a baseline, by simulation: `python -m tests.evidence.false_alarms`.
 
 Each healthy unit has its own kinematic error, stiffness, friction, inertia and load. Its recordings are of several days: the
 friction differs with the temperature, the load with what is carried, the kinematic error by `--day`, and the noise is another
@@ -24,7 +24,7 @@ from strainwave.diagnose.refusals import JointRecording, usable
 from strainwave.parameters import every
 from strainwave.simulation.ensemble import Ensemble, simulate_many
 
-from tests.shares import share_interval
+from tests.support.shares import share_interval
 
 RATES = (0.05, 0.01, 0.001)  # stated rates of false alarms
 SEED = 7

@@ -1,4 +1,4 @@
-"""Gears identified from an independent joint, whose truth is known: `python -m tests.rig --seeds 10`.
+"""Gears identified from an independent joint, whose truth is known: `python -m tests.evidence.rig --seeds 10`.
 
 The joint and its measurements are a program that shares nothing with this package (STRAINWAVE_RIG points to its folder). Of
 each seed a friction table, the torsion loop of one rig from both sides, a loading branch and a run from rest under its voltage
@@ -30,7 +30,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified
 
 Array = NDArray[np.float64]
-RIG = Path(os.environ.get("STRAINWAVE_RIG", Path(__file__).parents[2] / "shared" / "independent-rig"))
+RIG = Path(os.environ.get("STRAINWAVE_RIG", Path(__file__).parents[3] / "shared" / "independent-rig"))
 START = "hfuc-20-80"
 WHEEL = 360.0 / 16384.0  # deg, a count of the motor's encoder
 LOCKED = 1e13  # kg.m2: what nothing moves

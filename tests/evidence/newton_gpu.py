@@ -1,10 +1,10 @@
 """The code that an actuator of Newton has for GPUs, on a GPU and without Warp.
 
-    python -m tests.newton_gpu prepare FOLDER   export drives, and store what native code finds; needs no GPU
-    python3 tests/newton_gpu.py run FOLDER      run them on the GPU of this machine; needs Python, a driver and this file alone
+    python -m tests.evidence.newton_gpu prepare FOLDER   export drives, and store what native code finds; needs no GPU
+    python3 tests/evidence/newton_gpu.py run FOLDER      run them on this machine's GPU; needs Python, a driver and this file
 
-Each drive follows the motion of `tests.newton_agreement`. Its outputs are compared with those of native code: the largest
-difference over the largest value of an output. Then many gears are stepped, equal ones and ones with numbers of their own.
+Each drive follows the motion of `tests.evidence.newton_agreement`. Its outputs are compared with native code: the
+largest difference over the largest value of an output. Then many gears are stepped, equal ones and ones with numbers of their own.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
-"""Every law of a drive in logs whose truth is known: `python -m tests.every_law --truths 50`.
+"""Every law of a drive in logs whose truth is known: `python -m tests.evidence.every_law --truths 50`.
 
 Of each truth, drawn at random, a run under a known voltage makes a log of the speed of the input, the current and the
 transmission error, each with noise of 1 % of its range. A fit of the numbers of that law, which starts up to 15 % off, must
 hold each within two standard deviations in 90 % of the cases; scatter over stated standard deviation must lie between 0.7 and
 1.4. All else of the drive is known, as it would be from tables and loops.
 
-Loops by themselves are `tests.loops`; tables of friction, presliding loops, breakaway and warm-ups are held to the same in
-`tests/python/identification/candidates`.
+Loops by themselves are `tests.evidence.loops`; tables of friction, presliding loops, breakaway and warm-ups are held to the
+same in `tests/python/identification/candidates`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.parameters import every
 
-from tests.loops import BESIDE, COVERED, NOISE, SCATTER, WHOLE, spring
+from tests.evidence.loops import BESIDE, COVERED, NOISE, SCATTER, WHOLE, spring
 
 Array = NDArray[np.float64]
 Draw = np.random.Generator

@@ -2,8 +2,8 @@
 
 An arm of three joints, one about the vertical and two parallel ones that carry the arm, follows Fourier series or trapezoids.
 Its motion is prescribed, and the torque of each motor follows from it: a robot with elastic joints is differentially flat
-(De Luca 2000), so that nothing needs to be integrated but the bristles of the friction. `python -m tests.arms` writes every
-file, identifies each, and prints its held-out error beside that of least squares as a specialist's script does them.
+(De Luca 2000), so that nothing needs to be integrated but the bristles of the friction. `python -m tests.evidence.arms` writes
+every file, identifies each, and prints its held-out error beside that of least squares as a specialist's script does them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Planned detection limits, false alarms and the bound of amplitudes, all by Monte Carlo: `python -m tests.detection_limits`.
+"""Planned detection limits, false alarms, bounds of amplitudes by Monte Carlo: `python -m tests.evidence.detection_limits`.
 
 Limits: five drives of the catalogue are simulated at .8, 1 and 1.2 times the planned limit. White noise is added to the current
 many times, and detections are counted. The measured limit is the amplitude with 90 % of detections, between these.
@@ -39,7 +39,7 @@ FACTORS = (0.8, 1.0, 1.2)  # of the planned limit
 ORDERS = (1.0, 2.0, 4.0, 6.28)
 COLOURS = ("white", "first order", "pink", "brown below 2 Hz")
 BLOCK = 500  # draws at once
-PAGE = Path(__file__).parents[1] / "docs" / "how-to" / "detection-limit.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "detection-limit.md"
 PAGE_RECORD = {"speed": 10.0, "duration": 20.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}  # of its first example
 PAGE_LOAD = 20.0  # N.m, if a table does not have another one
 PAGE_HEADS = {"load [N·m]": "load_torque", "speed of the input [rad/s]": "speed", "duration [s]": "duration"}

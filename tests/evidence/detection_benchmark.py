@@ -1,4 +1,4 @@
-"""Detection probability of a comparison with a baseline: `python -m tests.detection_benchmark`.
+"""Detection probability of a comparison with a baseline: `python -m tests.evidence.detection_benchmark`.
 
 Units are drawn from what the catalogue leaves open of a CSG-25-100: stiffness, hysteresis, kinematic error, friction, inertia
 and torque constant. Each has its own baseline of six days; friction and load differ from day to day. Three faults grow in each
@@ -41,7 +41,7 @@ from strainwave.diagnose.replicates import joint_motion  # noqa: E402
 from strainwave.parameters import every  # noqa: E402
 from strainwave.tuning.drawn import drawn_gears  # noqa: E402
 
-from tests.shares import share_interval  # noqa: E402
+from tests.support.shares import share_interval  # noqa: E402
 
 Array = NDArray[np.float64]
 

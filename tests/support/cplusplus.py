@@ -14,9 +14,9 @@ import strainwave as sw
 from strainwave import _core
 from strainwave.native.static_type import instance, parameters, static_type
 
-from tests.strategies import made
+from tests.support.strategies import made
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 INCLUDE_FOLDER = ROOT / "include"
 HEADERS = "#include <strainwave/drive.hpp>\n#include <strainwave/integrate.hpp>\n#include <strainwave/models.hpp>\n"
 # A pack is passed in a register or in memory as the machine has it; no ABI of ours crosses a library border.
