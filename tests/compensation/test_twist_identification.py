@@ -128,6 +128,7 @@ def test_it_recovers_a_drawn_gear_within_the_deviations_that_it_states(seed: int
     assert state(run.end, "learning")["residual"] == pytest.approx(3e-4, rel=0.1)
 
 
+@pytest.mark.slow("physics")
 def test_the_error_of_the_output_falls_by_nine_tenths() -> None:
     one = drive(TwistIdentification(order=[2.0], noise_time=0.01), compliance=1.2, kinematic_error=error((2.0, 2e-4, -1.0)))
     run = sw.simulate(one, SWING, sample=PERIOD)
@@ -140,6 +141,7 @@ def test_the_error_of_the_output_falls_by_nine_tenths() -> None:
     assert np.sqrt(np.mean(with_it**2)) < 0.1 * np.sqrt(np.mean(plain**2))
 
 
+@pytest.mark.slow("physics")
 def test_it_follows_a_stiffness_that_falls_by_a_fifth() -> None:
     """Over 41 s; the estimate, at the end of a swing, is late by less than 1 %."""
     duration, fall, warmer = 41.0, 0.005, 44.6
@@ -296,6 +298,7 @@ def million(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str, st
     return dict(zip(keys, np.loadtxt(printed.splitlines()), strict=True))
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("memory", ["long", "short"])
 def test_its_deviations_are_those_of_two_hundred_drawn_gears(million: Any, memory: str) -> None:
     """Constant numbers, and numbers that wander as it assumes: squares of error over deviation have the mean 1."""

@@ -133,12 +133,14 @@ def test_what_is_linear_is_exact_in_one_step_of_twenty_radians(built: Path) -> N
         assert place == pytest.approx(np.sin(START[0]) + np.exp(-decay * duration) * swing, abs=1e-14)
 
 
+@pytest.mark.slow("physics")
 def test_steps_of_twenty_radians_follow_what_the_swing_does(built: Path) -> None:
     """Where explicit steps would diverge; it is the body's place, all of a metre, that turns the swing."""
     off = np.abs(stepped(built, 50, 100, 400)[:, 0] - exact(False)[0])
     assert np.all(off < [1e-4, 1e-4, 1e-6])
 
 
+@pytest.mark.slow("physics")
 def test_a_kink_within_a_step_is_found(built: Path) -> None:
     """To step over it is an error of first order."""
     off, over = (np.abs(stepped(built, 400, kinked=True, told=told)[0, 0] - exact(True)[0]) for told in (True, False))
@@ -146,6 +148,7 @@ def test_a_kink_within_a_step_is_found(built: Path) -> None:
     assert over > 10.0 * off
 
 
+@pytest.mark.slow("physics")
 def test_derivatives_by_the_stiffness_are_differences(built: Path) -> None:
     step = 10.0
     more, less = (exact(False, FREQUENCY + change) for change in (step, -step))

@@ -22,6 +22,7 @@ from strainwave import _core
 ROOT = Path(__file__).resolve().parents[2] / "examples"
 SCRIPTS = sorted(ROOT.glob("*.py"))
 DRIVES = sorted((ROOT / "drives").glob("*.toml"))
+pytestmark = pytest.mark.slow("docs")  # an example runs for seconds, unless the pages were built
 
 
 @pytest.fixture(scope="module")
@@ -442,7 +443,7 @@ def test_the_model_of_a_soft_gear_leads_also_if_its_loop_is_wide_or_narrow(galle
     found = gallery("22")
 
     def lag(name: str) -> float:
-        commands = [np.degrees(found["along"](step).value(found["time"])) for step in found["steps"]]
+        commands = [np.degrees(path.value(found["time"])) for path in found["paths"]]
         return max(float(np.abs(run - to).max()) for run, to in zip(found["runs"][name, "path"], commands, strict=True))
 
     assert lag("and model") < 0.1 * lag("motor, arm integrated")

@@ -100,6 +100,7 @@ def printed(folder: Path) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow("physics")
 def test_every_module_is_imported(printed: dict[str, Any]) -> None:
     package = Path(sw.__file__).parent
     files = {path.relative_to(package).with_suffix("") for path in package.rglob("*.py")} - {Path("__init__")}

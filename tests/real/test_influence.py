@@ -48,6 +48,7 @@ def by_torque(loops: tuple[list[Loop], list[str]]) -> dict[str, Trend]:
     return trends
 
 
+@pytest.mark.slow("rig")
 def test_area_and_width_grow_with_the_torque(by_torque: dict[str, Trend]) -> None:
     """As document T has it: 28 loops of +-4 and +-25 to 36 N.m, three builds."""
     for name in ("area", "width"):
@@ -64,6 +65,7 @@ def test_the_slope_of_unloading_falls_with_the_torque(by_torque: dict[str, Trend
     assert by_torque["high_stiffness"].interval[1] < 0.0
 
 
+@pytest.mark.slow("rig")
 def test_areas_are_those_of_polygons(loops: tuple[list[Loop], list[str]]) -> None:
     """By Gauss's formula over all points of a loop."""
     for loop, area in zip(loops[0], figures_of(loops[0])["area"], strict=True):

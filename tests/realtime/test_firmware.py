@@ -52,11 +52,13 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow("export")
 def test_a_step_asks_for_mathematics_and_nothing_else(programs: Path) -> None:
     """No heap, no exception, no initialisation, not even a routine that copies."""
     assert undefined(programs) <= LIBM
 
 
+@pytest.mark.slow("export")
 def test_a_step_on_a_microcontroller_is_in_single_precision_throughout(tmp_path: Path) -> None:
     """Clang copies and clears a state by calling memcpy and memset, which every freestanding environment has to provide."""
     assert compilation(zig(), tmp_path, {"steps.cpp": HEADERS + "".join(STEPS.values())}, *CORTEX, *FIRMWARE) == (0, "")

@@ -10,6 +10,7 @@ import pytest
 from tests.python.command import refused, strainwave
 
 
+@pytest.mark.slow("commands")
 def test_each_kind_writes_its_files_and_numbers(tmp_path: Path) -> None:
     for words, file in (
         (("joint", "csg-20-100"), "joint.urdf"),

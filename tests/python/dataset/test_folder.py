@@ -66,6 +66,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return plan, make(plan, place / "set", workers=1)
 
 
+@pytest.mark.slow("dataset")
 def test_killed_workers_and_commands_leave_an_equal_data_set(whole: tuple[Path, Path], tmp_path: Path) -> None:
     plan, reference = whole
     folder = tmp_path / "set"
@@ -101,6 +102,7 @@ def test_the_sums_are_those_of_the_files(whole: tuple[Path, Path]) -> None:
     }
 
 
+@pytest.mark.whole_path("dataset")
 def test_drafts_of_killed_workers_are_removed(whole: tuple[Path, Path], tmp_path: Path) -> None:
     plan, reference = whole
     folder = tmp_path / "set"
@@ -189,6 +191,7 @@ def test_a_worker_that_is_refused_ends_the_command_with_its_reason(tmp_path: Pat
         make(write(tmp_path), tmp_path / "set", workers=1)
 
 
+@pytest.mark.slow("dataset")
 def test_the_script_of_a_caller_is_not_run_again(tmp_path: Path) -> None:
     """No guard of __main__: workers run nothing of the script."""
     write(tmp_path)
@@ -204,6 +207,7 @@ def test_the_script_of_a_caller_is_not_run_again(tmp_path: Path) -> None:
 # Slurm
 
 
+@pytest.mark.slow("dataset")
 def test_a_slurm_array_makes_an_equal_data_set(whole: tuple[Path, Path], tmp_path: Path) -> None:
     plan, reference = whole
     folder = tmp_path / "a set"
@@ -263,6 +267,7 @@ def test_a_wrong_command_is_refused(tmp_path: Path, arguments: list[str], said: 
 # Dask
 
 
+@pytest.mark.slow("dataset")
 def test_dask_makes_an_equal_data_set_though_workers_are_killed(whole: tuple[Path, Path], tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     plan, reference = whole

@@ -200,6 +200,7 @@ def compile_strictly(command: Sequence[str], folder: Path, source: str, *options
     subprocess.run([*command, *options, *STRICT, "-c", source], cwd=folder, check=True)
 
 
+@pytest.mark.slow("export")
 def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: Path) -> None:
     """No heap, no exception, no initialisation; all numbers are constants, and no variable outlives a step."""
     firmware = [written(each, tmp_path, "float", name=f"c{number}") for number, each in enumerate(every_controller())]

@@ -115,6 +115,7 @@ def test_firmware_of_a_law_has_its_bits(family: str, name: str, programs: dict[s
         assert np.array_equal(firmware, expected)
 
 
+@pytest.mark.slow("export")
 def test_headers_of_laws_stand_side_by_side_in_clang(programs: dict[str, Loaded]) -> None:
     folder = next(iter(programs.values())).firmware.header.parent
     subprocess.run([*checker("clang++"), *FLAGS.split(), *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)

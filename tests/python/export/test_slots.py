@@ -102,6 +102,7 @@ def has_friction_at_every_angle(law: Any) -> bool:
     return not refuses_angles(law) and bool(np.any(law.steady(np.full(257, 1.0), np.arange(257.0))))
 
 
+@pytest.mark.slow("export")
 @settings(max_examples=sample(10, 30), deadline=None)
 @given(law=strategies.models("friction", "steady").filter(has_friction_at_every_angle), count=st.integers(2, 20))
 def test_a_table_is_the_friction_at_its_points(law: Any, count: int) -> None:
@@ -122,6 +123,7 @@ def test_a_denser_table_loses_less() -> None:
     assert dense == pytest.approx(coarse / 4.0, rel=0.2)  # lines through a smooth curve
 
 
+@pytest.mark.slow("export")
 def test_scales_are_those_of_the_gear_of_little_friction() -> None:
     """All friction of a drawn gear is that of the stated one times one factor, so both scales are a factor."""
     stated = sw.GearSet.of(with_torque_constant(PLAIN), name="joint", source="measured")
@@ -214,6 +216,7 @@ def test_a_torque_offset_follows_a_motion_that_is_given_and_the_rating_of_the_se
     assert len(found.table["time"]) == 2001
 
 
+@pytest.mark.slow("export")
 def test_what_is_assumed_is_remarked() -> None:
     for name in OF_FRICTION:
         assert any("friction is assumed" in remark for remark in sw.export.slot("csg-20-100", name).remarks)

@@ -46,6 +46,7 @@ def drawings(found: Identified) -> list[Node]:
     return Page(identify_report(found, experiments=[long_names])).root.find("svg")
 
 
+@pytest.mark.slow("report")
 def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: Identified) -> None:
     for svg in drawings(each):
         _, _, width, height = (float(number) for number in svg.attributes["viewbox"].split())
@@ -106,6 +107,7 @@ def luminance(colour: str) -> float:
     return float(linear @ (0.2126, 0.7152, 0.0722))
 
 
+@pytest.mark.slow("report")
 def test_no_colour_is_fixed_so_that_figures_follow_the_scheme(html: str) -> None:
     figures_of_page = Page(html).root.find("svg")
     assert figures_of_page

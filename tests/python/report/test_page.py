@@ -45,6 +45,7 @@ def test_markup_in_names_is_shown_and_not_obeyed(from_friction: Identified) -> N
     assert any(name in svg.attributes["aria-label"] for svg in page.find("svg"))
 
 
+@pytest.mark.slow("report")
 def test_the_same_result_gives_the_same_bytes_and_the_date_is_the_one_given(from_friction: Identified) -> None:
     provenance = Provenance("2026-01-01", "strainwave identify", {})
     assert identify_report(from_friction, provenance) == identify_report(from_friction, provenance)

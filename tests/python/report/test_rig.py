@@ -77,6 +77,7 @@ def html(found: Evaluation) -> str:
     return rig_report(found, Provenance("2026-01-01 12:00 UTC", "strainwave rig analyse test", {"steps.csv": "0a1b"}))
 
 
+@pytest.mark.slow("report")
 def test_the_page_is_whole_safe_and_the_same_each_time(found: Evaluation, html: str) -> None:
     root = Page(html).root
     assert not root.find("script")
@@ -199,6 +200,7 @@ def test_loops_are_written_as_a_twin_reads_them(found: Evaluation) -> None:
     assert files["loop-0deg.csv"].splitlines()[1] == b'"input_angle [rad]","input_torque [N.m]"'
 
 
+@pytest.mark.slow("report")
 def test_names_of_files_hold_nothing_that_a_path_must_not() -> None:
     loops = [replace(loop_at(0), unit=unit) for unit in ("../A", "B 1", "B 1")]
     assert loop_names(loops) == ["loop-A-0deg", "loop-B-1-0deg-1", "loop-B-1-0deg-2"]

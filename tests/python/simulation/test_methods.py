@@ -189,6 +189,7 @@ def on_bristles(stiffness: float) -> sw.Drive:
 TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 def test_a_shaft_that_rests_on_stiff_bristles_and_slides_off_is_followed_by_the_rosenbrock_method() -> None:
     """A voltage that rises from nothing: with its order, in steps with which the exponential method loses the shaft."""
@@ -282,6 +283,7 @@ def chattering(tmp_path_factory: pytest.TempPathFactory) -> list[list[float]]:
     return [[float(number) for number in line] for line in told("chattering", tmp_path_factory.mktemp("chattering"))]
 
 
+@pytest.mark.slow("simulation")
 def test_a_drive_without_chattering_is_never_time_stepped(chattering: list[list[float]]) -> None:
     for events, arrivals, *_ in chattering[:4]:
         assert 1 <= events < MOST_EVENTS

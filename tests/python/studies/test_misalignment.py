@@ -35,6 +35,7 @@ def levels(ramp: ActuatorRamp) -> dict[str, SweepLevels]:
 # The error that goes in
 
 
+@pytest.mark.slow("papers")
 def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, SweepLevels]) -> None:
     """20 um off centre, a = 25.3 mm, b = 24.7 mm: 1.001 arcmin once a turn; 8.492 um twice and 1.698 um four times."""
     row = study.SWEEPS["e1"][1].index(20e-6)
@@ -107,6 +108,7 @@ def share(gain: float, order: float, speed: float, *, side: str) -> float:
     return float(abs((reaction - motor) / (motor * stretch + position + load)))
 
 
+@pytest.mark.slow("papers")
 @pytest.mark.parametrize("side", [OUTPUT, INPUT])
 @pytest.mark.parametrize("gain", [8.0, 64.0])
 def test_what_reaches_the_output_is_what_the_linear_drive_lets_pass(gain: float, side: str) -> None:
@@ -151,6 +153,7 @@ def test_ramp_times_and_gains_are_those_asked_for(ramp: ActuatorRamp, monkeypatc
 # Recovery
 
 
+@pytest.mark.slow("papers")
 def test_what_was_put_in_comes_back_within_its_interval(ramp: ActuatorRamp, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 24 records with 95 % confidence 19 must agree: fewer have a probability of 1e-3.
 

@@ -75,6 +75,7 @@ def cells(row: Node) -> list[str]:
     return [cell.text for cell in row.children if isinstance(cell, Node)]
 
 
+@pytest.mark.slow("papers")
 def test_the_page_is_well_formed_and_needs_nothing_else(html: str) -> None:
     names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
     assert len(names) == len(set(names))
@@ -89,6 +90,7 @@ def test_markup_in_names_is_shown_and_not_obeyed(html: str) -> None:
     assert Page(html).root.find("footer")[0].find("code")[0].text == HOSTILE
 
 
+@pytest.mark.slow("papers")
 def test_the_same_study_gives_the_same_bytes(found: MisalignmentStudy, html: str) -> None:
     assert misalignment_report(found, Provenance("2026-01-01", HOSTILE, {})) == html
 
@@ -114,6 +116,7 @@ def test_the_tables_say_what_the_recordings_hold(found: MisalignmentStudy, html:
             assert swing < 1e-3 if said == "< 0.001" else printed(said) == pytest.approx(swing, rel=6e-3)
 
 
+@pytest.mark.slow("papers")
 def test_every_figure_names_its_quantities_and_their_units(html: str) -> None:
     expected = {
         "geometry": ("θ", "β₁", "α₂", "β₃", "h", "section"),

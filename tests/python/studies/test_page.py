@@ -54,6 +54,7 @@ def milli(text: str) -> float:
     return 1e-3 * printed(value)
 
 
+@pytest.mark.slow("papers")
 def test_the_page_is_well_formed_and_needs_nothing_else(html: str) -> None:
     names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
     assert len(names) == len(set(names))
@@ -68,6 +69,7 @@ def test_markup_in_names_is_shown_and_not_obeyed(html: str) -> None:
     assert Page(html).root.find("footer")[0].find("code")[0].text == HOSTILE
 
 
+@pytest.mark.slow("papers")
 def test_the_same_study_gives_the_same_bytes_and_the_date_is_the_one_given(found: PositionControl, html: str) -> None:
     assert position_control_report(found, Provenance("2026-01-01", HOSTILE, {})) == html
     assert re.findall(r"20\d\d-\d\d-\d\d", html) == ["2026-01-01"]
@@ -161,6 +163,7 @@ def test_the_lines_for_a_terminal_say_the_same(found: PositionControl) -> None:
     assert all(line == line.rstrip() and len(line) < 170 for line in lines)
 
 
+@pytest.mark.slow("papers")
 def test_the_command_writes_recordings_and_a_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "VOLTAGES", (12.0,))
     monkeypatch.setattr(study, "PULSES_PER_VOLTAGE", 2)

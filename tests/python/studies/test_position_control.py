@@ -66,6 +66,7 @@ def integrated_stroke(voltage: float, width: float, friction: Callable[[float, f
 # The three experiments
 
 
+@pytest.mark.slow("papers")
 def test_the_figures_are_those_that_their_definitions_give_by_hand(found: PositionControl) -> None:
     def check(agreement: sw.Agreement, x: np.ndarray, y: np.ndarray) -> None:
         difference = [b - a for a, b in zip(x.tolist(), y.tolist(), strict=True)]

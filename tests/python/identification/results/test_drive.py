@@ -39,6 +39,7 @@ def found(folder: Path) -> GearSet:
     return sw.identify(START, [folder / "joint.csv"], mapping=mapping(**STATED)).gear_set
 
 
+@pytest.mark.slow("identification")
 def test_it_has_a_name_of_its_own_and_names_the_set_it_started_from(found: GearSet) -> None:
     assert found.name == "gear of joint 1 of joint"
     assert found.maker == ""
@@ -108,12 +109,14 @@ def test_a_later_identification_keeps_the_covariance_of_what_it_does_not_change(
     assert later.sources["gear.friction_input.coulomb"].source != found.sources["gear.friction_input.coulomb"].source
 
 
+@pytest.mark.slow("identification")
 def test_other_loads_of_other_logs_are_stated(folder: Path) -> None:
     found = sw.identify(START, [folder / "joint.csv", folder / "stretched.csv"], mapping=mapping(**STATED)).gear_set
     assert found.name == "gear of joint 1 of joint and 1 more"
     assert "other logs carry other loads: " in found.note
 
 
+@pytest.mark.slow("identification")
 def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> None:
     found = sw.identify(START, [folder / "joint.csv"], mapping=mapping(ratio=100.0)).gear_set
     lacking = "ithout the measured load, friction: the torque constant is not known, and these numbers are in A"
@@ -129,6 +132,7 @@ def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> 
     assert f"W{lacking}" in page
 
 
+@pytest.mark.slow("identification")
 def test_a_measured_torque_gives_a_motor_of_torque(folder: Path) -> None:
     recorded = Recorder(rate=250.0)(run((replace(JOINT),) * 3, fourier(30.0, (1,), 2)))
     columns = {"time": recorded["time"], "output_angle": recorded["q"][1], "joint_torque": recorded["motor_torque"][1]}
