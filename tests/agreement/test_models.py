@@ -120,6 +120,7 @@ def test_a_gear_with_any_law_runs_one_trajectory_in_every_scalar(part: str, mode
     agree(DRIVE.replace(gear=DRIVE.gear.replace(**{part: law})), seed)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize(("part", "model"), OTHER_PARTS)
 @settings(max_examples=sample(3, 8))
 @given(st.data(), seeds)

@@ -306,6 +306,7 @@ def test_its_deviations_are_those_of_two_hundred_drawn_gears(million: Any, memor
     assert squares == pytest.approx(np.ones(6), abs=3.5 * np.sqrt(2.0 / 200.0))
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("scalar", ["double", "float"])
 def test_a_million_samples_of_one_torque_and_angle_move_the_offset_alone(million: Any, scalar: str) -> None:
     found = million["one angle", "excited", scalar]
@@ -316,6 +317,7 @@ def test_a_million_samples_of_one_torque_and_angle_move_the_offset_alone(million
     assert value[1] == pytest.approx(total, abs=1e-5)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("scalar", ["double", "float"])
 def test_neither_values_nor_deviations_grow_where_nothing_is_kept(million: Any, scalar: str) -> None:
     """One regressor for a thousand seconds: the priors hold what it leaves open."""
@@ -325,6 +327,7 @@ def test_neither_values_nor_deviations_grow_where_nothing_is_kept(million: Any, 
     assert widest < 1.0 + 1e-6
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("adapted", ["excited", "all"])
 def test_single_precision_has_the_numbers_of_double_precision(million: Any, adapted: str) -> None:
     double, single = (million["moves", adapted, scalar][3:] for scalar in ("double", "float"))

@@ -44,6 +44,7 @@ def test_most_of_the_targets_are_found_and_hardly_anything_else(image: Image, ma
     assert len(markers) > 200
 
 
+@pytest.mark.slow("rig")
 @pytest.mark.parametrize("place", WALL + FLOOR)
 def test_discs_that_one_sees_are_among_them(markers: list[Marker], place: tuple[int, int]) -> None:
     near = min(markers, key=lambda marker: np.hypot(marker.x - place[0], marker.y - place[1]))

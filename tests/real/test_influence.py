@@ -59,6 +59,7 @@ def test_area_and_width_grow_with_the_torque(by_torque: dict[str, Trend]) -> Non
     assert by_torque["area"].interval[0] > by_torque["width"].interval[1]  # it also grows along the torque
 
 
+@pytest.mark.slow("rig")
 def test_the_slope_of_unloading_falls_with_the_torque(by_torque: dict[str, Trend]) -> None:
     """Against document T's first entry: friction within holds the shaft over more of a small loop than of a large one."""
     assert by_torque["high_stiffness"].significant

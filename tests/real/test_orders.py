@@ -106,6 +106,7 @@ def of_the_ur10e(joint: int, others: bool) -> FileMapping:
     return FileMapping(columns=columns, units={"output_angle": "rad", "current": "A"})
 
 
+@pytest.mark.slow("orders")
 @arms_are_here
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
 def test_a_joint_of_the_ur10e_alone_has_its_ratio(joint: int) -> None:

@@ -95,6 +95,7 @@ def test_a_multiple_of_a_bearing_that_is_no_whole_order_is_its_cause() -> None:
     assert other.endswith("a bearing, the motor, or a resonance")
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize(
     ("options", "reason"),
     [

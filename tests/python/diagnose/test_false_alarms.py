@@ -44,6 +44,7 @@ def test_healthy_units_raise_no_more_alarms_than_stated(found: list[Diagnosis]) 
     assert min(least_probability(run) for run in runs) > RATES[-1]  # six runs: none is an alarm at 0.001
 
 
+@pytest.mark.slow("diagnose")
 def test_the_least_probability_of_a_run_determines_its_alarm_at_every_stated_rate(found: list[Diagnosis]) -> None:
     for each in found:
         for run in each.runs:

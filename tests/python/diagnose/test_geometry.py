@@ -77,6 +77,7 @@ def test_the_place_of_the_generator_on_its_shaft_is_reported_with_its_interval(d
     assert "c_x" not in lone.words()
 
 
+@pytest.mark.slow("diagnose")
 def test_a_tilt_is_told_as_the_eccentricity_that_it_is_equivalent_to(drives: PossibleDrives) -> None:
     law = tilted(LAW, (10e-6, -20e-6))
     assert_allclose(law.eccentricity, (10e-6, -20e-6), rtol=1e-4)

@@ -64,6 +64,7 @@ def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(pa
     assert "Taken for reaction alone" in parts.words(2.0, error)
 
 
+@pytest.mark.slow("diagnose")
 def test_two_loads_determine_the_error_though_the_output_inertia_is_not_known(parts: CurrentPerError) -> None:
     law, _ = geometry(RAMP.drive)
     error = harmonics(displaced(law, (E1, 0.0)))[1]

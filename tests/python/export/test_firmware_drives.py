@@ -78,6 +78,7 @@ def test_headers_of_drives_compile_in_clang(programs: dict[str, Loaded]) -> None
     subprocess.run([*checker("clang++"), *FLAGS.split(), *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)
 
 
+@pytest.mark.slow("export")
 def test_a_state_goes_on_where_a_copy_was_made(programs: dict[str, Loaded]) -> None:
     """The state in C is all that a drive remembers."""
     program, inputs = (

@@ -107,6 +107,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Loaded]:
     return {name: Loaded(each, shared) for name, each in firmware.items()}
 
 
+@pytest.mark.whole_path("export")
 @pytest.mark.parametrize(("family", "name"), LAWS)
 def test_firmware_of_a_law_has_its_bits(family: str, name: str, programs: dict[str, Loaded]) -> None:
     found = COMPARED[family](programs[name], law_of(family, name))

@@ -136,6 +136,7 @@ def test_scales_are_those_of_the_gear_of_little_friction() -> None:
     assert loss(found).rms == pytest.approx((1.0 - factors[4]) * friction, rel=1e-6)
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("name", ["csg-20-100", "space-pointing-joint", "position-drive-full-friction"])
 def test_a_scale_over_compensates_few_gears(name: str) -> None:
     found = sw.export.slot(name, "viscous-coulomb-scale", members=40)
@@ -275,6 +276,7 @@ def test_side_and_sign_are_the_first_remarks(side: str) -> None:
     assert second.startswith("sign: ")
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("name", SLOTS)
 def test_the_command_writes_a_slot(name: str, tmp_path: Path) -> None:
     needs = {"torque-offset": {"rated_torque": 0.9}, "anticogging-map": {"load": 20.0}}.get(name, {})

@@ -153,6 +153,7 @@ def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: st
     assert number.value == pytest.approx(TRUTH["inertia"], abs=max(4.0 * number.sigma, 0.02 * TRUTH["inertia"]))
 
 
+@pytest.mark.slow("identification")
 def test_milliamperes_called_amperes_fail_a_check(tmp_path: Path) -> None:
     found = identify(START, [log(current=1e3 * CURRENT)(tmp_path)])
     (check,) = found.failed

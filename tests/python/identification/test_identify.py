@@ -65,6 +65,7 @@ def test_each_file_is_told_what_it_is_and_none_stops_the_others(found: Identifie
     assert [bool(each.refused) for each in found.files] == [False, False, True, False, False, False]
 
 
+@pytest.mark.slow("identification")
 def test_files_of_one_name_are_told_by_their_folders(found: Identified) -> None:
     names = [each.name for each in found.files]
     assert names[0] == "rough.csv"
@@ -72,6 +73,7 @@ def test_files_of_one_name_are_told_by_their_folders(found: Identified) -> None:
     assert len(set(names)) == len(names)
 
 
+@pytest.mark.slow("identification")
 def test_the_file_that_tells_a_number_best_gives_it_and_the_law(found: Identified) -> None:
     number = next(each for each in found.parameters if each.estimate.path == "gear.friction_input.coulomb")
     assert "fine.csv" in number.mean_of
@@ -89,6 +91,7 @@ def test_a_mean_replaces_only_what_one_of_its_files_has_told(file: str, coulomb:
     assert with_means(known, [mean]).gear.friction_input.coulomb == coulomb
 
 
+@pytest.mark.slow("identification")
 def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(found: Identified) -> None:
     assert found.files[5].same_as == found.files[3].name
     inertia = [each for each in found.parameters if each.estimate.path == "load.inertia"]

@@ -82,6 +82,7 @@ def test_friction_scaled_by_1_3_is_reported_as_that_and_contradicts(folder: Path
     assert found.error_with_changes < 0.4 * found.error
 
 
+@pytest.mark.slow("identification")
 def test_viscous_friction_scaled_by_1_5_is_found_within_what_the_result_allows(folder: Path) -> None:
     found = predicted(folder, "thick.csv")
     viscous = change(found, "viscous friction")
@@ -167,6 +168,7 @@ def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_cont
     assert ">nan" not in page
 
 
+@pytest.mark.slow("identification")
 def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
     arguments = ("predict", "csg-20-100", "same.csv", "--joint", "1", "--out", "none")
     refused(folder, arguments, "has no [load], without which no torque along a motion is predicted")

@@ -59,6 +59,7 @@ def test_revolutions_without_a_unit_are_read_as_the_gravity_shows(tmp_path: Path
     assert "rad, rad/s at the output: " in found.files[0].remarks[0]
 
 
+@pytest.mark.slow("identification")
 def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
     found = identify("csg-20-100", [path])

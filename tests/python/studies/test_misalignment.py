@@ -51,6 +51,7 @@ def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, SweepL
     assert levels["mean"].column("e1", "error_2")[row] == pytest.approx(second * PER_METRE, rel=1e-3)
 
 
+@pytest.mark.slow("papers")
 def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, SweepLevels]) -> None:
     for each in levels.values():
         for sweep in study.SILENT:
@@ -60,6 +61,7 @@ def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, Sweep
     assert np.all(alone < 1e-3 * housing), "what is left of a constant is the start of the ramp"
 
 
+@pytest.mark.slow("papers")
 def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, SweepLevels]) -> None:
     """The tilted section of a cylinder is longer by the tilt squared: a beta^2 / 4 at order 2 (erratum E-A8)."""
     without = levels["single"].column("h", "error_2")[0]
@@ -70,6 +72,7 @@ def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, S
 # What it does
 
 
+@pytest.mark.slow("papers")
 def test_the_effect_grows_with_the_level_as_the_sharing_has_it(levels: dict[str, SweepLevels]) -> None:
     assert study.power_of_level(levels["single"], "e1", "current_swing") == pytest.approx(1.0, abs=0.02)
     assert study.power_of_level(levels["max"], "e1", "current_swing") == pytest.approx(1.0, abs=0.05)

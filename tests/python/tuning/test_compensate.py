@@ -34,6 +34,7 @@ def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated
     assert known.chosen.upper("tracking error") < known.baseline.median("tracking error")
 
 
+@pytest.mark.slow("tuning")
 def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: Path) -> None:
     known.saved.save(tmp_path / "drive.toml")
     drive = sw.load(tmp_path / "drive.toml")
@@ -114,7 +115,11 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
         ({"period": 0.0}, "period"),
         ({"delay": -1e-3}, "delay"),
         ({"delay": 2e-3}, r"delay = 0\.002 s exceeds the period of 0\.001 s; take a longer period or a shorter delay"),
-        ({"speed": 40.0, "travel": 8.0}, r"motor is at its limit; the motor takes at most \S+ A: take a lower speed or travel"),
+        pytest.param(
+            {"speed": 40.0, "travel": 8.0},
+            r"motor is at its limit; the motor takes at most \S+ A: take a lower speed or travel",
+            marks=pytest.mark.slow("tuning"),
+        ),
         ({"travel": -1.0}, "travel"),
         ({"speed": 0.0}, "speed"),
         ({"members": 1}, "members"),
@@ -151,6 +156,7 @@ def test_drives_of_the_catalogue_run_on_gears_drawn_from_them(name: str) -> None
     assert found.baseline.upper("tracking error") < 2e-3
 
 
+@pytest.mark.slow("tuning")
 def test_the_gain_is_that_on_gears_by_which_nothing_was_chosen(known: sw.Compensated) -> None:
     """It is chosen on the gears of the seed, and its gain is that on those of the next seed."""
     chosen = next(each for each in known.tried if each.candidate is known.chosen.candidate)
@@ -205,6 +211,7 @@ def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
     assert any("against which the torque goes from 0 to 20 N·m" in remark for remark in found.remarks)
 
 
+@pytest.mark.slow("tuning")
 def test_the_chosen_setting_keeps_its_margins(known: sw.Compensated) -> None:
     assert known.margins == sw.loop_margins(known.drive)
     assert known.margins.modulus >= 0.5

@@ -62,6 +62,7 @@ def test_another_minimum_that_explains_as_much_is_named() -> None:
     assert "the data do not separate the two" in str(told)
 
 
+@pytest.mark.slow("identification")
 def test_a_drive_that_moves_has_one_minimum() -> None:
     found = fitted(6.0, 3, (1.95e4, 0.375), "input_speed", "output_angle")
     told = minima(found)

@@ -209,6 +209,7 @@ def test_a_record_one_way_at_one_speed_determines_friction_there_with_a_speed_co
     assert not found.failed
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("with_speed", [True, False])
 def test_a_record_one_way_at_one_speed_that_gravity_explains_is_a_log(tmp_path: Path, with_speed: bool) -> None:
     found = identify(START, [one_way(tmp_path / "log.csv", gravity=9.0, drift=0.0, with_speed=with_speed)])

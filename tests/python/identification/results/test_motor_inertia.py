@@ -62,6 +62,7 @@ def test_two_encoders_separate_motor_and_load_and_the_gear_file_has_what_is_prin
     assert covariance.correlation("gear.hysteresis.stiffness[0]", "gear.hysteresis.breakaway[0]") > 0.1
 
 
+@pytest.mark.slow("identification")
 def test_one_encoder_determines_both_together(folder: Path) -> None:
     found = identified(folder, "later.csv")
     (load,) = (each.estimate for each in found.parameters if each.estimate.path == "load.inertia")

@@ -52,6 +52,7 @@ def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_
         assert ends == pytest.approx([1.5, 2.0], abs=2e-3)
 
 
+@pytest.mark.slow("identification")
 def test_the_spectrum_of_a_residual_shows_what_the_model_lacks(log_fit: sw.Fit) -> None:
     _, current = log_fit.plot_residual_spectrum().axes
     assert (current.get_title(loc="left"), current.get_xlabel()) == ("amplitude of current [A]", "frequency [Hz]")
