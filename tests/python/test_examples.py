@@ -22,7 +22,13 @@ from tests.python.command import strainwave
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
-SLOW_MODULES = ("compensate.py", "detection_limit.py", "influence.py", "two_encoders.py")  # their examples take 0.5 s and more
+SLOW_MODULES = (
+    "compensate.py",
+    "position_control.py",
+    "detection_limit.py",
+    "influence.py",
+    "two_encoders.py",
+)  # their examples take 0.5 s and more
 FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ strainwave ))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 

@@ -208,6 +208,7 @@ def test_an_input_that_varies_within_a_step_is_followed() -> None:
     assert difference(sw.simulate_adaptively(SMOOTH, command(0.1), rtol=1e-7, load_torque=load), exact) < 1e-6
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.parametrize(
     ("period", "width", "duration"),
     [(0.3, 0.05, 0.4), (0.1 * 3, 0.05, 0.4), (0.3 - 1e-15, 0.05, 0.4), (0.7, 0.1, 0.8), (0.09, 0.01, 0.1), (0.02, 1e-14, 0.1)],
