@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import dev
+from tests.conftest import ROOMS
 
 ROOT = Path(dev.__file__).parent
 BURN = "import time\nwhile time.process_time() < 0.1: pass"
@@ -149,3 +150,9 @@ def test_a_mark_names_a_room(tmp_path: Path) -> None:
     done = run_tests(tmp_path, 'import pytest\n@pytest.mark.slow("cellar")\ndef test_some(): pass\n')
     assert done.returncode == pytest.ExitCode.USAGE_ERROR
     assert "slow('cellar',) must name one of the rooms physics, native" in done.stderr
+
+
+def test_every_room_has_a_whole_path_in_the_fast_tier() -> None:
+    texts = [path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py")]
+    marked = {room for text in texts for room in re.findall(r'mark\.whole_path\("(\w+)"\)', text)}
+    assert sorted(marked) == sorted(ROOMS)
