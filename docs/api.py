@@ -27,6 +27,7 @@ PAGES = {
     "tuning": "Control and compensation",
     "diagnose": "Diagnosis",
     "dataset": "Diagnosis",
+    "report": "Files and recordings",
     "_core": "Gear and drive",
 }
 MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export"}
