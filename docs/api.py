@@ -30,7 +30,13 @@ PAGES = {
     "report": "Files and recordings",
     "_core": "Gear and drive",
 }
-MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export"}
+MODULES = {
+    "scenario": "Scenarios",
+    "rig": "Torsion rig",
+    "diagnose": "Misalignment",
+    "export": "Export",
+    "typeset": "Numbers in print",
+}
 VALUES = "Values in results"
 
 

@@ -47,7 +47,7 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
-    from strainwave import export, rig
+    from strainwave import diagnose, export, rig, typeset
     from strainwave.analysis.agreement import Agreement
     from strainwave.analysis.compare import compare
     from strainwave.analysis.difference import Difference
@@ -158,6 +158,7 @@ _LAZY = {
     "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
     "detection_limit": "diagnose.detection_limit",
+    "diagnose": "diagnose",
     "equilibrium": "analysis.steady",
     "export": "export",
     "fit": "identification.fitting.fit",
@@ -197,6 +198,7 @@ _LAZY = {
     "stroke_within": "analysis.strokes",
     "strokes_apart": "analysis.strokes",
     "transmission_error": "orders.two_encoders",
+    "typeset": "typeset",
     "with_faults": "dataset.faults",
 }
 
@@ -263,6 +265,7 @@ __all__ = [
     "control",
     "derivatives",
     "detection_limit",
+    "diagnose",
     "equilibrium",
     "export",
     "fault",
@@ -316,6 +319,7 @@ __all__ = [
     "structure",
     "thermal",
     "transmission_error",
+    "typeset",
     "variation",
     "with_faults",
 ]
@@ -346,7 +350,7 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'strainwave' has no attribute {name!r}")
     module = import_module(f"strainwave.{_LAZY[name]}")
-    return module if name in ("export", "rig", "scenario") else getattr(module, name)
+    return module if name in ("diagnose", "export", "rig", "scenario", "typeset") else getattr(module, name)
 
 
 def __dir__() -> list[str]:
