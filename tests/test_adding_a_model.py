@@ -74,7 +74,6 @@ ELSEWHERE = {
         "verbs.cpp": "the harmonics of any error are of this form",
         "analysis/steady.py": STEADY_RUNNING,
         "identification/dynamics/log.py": "harmonics found in a log are of this form",
-        "studies/pure_error.py": "the assumed curve of the study of misalignment",
         "diagnose/inversion.py": "an error of every order, by which a drive is probed",
         "diagnose/steady_run.py": "an error of one order, by which a drive is probed",
     },
@@ -107,7 +106,6 @@ ELSEWHERE = {
     "Coulomb": {
         "compensation/bristle_observer.hpp": "what follows the measured motion by default",
         "drive_model.hpp": MODEL,
-        "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
         "analysis/linear.py": "holds the input while the output vibrates",
         "friction/asymmetric.hpp": "what it modulates by default",
@@ -127,7 +125,6 @@ ELSEWHERE = {
     "OpenLoop": {
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
         "identification/experiments/driven_log.py": "the motion of a log is the command itself",
-        "studies/position_control.py": "pulses without a controller",
     },
     "PID": {"control/sampled.hpp": "what it samples by default"},
     "Sampled": {

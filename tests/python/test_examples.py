@@ -24,12 +24,11 @@ SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
 SLOW_MODULES = (
     "compensate.py",
-    "position_control.py",
     "detection_limit.py",
     "influence.py",
     "two_encoders.py",
 )  # their examples take 0.5 s and more
-FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ strainwave ))(.*?)^```$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ (?:strainwave|python papers/)))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -52,7 +51,7 @@ PAGES = [
     page
     for page in (
         *map(ROOT.joinpath, ("README.md", "CONTRIBUTING.md", "python/strainwave/AGENTS.md")),
-        *sorted((ROOT / "docs").rglob("*.md")),
+        *sorted(page for folder in ("docs", "papers") for page in (ROOT / folder).rglob("*.md")),
     )
     if examples(page)
 ]
@@ -133,6 +132,7 @@ def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Pa
         assert (folder / pictures.WARNINGS).read_text(encoding="utf-8") == ""
         return
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "papers").symlink_to(ROOT / "papers")
     write_files(page, tmp_path)
     names: dict[str, object] = {"__name__": "__main__"}
     for example in examples(page):
@@ -147,7 +147,7 @@ def test_the_examples_in_docstrings_run(path: Path) -> None:
     assert doctest.testmod(module).failed == 0
 
 
-@pytest.mark.parametrize("room", [sw, sw.export, sw.rig], ids=lambda room: str(room.__name__))
+@pytest.mark.parametrize("room", [sw, sw.diagnose, sw.export, sw.rig], ids=lambda room: str(room.__name__))
 def test_every_public_function_and_class_has_an_example(room: ModuleType) -> None:
     compiled = {"PassivityWarning"}  # an exception made in C++, which has a text alone
     public = [name for name in room.__all__ if callable(getattr(room, name)) and name not in compiled]

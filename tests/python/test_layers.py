@@ -7,12 +7,13 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "orders", "identification", "tuning", "dataset", "diagnose", "export", "rig", "studies"}
+ANALYSES = {"analysis", "orders", "identification", "tuning", "dataset", "diagnose", "export", "rig"}
 BELOW = {"drawing", "files", "native", "simulation"}
 LAYERS = {
     "drawing": {"drawing"},
@@ -27,7 +28,6 @@ LAYERS = {
     "diagnose": {*BELOW, "analysis", "orders", "identification", "tuning", "diagnose"},
     "export": {*BELOW, "tuning", "export"},
     "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
-    "studies": {*BELOW, "analysis", "orders", "diagnose", "studies"},
     "report": {*BELOW, *ANALYSES, "report"},
     "commands": {*BELOW, *ANALYSES, "report", "commands", "demo"},
 }
@@ -68,3 +68,15 @@ def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs(
     ):
         done = subprocess.run([sys.executable, "-c", code.format(module, heavy)], capture_output=True, text=True, check=True)
         assert done.stdout.strip() == "set()", module
+
+
+def test_papers_import_public_modules_alone() -> None:
+    public = {f"strainwave.{name}" for name in sw.__all__ if isinstance(getattr(sw, name), ModuleType)}
+    scripts = sorted((Path(__file__).parents[2] / "papers").rglob("*.py"))
+    assert scripts
+    for path in scripts:
+        nodes = list(ast.walk(ast.parse(path.read_text())))
+        of = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+        plain = {each.name for node in nodes if isinstance(node, ast.Import) for each in node.names}
+        private = {name for name in of | plain if name.startswith("strainwave.")} - public
+        assert not private, f"{path.parent.name}/{path.name} imports {private}"

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.rig.influence.influence import JOINT_FRICTION_FALL_RATE
 from strainwave.rig.influence.series import Series, analyse_series, figures_of
 from strainwave.rig.influence.trend import Trend
 from strainwave.rig.loop import Loop
+from torsion_influences import JOINT_FRICTION_FALL_RATE
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
-from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
+from strainwave.diagnose.actuator_ramp import ActuatorRamp, wave_generator
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current, ramp_of
 from strainwave.diagnose.inversion import displaced, tilted
@@ -21,7 +21,7 @@ from tests.support.signature_drive import signature_ramp
 
 SET = GearSet.read("tilt-actuator-lumped")
 RAMP = ActuatorRamp.of(SET.drive, stroke=float(np.radians(60.0)), duration=3.0)
-LAW, _ = geometry(SET.drive)
+LAW, _ = wave_generator(SET.drive)
 MEMBERS, UNITS = 32, 24
 UNITS_INSIDE = 20  # of 24: fewer have a probability of 0.4 % if 95 % are inside
 

@@ -8,10 +8,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from strainwave.demo import position_drive, torsion_rig
-from strainwave.drawing.style import DARK, LIGHT
+from strainwave.drawing import marks
+from strainwave.drawing.style import DARK, FIGURE_WIDTH, LIGHT
 from strainwave.identification.identify import Identified
-from strainwave.report.experiment import SimulatedExperiment
+from strainwave.report import figures
 from strainwave.report.identify import identify_report
 from strainwave.report.identify_figures import file_figure, overview
 
@@ -42,8 +44,17 @@ def apart(one: Box, other: Box) -> bool:
 
 
 def drawings(found: Identified) -> list[Node]:
-    long_names = SimulatedExperiment("long names", ((LONG, swing(50)), (HOSTILE, swing(60))), response="output_angle")
-    return Page(identify_report(found, experiments=[long_names])).root.find("svg")
+    """Return the drawings of a report, and one of curves with long names."""
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        for name, run in ((LONG, swing(50)), (HOSTILE, swing(60))):
+            marks.curve(axes, run.time, run["output_angle"], label=name)
+        marks.label_axes(axes, "output angle", "rad", "time", "s")
+        marks.legend(figure, axes)
+
+    long_names = figures.inline(draw, (FIGURE_WIDTH, 3.9), "long", "curves with long names")
+    return [svg for page in (identify_report(found), long_names) for svg in Page(page).root.find("svg")]
 
 
 @pytest.mark.slow("report")

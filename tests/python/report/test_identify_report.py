@@ -24,15 +24,13 @@ from strainwave.identification.results.combined_parameter import combine
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Look, Picture
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import gear_numbers
-from strainwave.report import figures, identify_figures
-from strainwave.report.experiment import Figure, SimulatedExperiment
+from strainwave.report import identify_figures
 from strainwave.report.identify import identify_report
 from strainwave.report.identify_files import failed_lines, identify_files
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 
-from tests.python.report.measured import HOSTILE, swing
-from tests.python.report.reading import Node, Page, section
+from tests.python.report.reading import Page, section
 from tests.support.samples import sample
 
 START = GearSet.read("hfuc-20-80")
@@ -194,39 +192,6 @@ def test_every_file_that_was_fitted_has_a_drawing_of_its_own(page: str, found: I
     names = [each.attributes["id"] for each in root.walk() if "id" in each.attributes]
     assert len(names) == len(set(names))
     assert {link.attributes["href"][1:] for link in root.find("a")} <= set(names)
-
-
-@pytest.mark.slow("report")
-def test_experiments_show_every_run_and_every_figure_beside_the_published_one(found: Identified) -> None:
-    error = Figure("largest error", "rad", (0.0123, 0.0456), published=0.0042)
-    runs = (("_gear", swing(50)), (HOSTILE, swing(60)))
-    experiment = SimulatedExperiment("sine", runs, (error,), remark="amplitude assumed", source="Table 4")
-    page = section(identify_report(found, experiments=[experiment]), "experiments")
-    assert [cell.text for cell in page.find("tr")[1].children if isinstance(cell, Node)] == [
-        "largest error", "0.0123", "0.0456", "0.0042", "rad",
-    ]  # fmt: skip
-    assert "they are not reproduced" in page.text
-    assert "amplitude assumed" in page.text
-    labels = [text.text for text in page.find("text")]
-    assert {"command", "_gear", " ".join(HOSTILE.split())} <= set(labels)
-
-
-def test_an_open_loop_experiment_draws_the_command_by_itself() -> None:
-    columns = {"time": [0.0, 1.0], "command": [0.0, 5.0], "output_angle": [0.0, 0.1]}
-    run = Recording(columns, {"time": "s", "command": "V", "output_angle": "rad"})
-    drawn = Page(figures.experiment(SimulatedExperiment("step", (("gear", run),)), "e")).root
-    labels = [text.text for text in drawn.find("text")]
-    assert "command [V]" in labels
-    assert not any("response" in label for label in labels)
-
-
-def test_an_experiment_refuses_what_it_cannot_show() -> None:
-    with pytest.raises(ValueError, match=r'^experiment "e" has no run$'):
-        SimulatedExperiment("e", ())
-    with pytest.raises(ValueError, match=r'^experiment "e": run "a" has no column "torque"$'):
-        SimulatedExperiment("e", (("a", swing(9)),), response="torque")
-    with pytest.raises(ValueError, match=r'^experiment "e": rms has 2 values for 1 runs$'):
-        SimulatedExperiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
 
 
 @pytest.mark.whole_path("report")
