@@ -10,9 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import strainwave as sw
+from strainwave.files.tables import LISTED
 
 CONTENTS = "<!-- contents: the pages above -->"
-LISTED = re.compile(r"^[*-] \[[^\]]*\]\(([\w/-]+)\.md\)", re.MULTILINE)  # a page that a line of a list begins with
+PAGE = re.compile(r"^[*-] \[[^\]]*\]\(([\w/-]+)\.md\)", re.MULTILINE)  # a page that a line of a list begins with
 
 
 def exports() -> str:
@@ -31,11 +32,26 @@ def export_pages() -> str:
     return "\n".join(f"* [{title(Path(__file__).parent / 'how-to' / page)}]({page})" for page in pages)
 
 
+def formats() -> str:
+    """Return the table of all formats of files, and what is to be said of some."""
+    head = "| format | file | unit of a column | precision |\n|---|---|---|---|"
+    rows = []
+    for each in LISTED:
+        suffixes = ", ".join(f"`{suffix}`" for suffix in each.suffixes)
+        rows.append(f"| {each.title} | {suffixes} | {each.units} | {each.kept} |")
+    rules = (f"* **{each.title}**: {each.about}" for each in LISTED if each.about)
+    return "\n".join([head, *rows, "", *rules])
+
+
 def title(page: Path) -> str:
     return page.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
 
 
-LISTS: dict[str, Callable[[], str]] = {"<!-- all exports -->": exports, "<!-- pages of the exports -->": export_pages}
+LISTS: dict[str, Callable[[], str]] = {
+    "<!-- all exports -->": exports,
+    "<!-- pages of the exports -->": export_pages,
+    "<!-- all formats of files -->": formats,
+}
 
 
 def write(source: Path) -> None:
@@ -45,7 +61,7 @@ def write(source: Path) -> None:
         for place, listed in LISTS.items():
             if place in text:
                 text = text.replace(place, listed())
-        names = "\n".join(LISTED.findall(text))
+        names = "\n".join(PAGE.findall(text))
         text = text.replace(CONTENTS, f"```{{toctree}}\n:hidden:\n\n{names}\n```")
         if text != before:
             page.write_text(text, encoding="utf-8")
