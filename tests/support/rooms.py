@@ -7,9 +7,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "CONTRIBUTING.md"
-ROOM = re.compile(
-    r"^(?P<indent> *)(?P<folders>(?:[\w.]+/)+(?: (?:[\w.]+/)+)*)\s+(?P<content>\S.*?)(?:\s+<- (?P<imports>[\w, ]+))?$"
-)
+# Indent, folders, text, and rooms after an arrow.
+ROOM = re.compile(r"^( *)((?:[\w.]+/)+(?: (?:[\w.]+/)+)*)\s+\S.*?(?:\s+<- ([\w, ]+))?$")
 PACKAGE = "python/strainwave"
 
 
@@ -36,7 +35,7 @@ def rooms() -> dict[str, tuple[str, ...]]:
 
 
 def layers() -> dict[str, set[str]]:
-    """Return each room of the package that has code, with the rooms that it may import: itself, those after its arrow, theirs."""
+    """Return each room of the package that has code, with itself, those after its arrow, and all that these may import."""
     after = {path.rpartition("/")[2]: imports for path, imports in rooms().items() if path.startswith(f"{PACKAGE}/")}
 
     def reached(room: str) -> set[str]:
