@@ -373,6 +373,7 @@ def options(include: Path) -> list[str]:
     return [*own, f"-I{SOURCE}", "-Wno-missing-field-initializers"]
 
 
+@pytest.mark.slow("build")
 def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Path) -> None:
     """It settles where the motor's torque is the drag: K (u - k v) / R = q v^2."""
     (tmp_path / "main.cpp").write_text(MAIN)
@@ -386,6 +387,7 @@ def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Pa
     assert speed == pytest.approx((-slope + (slope**2 + 4.0 * drag * level) ** 0.5) / (2.0 * drag), rel=1e-6)
 
 
+@pytest.mark.slow("build")
 def test_a_model_that_is_not_in_the_list_is_not_there(tmp_path: Path) -> None:
     """So that the run above does show the list at work: all that is missing is the name in the list."""
     include = with_one_more(tmp_path)

@@ -22,6 +22,13 @@ from tests.python.command import strainwave
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
+SLOW_MODULES = (
+    "compensate.py",
+    "position_control.py",
+    "detection_limit.py",
+    "influence.py",
+    "two_encoders.py",
+)  # their examples take 0.5 s and more
 FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ strainwave ))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -49,6 +56,13 @@ PAGES = [
     )
     if examples(page)
 ]
+
+
+def tier(path: Path) -> list[pytest.MarkDecorator]:
+    """Returns the mark of the examples of a page or a module: README is the whole path."""
+    if path == ROOT / "README.md":
+        return [pytest.mark.whole_path("docs")]
+    return [pytest.mark.slow("docs")] if path.suffix == ".md" or path.name in SLOW_MODULES else []
 
 
 def write_files(page: Path, folder: Path) -> None:
@@ -110,7 +124,9 @@ def draws_pictures(page: Path) -> bool:
     return programs_alone and page.stem in pictures.SHOWN.findall(text)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=tier(page)) for page in PAGES], ids=lambda page: str(page.relative_to(ROOT))
+)
 def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if draws_pictures(page):
         folder = pictures.drawn(page.stem, pictures.script_of(page.stem, {page: page.read_text(encoding="utf-8")}))
@@ -123,7 +139,9 @@ def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Pa
         run(example, names, page)
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
+@pytest.mark.parametrize(
+    "path", [pytest.param(path, marks=tier(path)) for path in MODULES], ids=lambda path: str(path.relative_to(SOURCE))
+)
 def test_the_examples_in_docstrings_run(path: Path) -> None:
     module = importlib.import_module(".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__"))
     assert doctest.testmod(module).failed == 0

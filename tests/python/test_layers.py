@@ -8,6 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import pytest
 import strainwave as sw
 
 from tests.support.rooms import layers
@@ -28,6 +29,7 @@ def imported(path: Path) -> frozenset[str]:
     )
 
 
+@pytest.mark.slow("physics")
 def test_each_layer_imports_from_those_below_alone() -> None:
     known = {*LAYERS, *TOP}
     for layer, below in LAYERS.items():
@@ -42,6 +44,7 @@ def test_nothing_imports_the_command_but_its_start() -> None:
     assert users == {"__main__"}
 
 
+@pytest.mark.slow("physics")
 def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs() -> None:
     code = "import strainwave.{}, sys; print({} & sys.modules.keys())"
     for module, heavy in (

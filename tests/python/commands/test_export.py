@@ -17,6 +17,7 @@ from strainwave.export.exported import Form
 from tests.python.command import refused, strainwave
 
 
+@pytest.mark.slow("commands")
 def test_each_kind_writes_its_files_and_numbers(tmp_path: Path) -> None:
     for words, file in (
         (("joint", "csg-20-100"), "joint.urdf"),

@@ -41,6 +41,7 @@ def test_the_signature_of_a_held_input_is_that_of_the_closed_form(load: float, p
     assert_allclose(inertial, 1.0, rtol=0.1)  # at order 1 a part of 0.08 mA is separated from 32 mA
 
 
+@pytest.mark.slow("diagnose")
 def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(parts: CurrentPerError) -> None:
     """64.7 mA by J Omega^2 k / (k - J Omega^2) / (N K_t), 82 mA by n T / K_t; a loop multiplies both, and they are phasors."""
     law, _ = geometry(RAMP.drive)
@@ -63,6 +64,7 @@ def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(pa
     assert "Taken for reaction alone" in parts.words(2.0, error)
 
 
+@pytest.mark.slow("diagnose")
 def test_two_loads_determine_the_error_though_the_output_inertia_is_not_known(parts: CurrentPerError) -> None:
     law, _ = geometry(RAMP.drive)
     error = harmonics(displaced(law, (E1, 0.0)))[1]

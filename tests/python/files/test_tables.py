@@ -248,6 +248,7 @@ def test_any_text_is_read_as_the_csv_module_does_or_refused(tmp_path: Path, data
     assert numbers == expected_numbers(text, delimiter)
 
 
+@pytest.mark.slow("files")
 @settings(untimed, max_examples=25)
 @given(st.data())
 def test_where_a_block_of_the_reader_ends_changes_nothing(tmp_path: Path, data: st.DataObject) -> None:
@@ -487,6 +488,7 @@ def test_truncated_parquet_is_refused(tmp_path: Path) -> None:
             Recording.from_parquet(path)
 
 
+@pytest.mark.slow("files")
 def test_a_flipped_bit_in_the_data_is_refused_or_harmless(tmp_path: Path) -> None:
     """Without checksums nearly every flip in byte-stream-split data reads back as other numbers."""
     path = tmp_path / "run.parquet"

@@ -46,6 +46,7 @@ def drawings(found: Identified) -> list[Node]:
     return Page(identify_report(found, experiments=[long_names])).root.find("svg")
 
 
+@pytest.mark.slow("report")
 def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: Identified) -> None:
     for svg in drawings(each):
         _, _, width, height = (float(number) for number in svg.attributes["viewbox"].split())
@@ -58,6 +59,7 @@ def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: Identified) -
             assert apart(one, other), f"{name}; {other_name}"
 
 
+@pytest.mark.whole_path("report")
 def test_every_curve_has_its_name_in_the_legend(each: Identified) -> None:
     for svg in section(identify_report(each), "measured").find("svg"):
         assert {"measured", "model"} <= {text.text for text in svg.find("text")}
@@ -87,6 +89,7 @@ def test_residuals_are_drawn_over_their_samples(from_torsion: Identified) -> Non
     assert np.corrcoef(upright, residual[sample])[0, 1] == pytest.approx(-1.0, abs=1e-4)
 
 
+@pytest.mark.slow("report")
 @pytest.mark.parametrize("scheme", [LIGHT, DARK])
 def test_every_colour_can_be_told_from_the_paper(scheme: dict[str, str], from_friction: Identified) -> None:
     """Contrast by WCAG 2.2: 4.5 for text, 3 for graphics; the rules of the grid are meant to be faint."""
@@ -106,6 +109,7 @@ def luminance(colour: str) -> float:
     return float(linear @ (0.2126, 0.7152, 0.0722))
 
 
+@pytest.mark.slow("report")
 def test_no_colour_is_fixed_so_that_figures_follow_the_scheme(html: str) -> None:
     figures_of_page = Page(html).root.find("svg")
     assert figures_of_page

@@ -81,6 +81,7 @@ def text_of(html: str) -> str:
     return Page(html).root.text
 
 
+@pytest.mark.slow("report")
 def test_the_verdict_comes_first_then_files_measured_against_predicted_then_parameters(page: str) -> None:
     text = text_of(page)
     order = (
@@ -93,6 +94,7 @@ def test_the_verdict_comes_first_then_files_measured_against_predicted_then_para
     assert places == sorted(places)
 
 
+@pytest.mark.slow("report")
 def test_a_failed_check_stands_first_with_what_to_do_and_marks_its_file(found: Identified) -> None:
     check = Check(
         "input speed", "warm.csv", 2e3, 1.6e3, "rad/s", True, "its input would turn too fast", "see whether units are right"
@@ -194,6 +196,7 @@ def test_every_file_that_was_fitted_has_a_drawing_of_its_own(page: str, found: I
     assert {link.attributes["href"][1:] for link in root.find("a")} <= set(names)
 
 
+@pytest.mark.slow("report")
 def test_experiments_show_every_run_and_every_figure_beside_the_published_one(found: Identified) -> None:
     error = Figure("largest error", "rad", (0.0123, 0.0456), published=0.0042)
     runs = (("_gear", swing(50)), (HOSTILE, swing(60)))
@@ -226,6 +229,7 @@ def test_an_experiment_refuses_what_it_cannot_show() -> None:
         SimulatedExperiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
 
 
+@pytest.mark.whole_path("report")
 def test_a_page_needs_nothing_else_and_is_the_same_each_time(page: str, found: Identified) -> None:
     assert identify_report(found, Provenance("2026-03-02", "strainwave identify", {"warm.csv": "ab12"})) == page
     for each in Page(page).root.walk():
@@ -274,6 +278,7 @@ def test_numbers_are_called_what_their_law_calls_them() -> None:
 values = st.floats(1e-6, 1e6)
 
 
+@pytest.mark.slow("report")
 @given(first=values, second=values, sigma=st.floats(1e-9, 1e3), same=st.booleans())
 @settings(max_examples=sample(5, 15), deadline=None)
 def test_files_hold_every_number_to_the_last_digit(first: float, second: float, sigma: float, same: bool) -> None:
@@ -343,6 +348,7 @@ def test_numbers_of_the_gear_come_before_the_loads_of_runs() -> None:
     assert order == [(COULOMB, "a.csv"), (first, "a.csv"), (second, "a.csv"), (first, "b.csv"), (second, "b.csv")]
 
 
+@pytest.mark.slow("report")
 def test_checks_with_one_remedy_name_it_once(found: Identified) -> None:
     failed = [
         Check("agreement of files", name, 9.0, 3.0, "1", True, "they differ", "compare them") for name in ("a, b", "a, c")

@@ -35,6 +35,7 @@ def levels(ramp: ActuatorRamp) -> dict[str, SweepLevels]:
 # The error that goes in
 
 
+@pytest.mark.slow("papers")
 def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, SweepLevels]) -> None:
     """20 um off centre, a = 25.3 mm, b = 24.7 mm: 1.001 arcmin once a turn; 8.492 um twice and 1.698 um four times."""
     row = study.SWEEPS["e1"][1].index(20e-6)
@@ -50,6 +51,7 @@ def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, SweepL
     assert levels["mean"].column("e1", "error_2")[row] == pytest.approx(second * PER_METRE, rel=1e-3)
 
 
+@pytest.mark.slow("papers")
 def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, SweepLevels]) -> None:
     for each in levels.values():
         for sweep in study.SILENT:
@@ -59,6 +61,7 @@ def test_a_misalignment_on_the_shaft_alone_is_a_constant(levels: dict[str, Sweep
     assert np.all(alone < 1e-3 * housing), "what is left of a constant is the start of the ramp"
 
 
+@pytest.mark.slow("papers")
 def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, SweepLevels]) -> None:
     """The tilted section of a cylinder is longer by the tilt squared: a beta^2 / 4 at order 2 (erratum E-A8)."""
     without = levels["single"].column("h", "error_2")[0]
@@ -69,6 +72,7 @@ def test_without_an_offset_a_tilt_acts_in_second_order_alone(levels: dict[str, S
 # What it does
 
 
+@pytest.mark.slow("papers")
 def test_the_effect_grows_with_the_level_as_the_sharing_has_it(levels: dict[str, SweepLevels]) -> None:
     assert study.power_of_level(levels["single"], "e1", "current_swing") == pytest.approx(1.0, abs=0.02)
     assert study.power_of_level(levels["max"], "e1", "current_swing") == pytest.approx(1.0, abs=0.05)
@@ -107,6 +111,7 @@ def share(gain: float, order: float, speed: float, *, side: str) -> float:
     return float(abs((reaction - motor) / (motor * stretch + position + load)))
 
 
+@pytest.mark.slow("papers")
 @pytest.mark.parametrize("side", [OUTPUT, INPUT])
 @pytest.mark.parametrize("gain", [8.0, 64.0])
 def test_what_reaches_the_output_is_what_the_linear_drive_lets_pass(gain: float, side: str) -> None:
@@ -151,6 +156,7 @@ def test_ramp_times_and_gains_are_those_asked_for(ramp: ActuatorRamp, monkeypatc
 # Recovery
 
 
+@pytest.mark.slow("papers")
 def test_what_was_put_in_comes_back_within_its_interval(ramp: ActuatorRamp, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 24 records with 95 % confidence 19 must agree: fewer have a probability of 1e-3.
 

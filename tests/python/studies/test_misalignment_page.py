@@ -75,6 +75,7 @@ def cells(row: Node) -> list[str]:
     return [cell.text for cell in row.children if isinstance(cell, Node)]
 
 
+@pytest.mark.slow("papers")
 def test_the_page_is_well_formed_and_needs_nothing_else(html: str) -> None:
     names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
     assert len(names) == len(set(names))
@@ -84,15 +85,18 @@ def test_the_page_is_well_formed_and_needs_nothing_else(html: str) -> None:
     assert not re.search(r"https?:|//\w|@import|<link|<img|<iframe|<script", html)
 
 
+@pytest.mark.slow("papers")
 def test_markup_in_names_is_shown_and_not_obeyed(html: str) -> None:
     assert "own <b>&.csv" in section(html, "measured").text
     assert Page(html).root.find("footer")[0].find("code")[0].text == HOSTILE
 
 
+@pytest.mark.slow("papers")
 def test_the_same_study_gives_the_same_bytes(found: MisalignmentStudy, html: str) -> None:
     assert misalignment_report(found, Provenance("2026-01-01", HOSTILE, {})) == html
 
 
+@pytest.mark.slow("papers")
 def test_every_claim_has_a_verdict_and_a_number(found: MisalignmentStudy, html: str) -> None:
     answers = claims(found)
     assert len(answers) == 12
@@ -103,6 +107,7 @@ def test_every_claim_has_a_verdict_and_a_number(found: MisalignmentStudy, html: 
     assert [cells(row) for row in rows] == [[" ".join(part.split()) for part in claim] for claim in answers]
 
 
+@pytest.mark.slow("papers")
 def test_the_tables_say_what_the_recordings_hold(found: MisalignmentStudy, html: str) -> None:
     tables = section(html, "levels").find("table")
     assert len(tables) == len(found.levels) == 6
@@ -114,6 +119,7 @@ def test_the_tables_say_what_the_recordings_hold(found: MisalignmentStudy, html:
             assert swing < 1e-3 if said == "< 0.001" else printed(said) == pytest.approx(swing, rel=6e-3)
 
 
+@pytest.mark.slow("papers")
 def test_every_figure_names_its_quantities_and_their_units(html: str) -> None:
     expected = {
         "geometry": ("θ", "β₁", "α₂", "β₃", "h", "section"),
@@ -132,6 +138,7 @@ def test_every_figure_names_its_quantities_and_their_units(html: str) -> None:
             assert each in written, (name, each)
 
 
+@pytest.mark.slow("papers")
 def test_cells_name_their_columns_where_a_page_is_narrow(html: str) -> None:
     for each in Page(html).root.find("table"):
         columns = [column.text for column in each.find("thead")[0].find("th")]
@@ -140,12 +147,14 @@ def test_cells_name_their_columns_where_a_page_is_narrow(html: str) -> None:
                 assert cell.attributes.get("data-label", column).replace("_", "") == column
 
 
+@pytest.mark.slow("papers")
 def test_every_number_has_its_source(html: str) -> None:
     head, *rows = (cells(row) for row in section(html, "sources").find("tr"))
     assert head == ["Number", "Value", "Unit", "Source"]
     assert all(row[3] for row in rows)
 
 
+@pytest.mark.slow("papers")
 def test_the_lines_for_a_terminal_say_the_same(found: MisalignmentStudy) -> None:
     lines = summary(found).splitlines()
     assert all(line == line.rstrip() and len(line) < 170 for line in lines)
@@ -156,6 +165,7 @@ def test_the_lines_for_a_terminal_say_the_same(found: MisalignmentStudy) -> None
 # The pure kinematic error
 
 
+@pytest.mark.slow("papers")
 def test_a_curve_of_the_law_itself_is_found_again(found: MisalignmentStudy) -> None:
     """The dimensions are those of the drive: of the same tan(alpha_t) / r_g m, its m is smaller by tan 20 deg / tan 30 deg."""
     pure = found.pure
@@ -203,6 +213,7 @@ def test_a_curve_of_less_than_a_turn_is_refused(tmp_path: Path) -> None:
 # The command
 
 
+@pytest.mark.slow("papers")
 def test_the_command_writes_recordings_tables_and_a_page(command: tuple[MisalignmentStudy, Result], files: Path) -> None:
     found, result = command
     assert result.returncode == 0, result.stderr

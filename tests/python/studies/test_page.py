@@ -54,6 +54,7 @@ def milli(text: str) -> float:
     return 1e-3 * printed(value)
 
 
+@pytest.mark.slow("papers")
 def test_the_page_is_well_formed_and_needs_nothing_else(html: str) -> None:
     names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
     assert len(names) == len(set(names))
@@ -63,16 +64,19 @@ def test_the_page_is_well_formed_and_needs_nothing_else(html: str) -> None:
     assert not re.search(r"https?:|//\w|@import|<link|<img|<iframe|<script", html)
 
 
+@pytest.mark.slow("papers")
 def test_markup_in_names_is_shown_and_not_obeyed(html: str) -> None:
     assert "own <b>&.csv" in section(html, "measured").text
     assert Page(html).root.find("footer")[0].find("code")[0].text == HOSTILE
 
 
+@pytest.mark.slow("papers")
 def test_the_same_study_gives_the_same_bytes_and_the_date_is_the_one_given(found: PositionControl, html: str) -> None:
     assert position_control_report(found, Provenance("2026-01-01", HOSTILE, {})) == html
     assert re.findall(r"20\d\d-\d\d-\d\d", html) == ["2026-01-01"]
 
 
+@pytest.mark.slow("papers")
 def test_the_tables_say_what_the_recordings_hold(found: PositionControl, html: str) -> None:
     for number, experiment in enumerate(found.experiments):
         head, rms, largest, correlation, *settling = table(html, "experiments", number)
@@ -91,6 +95,7 @@ def test_the_tables_say_what_the_recordings_hold(found: PositionControl, html: s
         assert bool(settling) == bool(experiment.settling[FULL])
 
 
+@pytest.mark.slow("papers")
 def test_a_measurement_stands_beside_both_models(found: PositionControl, html: str) -> None:
     assert found.measured is not None
     head, rms, *_ = table(html, "measured", 0)
@@ -99,6 +104,7 @@ def test_a_measurement_stands_beside_both_models(found: PositionControl, html: s
     assert [1e-3 * printed(text) for text in rms[1:]] == pytest.approx(errors, rel=6e-3)
 
 
+@pytest.mark.slow("papers")
 def test_strokes_are_listed_with_their_shares(found: PositionControl, html: str) -> None:
     pulses = found.by_pulse[12.0]
     _, *rows = table(html, "strokes", 1)
@@ -109,6 +115,7 @@ def test_strokes_are_listed_with_their_shares(found: PositionControl, html: str)
         assert printed(row[2]) == pytest.approx(100.0 * (full / stroke - 1.0), rel=6e-2)
 
 
+@pytest.mark.slow("papers")
 def test_table_4_is_not_claimed_and_only_resolutions_stand_beside_it(found: PositionControl, html: str) -> None:
     assert "Table 4 is not reproduced" in section(html, "table-4").text
     _, *rows = table(html, "table-4", 0)
@@ -120,6 +127,7 @@ def test_table_4_is_not_claimed_and_only_resolutions_stand_beside_it(found: Posi
         assert float(row[3]) == pytest.approx(1e-3 * published / apart, rel=6e-2)
 
 
+@pytest.mark.slow("papers")
 def test_every_number_has_its_source_and_what_is_assumed_says_so(html: str) -> None:
     head, *rows = table(html, "sources", 0)
     assert head == ["Number", "Value", "Unit", "Model", "Source"]
@@ -134,6 +142,7 @@ def test_every_number_has_its_source_and_what_is_assumed_says_so(html: str) -> N
     assert not by_place["motor.resistance", "both"][4].startswith("assumed")
 
 
+@pytest.mark.slow("papers")
 def test_cells_name_their_columns_where_a_page_is_narrow(html: str) -> None:
     for each in Page(html).root.find("table"):
         columns = [column.text for column in each.find("thead")[0].find("th")]
@@ -142,6 +151,7 @@ def test_cells_name_their_columns_where_a_page_is_narrow(html: str) -> None:
                 assert cell.attributes.get("data-label", column) == column
 
 
+@pytest.mark.slow("papers")
 def test_every_experiment_is_drawn_with_command_response_error_and_current(html: str) -> None:
     drawings = section(html, "experiments").find("svg")
     assert len(drawings) == 3
@@ -151,6 +161,7 @@ def test_every_experiment_is_drawn_with_command_response_error_and_current(html:
             assert words in written
 
 
+@pytest.mark.slow("papers")
 def test_the_lines_for_a_terminal_say_the_same(found: PositionControl) -> None:
     lines = summary(found).splitlines()
     step = found.experiments[0]
@@ -161,6 +172,7 @@ def test_the_lines_for_a_terminal_say_the_same(found: PositionControl) -> None:
     assert all(line == line.rstrip() and len(line) < 170 for line in lines)
 
 
+@pytest.mark.slow("papers")
 def test_the_command_writes_recordings_and_a_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "VOLTAGES", (12.0,))
     monkeypatch.setattr(study, "PULSES_PER_VOLTAGE", 2)

@@ -66,6 +66,7 @@ def integrated_stroke(voltage: float, width: float, friction: Callable[[float, f
 # The three experiments
 
 
+@pytest.mark.slow("papers")
 def test_the_figures_are_those_that_their_definitions_give_by_hand(found: PositionControl) -> None:
     def check(agreement: sw.Agreement, x: np.ndarray, y: np.ndarray) -> None:
         difference = [b - a for a, b in zip(x.tolist(), y.tolist(), strict=True)]
@@ -81,6 +82,7 @@ def test_the_figures_are_those_that_their_definitions_give_by_hand(found: Positi
             check(experiment.between[name], experiment.runs[FULL][name], experiment.runs[SIMPLIFIED][name])
 
 
+@pytest.mark.slow("papers")
 def test_the_two_models_differ_in_their_friction_alone(found: PositionControl) -> None:
     differences = sw.compare(*(found.sets[model].drive for model in (FULL, SIMPLIFIED)))
     assert {each.path.partition(".friction_")[0] for each in differences} == {"gear"}
@@ -92,6 +94,7 @@ def test_the_two_models_differ_in_their_friction_alone(found: PositionControl) -
             assert run["torque"][0] == 0.0
 
 
+@pytest.mark.slow("papers")
 def test_the_commands_are_those_of_document_p(found: PositionControl) -> None:
     step, sine, pulses = (experiment.runs[FULL] for experiment in found.experiments)
     assert set(step["command"]) == {0.05, 0.09}
@@ -111,6 +114,7 @@ def test_amplitudes_are_within_the_spread_that_table_4_allows() -> None:
         assert 0.4 < np.std(values) / (rms / sqrt(1.0 - correlation**2)) < 1.0
 
 
+@pytest.mark.slow("papers")
 def test_the_drive_stops_as_near_to_its_command_as_both_frictions_let_it(found: PositionControl) -> None:
     """At the motor F_s R / (K_m k_p); at the output that over the ratio, and F_sl / K_s besides."""
     step = found.experiments[0]
@@ -125,6 +129,7 @@ def test_the_drive_stops_as_near_to_its_command_as_both_frictions_let_it(found: 
     assert np.abs(before["current"]).max() < 1e-20, "nothing happens before the step"
 
 
+@pytest.mark.slow("papers")
 def test_it_settles_where_the_last_sample_outside_of_the_band_is(found: PositionControl) -> None:
     assert [len(experiment.settling[FULL]) for experiment in found.experiments] == [1, 0, 6]
     for experiment in found.experiments:
@@ -138,6 +143,7 @@ def test_it_settles_where_the_last_sample_outside_of_the_band_is(found: Position
                 assert last - 1e-9 <= settled <= last + 1e-3 + 1e-9
 
 
+@pytest.mark.slow("papers")
 def test_no_run_leaves_the_range_of_the_friction(found: PositionControl) -> None:
     for experiment in found.experiments:
         angle = experiment.runs[FULL]["input_angle"]
@@ -158,6 +164,7 @@ def test_under_simplified_friction_a_run_backwards_mirrors_one_forwards() -> Non
 # Strokes
 
 
+@pytest.mark.slow("papers")
 def test_the_friction_itself_leaves_the_error_of_its_fit_where_the_parabola_says(found: PositionControl) -> None:
     """s_1 q^2 + s_2 q = -0.0052 N.m has its smaller root at 14.6058 rad, 8.37 degrees of the output."""
     assert found.law_suffices_to == pytest.approx(14.6058, abs=1e-4)
@@ -166,6 +173,7 @@ def test_the_friction_itself_leaves_the_error_of_its_fit_where_the_parabola_says
     assert law.steady(-0.8, angle=20.0) == -law.steady(0.8, angle=20.0)
 
 
+@pytest.mark.slow("papers")
 @pytest.mark.parametrize("voltage", [6.0, 12.0, 24.0])
 def test_pulses_go_as_far_as_a_rigid_drive_in_closed_form(found: PositionControl, voltage: float) -> None:
     """But for the vibration that a pulse leaves in the gear, which matters to the shortest ones."""
@@ -176,6 +184,7 @@ def test_pulses_go_as_far_as_a_rigid_drive_in_closed_form(found: PositionControl
             assert pulses[name][row] == pytest.approx(exact, rel=2e-3, abs=0.03), (name, width)
 
 
+@pytest.mark.slow("papers")
 def test_pulses_under_the_average_part_go_as_far_as_another_integrator_says(found: PositionControl) -> None:
     pulses = found.by_pulse[12.0]
     for row in (0, len(pulses) // 2, len(pulses) - 2):
@@ -183,6 +192,7 @@ def test_pulses_under_the_average_part_go_as_far_as_another_integrator_says(foun
         assert pulses["without_periodic"][row] == pytest.approx(exact, rel=2e-3, abs=0.03)
 
 
+@pytest.mark.slow("papers")
 def test_where_pulses_leave_the_band_the_full_model_goes_as_far_as_a_constant_that_is_wrong(found: PositionControl) -> None:
     drives = {model: gear_set.drive for model, gear_set in found.sets.items()}
     limit = found.pulse_suffices_to[12.0]
@@ -199,6 +209,7 @@ def test_where_pulses_leave_the_band_the_full_model_goes_as_far_as_a_constant_th
     assert found.pulse_suffices_to[24.0] < limit < found.pulse_suffices_to[6.0]
 
 
+@pytest.mark.slow("papers")
 def test_sweeps_are_as_good_with_shorter_steps(found: PositionControl, monkeypatch: pytest.MonkeyPatch) -> None:
     drive, width = found.sets[FULL].drive, found.by_pulse[12.0]["width"][6]
     coarse = study.travel(drive, 12.0, width)
@@ -213,6 +224,7 @@ def test_a_move_under_control_is_half_a_cosine_from_rest_to_rest() -> None:
     assert move.rate([0.0, 2.0]) == pytest.approx([0.0, 0.0], abs=1e-15)
 
 
+@pytest.mark.slow("papers")
 def test_under_control_friction_shows_in_the_current_and_hardly_in_the_angle(found: PositionControl) -> None:
     """Friction that is wrong by D moves the output by D R / (K_m k_p i) and takes D / K_m more current, once settled."""
     moves = found.under_control
@@ -229,6 +241,7 @@ def test_under_control_friction_shows_in_the_current_and_hardly_in_the_angle(fou
     assert moves["stroke"][first - 1] < found.control_within_fit_to <= moves["stroke"][first]
 
 
+@pytest.mark.slow("papers")
 def test_an_average_is_the_integral_over_the_stroke(found: PositionControl) -> None:
     q = np.linspace(0.0, 80.0, 8001)
     exact = np.trapezoid(S1 * q * q + S2 * q + S3, q) / 80.0
@@ -245,6 +258,7 @@ def test_a_limit_lies_where_the_excess_first_becomes_positive(excess: list[float
 # A measured run
 
 
+@pytest.mark.slow("papers")
 def test_a_run_of_the_model_itself_is_recognised(found: PositionControl) -> None:
     assert found.measured is not None
     assert found.measured.recording.title == "own.csv"

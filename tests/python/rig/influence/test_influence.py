@@ -125,6 +125,7 @@ def test_the_torque_without_loss_is_where_the_first_element_slips(found: Influen
     assert "document T’s gear loses nothing up to 0.1738 N·m" in answer
 
 
+@pytest.mark.slow("rig")
 def test_a_gear_that_never_loses_or_always_has_the_ends_as_its_threshold() -> None:
     assert lossless_torque(linear().gear, 50.0) == 50.0
     smooth = sw.hysteresis.BoucWen(stiffness=5e3, saturation=2.0)
@@ -251,6 +252,7 @@ def test_the_life_of_a_unit_has_a_line_of_its_own(found: Influence) -> None:
     assert "5.13 % per a million cycles" in entry.measured[0]
 
 
+@pytest.mark.slow("rig")
 def test_the_page_and_the_lines_tell_every_entry(found: Influence) -> None:
     with_series = influence(found.gear_set, series=measured(0.02, 1))
     page, lines = influence_report(with_series), summary(with_series)

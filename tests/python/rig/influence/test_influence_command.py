@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 import strainwave as sw
 from strainwave.rig.influence.cycle import cycle_to
 
 from tests.python.command import refused, strainwave
 
 
+@pytest.mark.slow("rig")
 def test_the_command_writes_a_page_and_the_sweeps(tmp_path: Path) -> None:
     gear, loops = sw.load("csg-25-100"), []
     for torque in (20.0, 40.0, 60.0, 87.0):
@@ -30,6 +32,7 @@ def test_the_command_writes_a_page_and_the_sweeps(tmp_path: Path) -> None:
     assert np.all(np.diff(sweep["area"]) >= 0.0)
 
 
+@pytest.mark.slow("rig")
 def test_wrong_options_are_refused_in_a_line(tmp_path: Path) -> None:
     (tmp_path / "series.csv").write_text("torque_max [N.m],speed [rpm]\n1,2\n")
     refused(tmp_path, ["rig", "influence", "none"], "none")
