@@ -16,6 +16,7 @@ import catalogue_check
 import cli_reference
 import drawn
 import gallery
+import listed
 import theory
 import tutorials
 from sphinx.cmd.build import main as sphinx
@@ -47,6 +48,7 @@ def gather() -> None:
     api.write(SOURCE / "reference" / "api")
     cli_reference.write(SOURCE / "reference")
     gallery.write(SOURCE)
+    listed.write(SOURCE)
     catalogue_check.write(SOURCE / "reference" / "catalogue-check.md")
     drawn.draw(SOURCE)
 

@@ -288,34 +288,8 @@ def test_every_place_that_names_a_model_without_need_is_listed_here_with_its_rea
     assert all(len(reason) > 15 for places in ELSEWHERE.values() for reason in places.values())
 
 
-QUADRATIC = """
-#pragma once
-#include <strainwave/friction/contact.hpp>
-
-namespace strainwave::friction {
-
-template <class S>
-struct Quadratic {
-    S drag{0.0};
-
-    static constexpr auto name = "quadratic";
-    static constexpr auto source = "Newton's law of drag";
-    static constexpr auto doc = "Friction that grows with the square of the speed.";
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, drag, "N.m.s2/rad2", "Torque per square of the speed", 0));
-    }
-
-    using State = Stateless<S>;
-
-    constexpr S torque(const State&, const Contact<S>& contact) const {
-        return contact.viscous * drag * contact.speed * abs(contact.speed);
-    }
-};
-
-}  // namespace strainwave::friction
-"""
+PAGE = ROOT / "docs" / "contributing" / "add-a-law.md"  # whose example is the one more model
+(QUADRATIC,) = re.findall(r"^```cpp\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 MAIN = """
 #include <cstdio>
 #include <memory>

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,6 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from strainwave.commands.export import slot as command
 from strainwave.export import Exported, ExportLoss
 from strainwave.export.slots import MAX_OVER_COMPENSATED_SHARE, SLOTS
 from strainwave.files.entries import Entry, Quantity
@@ -311,14 +309,6 @@ def test_a_loss_relative_to_friction_names_it(tmp_path: Path) -> None:
         (first, *_) = json.loads((tmp_path / name / "export.json").read_text())["losses"]
         assert first["relative_to"] == "friction"
         assert first["largest_share"] == pytest.approx(first["largest"] / first["size"])
-
-
-def test_the_command_has_the_defaults_of_the_function() -> None:
-    options, known = signature(command).parameters, signature(sw.export.slot).parameters
-    assert options.keys() - known.keys() == {"gear", "out"}
-    assert known.keys() - options.keys() == {"drive", "motion"}
-    for name in (options.keys() & known.keys()) - {"name"}:
-        assert options[name].default == known[name].default, name
 
 
 def test_the_command_names_its_options(tmp_path: Path) -> None:

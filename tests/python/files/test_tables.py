@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
-from strainwave.files.tables import open_table
+from strainwave.files.tables import FORMATS, LISTED, open_table
 
 from tests.python.files.test_recording import EMPTY, RUN, exactly, untimed
 from tests.support.work import calls
@@ -385,14 +385,18 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
         Recording.read(path)
 
 
-KNOWN = ".csv, .txt, .tsv, .log, .parquet, .dat, .mat, .h5, .hdf5, .npy, .npz, .json, .jsonl, .mf4, .mdf, .bag, .mcap or .db3"
-
-
-def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
+def test_an_unknown_suffix_is_refused_with_those_of_all_formats(tmp_path: Path) -> None:
     path = tmp_path / "run.doc"
+    *others, last = [suffix for each in LISTED for suffix in each.suffixes]
+    assert {".csv", ".parquet", ".dat", ".mat"} < {*others, last}
     for read in (Recording.read, Recording.header):
-        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".doc" is not known; use {KNOWN}')):
+        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".doc" is not known; use {", ".join(others)} or {last}')):
             read(path)
+
+
+def test_no_suffix_belongs_to_two_formats() -> None:
+    assert len(FORMATS) == sum(len(each.suffixes) for each in LISTED)
+    assert all(suffix == suffix.lower() and suffix.startswith(".") for suffix in FORMATS)
 
 
 def test_other_files_that_people_have_are_refused_with_what_to_do(tmp_path: Path) -> None:
