@@ -37,7 +37,14 @@ TEST_TIMES = BUILD / "test-times.txt"
 # Builds by the tools of .venv, which stay there, are kept in BUILD. Any other, as by `pip wheel .`, has a folder of its own.
 KEPT = ("--no-build-isolation", "--config-setting", "build-dir=build/{wheel_tag}")
 # What a configured build uses by its path.
-USED = ("CMAKE_HOME_DIRECTORY", "CMAKE_COMMAND", "CMAKE_MAKE_PROGRAM", "CMAKE_CXX_COMPILER", "Python_EXECUTABLE", "nanobind_DIR")
+USED = (
+    "CMAKE_HOME_DIRECTORY",
+    "CMAKE_COMMAND",
+    "CMAKE_MAKE_PROGRAM",
+    "CMAKE_CXX_COMPILER",
+    "Python_EXECUTABLE",
+    "nanobind_DIR",
+)
 MAX_SLOWEST = 20  # lines of a table of times
 
 

@@ -32,7 +32,9 @@ class Clone:
 
     def __init__(self, folder: Path) -> None:
         self.root = folder / "clone"
-        apart = shutil.ignore_patterns(".git", ".venv", "build", "out", "dist", "docs", "tests", "*.pyi", "__pycache__", ".*_cache")
+        apart = shutil.ignore_patterns(
+            ".git", ".venv", "build", "out", "dist", "docs", "tests", "*.pyi", "__pycache__", ".*_cache"
+        )
         shutil.copytree(ROOT, self.root, ignore=apart)
         self.packages = make_environment(self.root / ".venv")
         (self.packages / "others.pth").write_text(str(ROOT / self.packages.relative_to(self.root)))
@@ -79,7 +81,9 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Clone]:
     for name in ("ROOT", "BUILD", "STAMPS", "BIN", "PYTHON"):
         monkeypatch.setattr(dev, name, clone.root / getattr(dev, name).relative_to(ROOT))
     uv = str(dev.uv())
-    monkeypatch.setattr(dev, "install_tools", lambda: (uv, "pip", "install", "--quiet", "--offline", "--no-deps", "--python", dev.PYTHON))
+    monkeypatch.setattr(
+        dev, "install_tools", lambda: (uv, "pip", "install", "--quiet", "--offline", "--no-deps", "--python", dev.PYTHON)
+    )
     for name in ("CXX", "PATH"):
         monkeypatch.setenv(name, clone.variables[name])
     dev.prepare()
