@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -75,7 +74,7 @@ def make_environment(folder: Path) -> Path:
 
 
 @pytest.fixture
-def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Clone]:
+def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Clone:
     """A clone in which `dev.py` has installed the package, without its dependencies, which are there."""
     clone = Clone(tmp_path)
     for name in ("ROOT", "BUILD", "STAMPS", "BIN", "PYTHON"):
@@ -87,7 +86,7 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Clone]:
     for name in ("CXX", "PATH"):
         monkeypatch.setenv(name, clone.variables[name])
     dev.prepare()
-    yield clone
+    return clone
 
 
 def test_a_wheel_built_by_other_tools_leaves_the_editable_build_as_it_is(clone: Clone) -> None:
