@@ -1,7 +1,8 @@
 """The tests that see a fault in a room of the package: `python -m tests.evidence.broken_rooms`.
 
-Each of some faults is put into a clone of the committed state, one at a time. The fast tier runs until the first test fails, those of the
-room first; if none fails, so do the slow tests. Of each fault the table has the tier that sees it and the first test that fails.
+Each of some faults is put into a clone of the committed state, one at a time. The fast tier runs until the first test fails,
+the tests of the room first. If none fails, so do the slow tests. Of each fault the table has the tier that sees it, and the
+first test that fails.
 """
 
 from __future__ import annotations
