@@ -35,6 +35,7 @@ MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow o
 MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
 MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
 LOADS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
+MAX_SPEED_RATIO = 1.5  # of a fast to a slow part of the record [1], up to which it is a record at one speed
 MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
 
@@ -54,7 +55,7 @@ class ErrorOrder:
     Attributes:
         order: periods per revolution of the input [1]
         shaft: that it repeats with: the input; the input as the spline that turns sees it (`mesh`); or the output
-        amplitude: at the output, corrected for output stage and load [rad]
+        amplitude: at the output [rad], corrected for the output stage if the record determines it, else as measured
         phase: at the recorded input angle 0 [rad], as of a sine
         amplitude_sigma, phase_sigma: standard deviations
         false_alarm: probability that noise alone gives as much anywhere among the orders looked for
@@ -150,8 +151,9 @@ def transmission_error(
         TypeError: an argument is not of its kind
         ValueError: an angle is missing or does not turn, the two do not belong together, or the ratio given is not theirs
 
-    Valid where the twist is small and the output stage close to linear: each order is corrected for the vibration of the output
-    with 10 % of its stiffness and 30 % of its damping uncertain.
+    Valid where the twist is small and the output stage close to linear. Each order is corrected for the vibration of the output
+    with 10 % of its stiffness and 30 % of its damping uncertain, if orders pass at several speeds and determine it. At one
+    speed the vibration and other amplitudes predict the same: the amplitudes are those measured at that speed.
 
     >>> import strainwave as sw
     >>> time = np.arange(0.0, 20.0, 0.002)
@@ -174,7 +176,7 @@ def transmission_error(
     size = measured.used
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
-    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
+    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed and not _at_one_speed(pair))
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
     lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
@@ -314,6 +316,12 @@ def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[Measur
     )
 
 
+def _at_one_speed(pair: Pair) -> bool:
+    """True if every order passes at nearly one frequency."""
+    slow, fast = np.quantile(np.abs(pair.speed), [0.1, 0.9]).tolist()
+    return bool(fast <= MAX_SPEED_RATIO * slow)
+
+
 def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]]) -> list[str]:
     if found.stage is not None:
         fastest = max((order for order, _ in chosen), default=0.0) * pair.fastest * every
@@ -325,7 +333,14 @@ def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tu
         ]
     if not pair.record.timed:
         return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
-    return []
+    if not (chosen and _at_one_speed(pair)):
+        return []
+    usual = float(np.median(np.abs(pair.speed))) / pair.record.step * 30.0 / pi
+    return [
+        f"amplitudes are those measured at {usual:.4g} 1/min of the input: one speed does not "
+        "determine how the output vibrates, and they are not corrected for it; if speeds from slow to fast are in one record, "
+        "they are"
+    ]
 
 
 def _curves(pair: Pair, error: Array, orders: Array, residual: Array, every: int) -> Recording:

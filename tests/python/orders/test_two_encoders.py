@@ -208,3 +208,25 @@ def test_an_order_needs_three_periods_and_a_whole_turn(turns: float, orders: set
     assert (1.0 in reported) == (turns >= 3.0)
     if turns < 3.0:
         assert any("needs 3 periods" in each for each in found.remarks)
+
+
+def bench(seed: int) -> tuple[dict[str, Any], float]:
+    """Columns of a bench at one speed, one way, over one turn of the output, by NumPy alone; and the amplitude of order 2."""
+    random = np.random.default_rng(seed)
+    speed, amplitude = random.uniform(5.0, 150.0) * np.pi / 30.0, random.uniform(5e-5, 3e-4)  # rad/s of the input, rad
+    time = np.linspace(0.0, 200.0 * np.pi / speed, random.integers(8000, 20000))
+    theta = speed * time
+    error = amplitude * np.sin(2.0 * theta + 0.3) + 4e-5 * np.sin(4.0 * theta)
+    noise = random.normal(0.0, 3e-6, (2, len(time)))
+    return {"time": time, "input_angle": theta + noise[0], "output_angle": -theta / 100.0 - error + noise[1]}, amplitude
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_at_one_speed_the_measured_amplitude_stands(seed: int) -> None:
+    """One speed does not determine how the output vibrates: a natural frequency fitted to it made 491 of 121 µrad."""
+    columns, amplitude = bench(seed)
+    found = told(columns)
+    assert found.natural_frequency is None
+    assert abs(order(found, 2.0).amplitude - amplitude) < 3.0 * order(found, 2.0).amplitude_sigma
+    assert order(found, 2.0).amplitude_sigma < 2e-7
+    assert any("amplitudes are those measured at" in remark for remark in found.remarks)
