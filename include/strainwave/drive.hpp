@@ -191,7 +191,8 @@ struct Drive {
 
     /// The derivatives; the kinematic error may be known.
     template <class... Foreseen>
-    SW_RATES constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const Foreseen&... error) const {
+    SW_RATES constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u,
+                                               const Foreseen&... error) const {
         if constexpr (load::can_prescribe<Load>) {
             if (prescribes(load)) {
                 const Continuous z = prescribed_motion::placed<S>(*this, x, y, u);
