@@ -1,7 +1,8 @@
 """Tasks of a developer, on a machine with Python 3.11 or later and its headers, git and a C++20 compiler.
 
     python3 dev.py demo         run the demonstration; its reports are out/demo/*/report.html
-    python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
+    python3 dev.py test         run the fast tests and a whole path of each room; what follows goes to pytest: test -k lugre
+    python3 dev.py test --all   run all tests; `test -m slow` runs those that the fast tests leave out
     python3 dev.py times        print the processor time of each file compiled, and of the slowest tests of the last run
     python3 dev.py lint         check style, formatting and types
     python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
@@ -142,8 +143,11 @@ def demo(options: Sequence[str]) -> int:
 
 def test(options: Sequence[str]) -> int:
     prepare(["test"])
+    if "slow" not in options:  # those follow the fast ones, in the same table of times
+        TEST_TIMES.unlink(missing_ok=True)
     parallel = ("--numprocesses", "auto", "--dist", "worksteal")
-    return attempt(PYTHON, "-m", "pytest", *parallel, *options, STRAINWAVE_TEST_TIMES=str(TEST_TIMES))
+    tier, rest = ((), [word for word in options if word != "--all"]) if "--all" in options else (("-m", "not slow"), options)
+    return attempt(PYTHON, "-m", "pytest", *parallel, *tier, *rest, STRAINWAVE_TEST_TIMES=str(TEST_TIMES))
 
 
 def times(options: Sequence[str]) -> int:
@@ -153,13 +157,24 @@ def times(options: Sequence[str]) -> int:
         print_slowest(f"objects of {path.parent.name}", compiled)
     if TEST_TIMES.exists():
         tests = read_times(TEST_TIMES)
-        files: dict[str, float] = {}
-        for name, seconds in tests.items():
-            file = name.partition("::")[0]
-            files[file] = files.get(file, 0.0) + seconds
         print_slowest("tests", tests)
-        print_slowest("files of tests", files)
+        print_slowest("files of tests", summed(tests, lambda name: name.partition("::")[0]))
+        print_slowest("rooms of tests", summed(tests, room_of))
     return 0
+
+
+def summed(seconds: dict[str, float], group_of: Callable[[str], str]) -> dict[str, float]:
+    """Returns the sum of the times [s] in each group of names."""
+    groups: dict[str, float] = {}
+    for name, time in seconds.items():
+        groups[group_of(name)] = groups.get(group_of(name), 0.0) + time
+    return groups
+
+
+def room_of(test: str) -> str:
+    """Returns the folder of a test that has the name of a room: tests/python/orders, tests/friction, papers."""
+    folders = test.partition("::")[0].split("/")[:-1]
+    return "/".join(folders[: 3 if folders[1:2] == ["python"] else 2])
 
 
 def read_times(path: Path) -> dict[str, float]:

@@ -27,9 +27,16 @@ PAGES = {
     "tuning": "Control and compensation",
     "diagnose": "Diagnosis",
     "dataset": "Diagnosis",
+    "report": "Files and recordings",
     "_core": "Gear and drive",
 }
-MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export"}
+MODULES = {
+    "scenario": "Scenarios",
+    "rig": "Torsion rig",
+    "diagnose": "Misalignment",
+    "export": "Export",
+    "typeset": "Numbers in print",
+}
 VALUES = "Values in results"
 
 

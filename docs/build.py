@@ -5,6 +5,7 @@ python docs/build.py FOLDER
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ import catalogue_check
 import cli_reference
 import drawn
 import gallery
+import listed
 import theory
 import tutorials
 from sphinx.cmd.build import main as sphinx
@@ -24,21 +26,29 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 SOURCE = ROOT / "build" / "docs"
 TOOLS = ("__pycache__", "*.py")
+PAPER = re.compile(r"\]\((?:\.\./)*papers/([\w-]+)/README\.md")  # a link from a page of this folder to that of an article
 
 
 def gather() -> None:
-    """Everything Sphinx reads, in one folder: this one, the pages of the root with their links from here, those generated."""
+    """Gather all that Sphinx reads in one folder: this one, the pages of the root and of papers/, and those generated."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns(*TOOLS))
     shutil.copy(HERE / "conf.py", SOURCE)
     for page in (ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", ROOT / "python" / "strainwave" / "AGENTS.md"):
         text = page.read_text(encoding="utf-8")
         (SOURCE / page.name.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
+    for page in (ROOT / "papers").glob("*/README.md"):
+        text = page.read_text(encoding="utf-8").replace("](../../docs/", "](../")
+        (SOURCE / "validation" / f"{page.parent.name}.md").write_text(text, encoding="utf-8")
+    for page in SOURCE.rglob("*.md"):
+        to_root = "../" * (len(page.relative_to(SOURCE).parts) - 1)
+        page.write_text(PAPER.sub(rf"]({to_root}validation/\1.md", page.read_text(encoding="utf-8")), encoding="utf-8")
     theory.write(SOURCE / "theory")
     tutorials.write(SOURCE / "tutorials")
     api.write(SOURCE / "reference" / "api")
     cli_reference.write(SOURCE / "reference")
     gallery.write(SOURCE)
+    listed.write(SOURCE)
     catalogue_check.write(SOURCE / "reference" / "catalogue-check.md")
     drawn.draw(SOURCE)
 

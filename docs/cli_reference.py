@@ -47,10 +47,12 @@ def write(folder: Path) -> None:
 
 def leaves(command: Any, name: str) -> Iterator[tuple[str, Any]]:
     """Yield every verb below a command, with the words that call it."""
-    for word, verb in getattr(command, "commands", {}).items():
-        yield from leaves(verb, f"{name} {word}")
-    if not hasattr(command, "commands"):
+    if not hasattr(command, "list_commands"):
         yield name, command
+        return
+    context = command.context_class(command)
+    for word in command.list_commands(context):
+        yield from leaves(command.get_command(context, word), f"{name} {word}")
 
 
 def section(name: str, verb: Any) -> str:

@@ -1,6 +1,6 @@
 """Draws the pictures that pages show: of examples, each a script, and of pages whose own code writes pictures.
 
-The tests take the pictures, and what a script printed, of the same run.
+The tests take pictures, printed text and values of the same run.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from pathlib import Path
 from kept import COMPILED, MAX_PROCESSES, kept
 
 ROOT = Path(__file__).resolve().parent.parent
+RUN_SCRIPT = Path(__file__).with_name("run_script.py")
 SHOWN = re.compile(r"(?<![\w/])(?:\.\./)?drawn/([\w-]+)/[\w-]+\.png")  # a picture on a page: drawn/NAME/PICTURE.png
-PRINTED, WARNINGS = "printed.txt", "warnings.txt"  # in the folder of a script: its standard output and error
+PRINTED, WARNINGS, VALUES = "printed.txt", "warnings.txt", "values.pickle"  # of a script, in its folder
 BLOCK = re.compile(r"^```python\n(?!>>>)(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -29,7 +30,7 @@ def draw(source: Path) -> None:
     scripts = {name: script_of(name, pages) for name in names}
     with ThreadPoolExecutor(MAX_PROCESSES) as pool:
         for name, folder in zip(names, pool.map(drawn, names, scripts.values()), strict=True):
-            shutil.copytree(folder, source / "drawn" / name, ignore=shutil.ignore_patterns(PRINTED, WARNINGS))
+            shutil.copytree(folder, source / "drawn" / name, ignore=shutil.ignore_patterns(PRINTED, WARNINGS, VALUES))
 
 
 def path_of(name: str) -> Path:
@@ -46,13 +47,18 @@ def script_of(name: str, pages: Mapping[Path, str]) -> str:
 
 
 def drawn(name: str, script: str) -> Path:
-    """Return the folder with the pictures of a script, with what it printed and its warnings."""
+    """Return the folder with the pictures of a script, what it printed, its warnings and, of an example, its values."""
 
     def make(folder: Path) -> None:
         path = path_of(name)
-        command = [sys.executable, str(path)] if path.is_file() else [sys.executable, "-c", script]
+        command = [str(RUN_SCRIPT), str(path), str(folder / VALUES)] if path.is_file() else ["-c", script]
         done = subprocess.run(
-            command, cwd=folder, env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, encoding="utf-8", check=False
+            [sys.executable, *command],
+            cwd=folder,
+            env=os.environ | {"MPLBACKEND": "agg"},
+            capture_output=True,
+            encoding="utf-8",
+            check=False,
         )
         warned = COMPILED.sub("", done.stderr)
         sys.stderr.write(warned)

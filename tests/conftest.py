@@ -4,11 +4,13 @@ import gc
 import os
 import signal
 import sys
+import time
 from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
 import strainwave
+from _pytest.runner import runtestprotocol
 from hypothesis import settings
 from strainwave.native import kernels
 
@@ -61,23 +63,56 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.freeze()
 
 
-# ---- Processor time of each test, with the processes that it starts ----------------------------------------------------
+# ---- Two tiers of tests, by the processor time of each with the processes that it starts -----------------------------------
 
 # A file that the main process of a run writes; workers, and pytest run by a test, find no such variable and write nothing.
 TIMES = os.environ.pop("STRAINWAVE_TEST_TIMES", "")
+MAX_FAST_SECONDS = 0.5  # processor time of a test without a mark, on the machine of CALIBRATION_SECONDS
+CALIBRATION_SECONDS = 0.012  # processor time of the calibration on an AMD EPYC of 2024
+MARKS = ("slow", "whole_path")  # of tests that may take longer; only those of the second kind run in the fast tier
+ROOMS = (
+    *("physics", "native", "simulation", "analysis", "orders", "files", "identification", "tuning", "diagnose", "dataset"),
+    *("export", "rig", "report", "commands", "docs", "papers", "build"),
+)
 BEGIN = pytest.StashKey[float]()
 spent: dict[str, float] = {}  # s
 
 
-def processor_time() -> float:
-    """Returns the processor time of this process and of its ended children [s]."""
-    return sum(os.times()[:4])
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Raise UsageError for a mark that does not name a room."""
+    for item in items:
+        for mark in (*item.iter_markers("slow"), *item.iter_markers("whole_path")):
+            if len(mark.args) != 1 or mark.args[0] not in ROOMS:
+                raise pytest.UsageError(f"{item.nodeid}: {mark.name}{mark.args} must name one of the rooms {', '.join(ROOMS)}")
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool:
+    """Run a test. Without a mark, one that takes too long is repeated with its fixtures, and fails if it does so again.
+
+    The first run may have imported packages, compiled kernels or filled caches for all that follow.
+    """
+    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+    reports = timed_reports(item, nextitem)
+    if is_too_long(item, reports):
+        item.session._setupstate.teardown_exact(None)
+        reports = timed_reports(item, nextitem)
+        if is_too_long(item, reports):
+            reports[1].outcome = "failed"
+            reports[1].longrepr = (
+                f"takes {cost(reports):.2f} s of the processor twice, more than {MAX_FAST_SECONDS} s times {slowness():.1f} "
+                "for this machine: make it cheaper, or mark it @pytest.mark.slow(ROOM)"
+            )
+    for report in reports:
+        item.ihook.pytest_runtest_logreport(report=report)
+    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+    return True
+
+
+def timed_reports(item: pytest.Item, nextitem: pytest.Item | None) -> list[pytest.TestReport]:
+    """Run a test and return its reports, each with the processor time since its begin."""
     item.stash[BEGIN] = processor_time()
-    return (yield)
+    return runtestprotocol(item, log=False, nextitem=nextitem)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -87,10 +122,35 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
     return report
 
 
+def is_too_long(item: pytest.Item, reports: list[pytest.TestReport]) -> bool:
+    """True for a test that passes without a mark, and takes longer than the fast tier allows on this machine."""
+    passed = len(reports) == 3 and all(report.passed for report in reports)
+    marked = any(item.get_closest_marker(mark) for mark in MARKS)
+    return passed and not marked and cost(reports) > MAX_FAST_SECONDS and cost(reports) > MAX_FAST_SECONDS * slowness()
+
+
+def cost(reports: list[pytest.TestReport]) -> float:
+    """Return the processor time of a test with its fixtures and processes [s]."""
+    return max(report.processor_time for report in reports)  # type: ignore[attr-defined]
+
+
+def processor_time() -> float:
+    """Return the processor time of this process and of its ended children [s]."""
+    return sum(os.times()[:4])
+
+
+def slowness() -> float:
+    """Return the time that this machine needs now over that of CALIBRATION_SECONDS; 1 if it needs less."""
+    begin = time.process_time()
+    sum(number * 0.5 for number in range(300_000))
+    return max(1.0, (time.process_time() - begin) / CALIBRATION_SECONDS)
+
+
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     spent[report.nodeid] = getattr(report, "processor_time", 0.0)  # none of a test that ended its process
 
 
 def pytest_sessionfinish() -> None:
     if TIMES:
-        Path(TIMES).write_text("".join(f"{seconds:.2f}\t{name}\n" for name, seconds in spent.items()))
+        with open(TIMES, "a") as file:
+            file.writelines(f"{seconds:.2f}\t{name}\n" for name, seconds in spent.items())

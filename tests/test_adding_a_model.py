@@ -74,7 +74,6 @@ ELSEWHERE = {
         "verbs.cpp": "the harmonics of any error are of this form",
         "analysis/steady.py": STEADY_RUNNING,
         "identification/dynamics/log.py": "harmonics found in a log are of this form",
-        "studies/pure_error.py": "the assumed curve of the study of misalignment",
         "diagnose/inversion.py": "an error of every order, by which a drive is probed",
         "diagnose/steady_run.py": "an error of one order, by which a drive is probed",
     },
@@ -107,7 +106,6 @@ ELSEWHERE = {
     "Coulomb": {
         "compensation/bristle_observer.hpp": "what follows the measured motion by default",
         "drive_model.hpp": MODEL,
-        "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
         "analysis/linear.py": "holds the input while the output vibrates",
         "friction/asymmetric.hpp": "what it modulates by default",
@@ -127,7 +125,6 @@ ELSEWHERE = {
     "OpenLoop": {
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
         "identification/experiments/driven_log.py": "the motion of a log is the command itself",
-        "studies/position_control.py": "pulses without a controller",
     },
     "PID": {"control/sampled.hpp": "what it samples by default"},
     "Sampled": {
@@ -291,34 +288,8 @@ def test_every_place_that_names_a_model_without_need_is_listed_here_with_its_rea
     assert all(len(reason) > 15 for places in ELSEWHERE.values() for reason in places.values())
 
 
-QUADRATIC = """
-#pragma once
-#include <strainwave/friction/contact.hpp>
-
-namespace strainwave::friction {
-
-template <class S>
-struct Quadratic {
-    S drag{0.0};
-
-    static constexpr auto name = "quadratic";
-    static constexpr auto source = "Newton's law of drag";
-    static constexpr auto doc = "Friction that grows with the square of the speed.";
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, drag, "N.m.s2/rad2", "Torque per square of the speed", 0));
-    }
-
-    using State = Stateless<S>;
-
-    constexpr S torque(const State&, const Contact<S>& contact) const {
-        return contact.viscous * drag * contact.speed * abs(contact.speed);
-    }
-};
-
-}  // namespace strainwave::friction
-"""
+PAGE = ROOT / "docs" / "contributing" / "add-a-law.md"  # whose example is the one more model
+(QUADRATIC,) = re.findall(r"^```cpp\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 MAIN = """
 #include <cstdio>
 #include <memory>
@@ -399,6 +370,7 @@ def options(include: Path) -> list[str]:
     return [*own, f"-I{SOURCE}", "-Wno-missing-field-initializers"]
 
 
+@pytest.mark.slow("build")
 def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Path) -> None:
     """It settles where the motor's torque is the drag: K (u - k v) / R = q v^2."""
     (tmp_path / "main.cpp").write_text(MAIN)
@@ -412,6 +384,7 @@ def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Pa
     assert speed == pytest.approx((-slope + (slope**2 + 4.0 * drag * level) ** 0.5) / (2.0 * drag), rel=1e-6)
 
 
+@pytest.mark.slow("build")
 def test_a_model_that_is_not_in_the_list_is_not_there(tmp_path: Path) -> None:
     """So that the run above does show the list at work: all that is missing is the name in the list."""
     include = with_one_more(tmp_path)

@@ -66,6 +66,7 @@ def test_a_few_cases_of_each_kind_break_no_law() -> None:
     assert {outcome.verdict for outcome in found.values()} >= {"accepted", "refused"}
 
 
+@pytest.mark.slow("physics")
 def test_every_kind_is_thrown_and_a_case_is_the_same_each_time(tmp_path: Path) -> None:
     assert {kind_of(number) for number in range(1000)} == KINDS.keys()
     for kind in KINDS:
@@ -148,11 +149,13 @@ Path(sys.argv[1], "said").write_text(f"{found.verdict}: {found.fault}: {found.wo
 """
 
 
+@pytest.mark.slow("physics")
 def test_what_a_library_writes_to_the_terminal_is_seen(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", LOUD, str(tmp_path)], check=True, timeout=60.0)
     assert (tmp_path / "said").read_text() == "wrong: speaks on the terminal:  ** On entry to DLASCL"
 
 
+@pytest.mark.slow("physics")
 def test_a_task_that_ends_its_process_or_does_not_end_is_named_and_the_next_is_done() -> None:
     assert list(answers(signal.raise_signal, [signal.SIGSEGV, signal.SIGABRT], processes=1, limit=30.0)) == [
         (signal.SIGSEGV, CRASHES),

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from strainwave.demo import position_drive, torsion_rig
 from strainwave.report.identify_figures import overview
-from strainwave.report.page import write
 
 (loop,), (table,) = torsion_rig().files[0].pictures, position_drive().files[0].pictures
-write(overview(loop, table), Path(__file__).with_name("twin.svg"))
+Path(__file__).with_name("twin.svg").write_text(overview(loop, table), encoding="utf-8")

@@ -47,15 +47,17 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
-    from strainwave import export, rig
+    from strainwave import diagnose, export, rig, typeset
     from strainwave.analysis.agreement import Agreement
     from strainwave.analysis.compare import compare
     from strainwave.analysis.difference import Difference
     from strainwave.analysis.linear import Linearisation, linearise, modes
+    from strainwave.analysis.measured_command import MeasuredCommand
     from strainwave.analysis.response import FrequencyResponse, frequency_response
     from strainwave.analysis.sensitivity import Derivatives, derivatives
     from strainwave.analysis.settling import settling_time
     from strainwave.analysis.steady import equilibrium
+    from strainwave.analysis.strokes import stroke_within, strokes_apart
     from strainwave.dataset.faults import with_faults
     from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
     from strainwave.diagnose.order_lines import OrderLine, order_lines
@@ -77,6 +79,7 @@ if TYPE_CHECKING:
     from strainwave.orders.order_spectrum import BearingOrders, Orders, bearing_orders, order_amplitudes, order_spectrum
     from strainwave.orders.ripple import Ripple, ripple
     from strainwave.orders.two_encoders import TransmissionError, transmission_error
+    from strainwave.report.listing import listing
     from strainwave.simulation import scenario
     from strainwave.simulation.controller import Observation, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
@@ -121,6 +124,7 @@ _LAZY = {
     "KernelWarning": "native.cache",
     "Linearisation": "analysis.linear",
     "LostMotion": "tuning.approach",
+    "MeasuredCommand": "analysis.measured_command",
     "Minima": "identification.fitting.minima",
     "OrderLine": "diagnose.order_lines",
     "Orders": "orders.order_spectrum",
@@ -154,12 +158,14 @@ _LAZY = {
     "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
     "detection_limit": "diagnose.detection_limit",
+    "diagnose": "diagnose",
     "equilibrium": "analysis.steady",
     "export": "export",
     "fit": "identification.fitting.fit",
     "frequency_response": "analysis.response",
     "identify": "identification.identify",
     "linearise": "analysis.linear",
+    "listing": "report.listing",
     "load": "files.gear_set",
     "loop_margins": "tuning.loops",
     "lost_motion": "tuning.approach",
@@ -189,7 +195,10 @@ _LAZY = {
     "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
+    "stroke_within": "analysis.strokes",
+    "strokes_apart": "analysis.strokes",
     "transmission_error": "orders.two_encoders",
+    "typeset": "typeset",
     "with_faults": "dataset.faults",
 }
 
@@ -220,6 +229,7 @@ __all__ = [
     "Linearisation",
     "LoopMargins",
     "LostMotion",
+    "MeasuredCommand",
     "Minima",
     "Observation",
     "OrderLine",
@@ -255,6 +265,7 @@ __all__ = [
     "control",
     "derivatives",
     "detection_limit",
+    "diagnose",
     "equilibrium",
     "export",
     "fault",
@@ -266,6 +277,7 @@ __all__ = [
     "kinematic_error",
     "kinematics",
     "linearise",
+    "listing",
     "load",
     "loads",
     "loop_margins",
@@ -302,9 +314,12 @@ __all__ = [
     "simulate_to",
     "softening",
     "stiffness",
+    "stroke_within",
+    "strokes_apart",
     "structure",
     "thermal",
     "transmission_error",
+    "typeset",
     "variation",
     "with_faults",
 ]
@@ -335,7 +350,7 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'strainwave' has no attribute {name!r}")
     module = import_module(f"strainwave.{_LAZY[name]}")
-    return module if name in ("export", "rig", "scenario") else getattr(module, name)
+    return module if name in ("diagnose", "export", "rig", "scenario", "typeset") else getattr(module, name)
 
 
 def __dir__() -> list[str]:

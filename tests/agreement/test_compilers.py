@@ -56,6 +56,7 @@ def included(header: str) -> set[str]:
     return named.union(*map(included, named))
 
 
+@pytest.mark.slow("build")
 @both
 def test_every_header_stands_on_its_own(name: str, tmp_path: Path) -> None:
     """Most include MATH, and so <cmath>, which takes four times as long as the rest of them: they find it compiled.
@@ -77,12 +78,14 @@ def alone(headers: set[str]) -> dict[str, str]:
     return {f"{header.replace('/', '.')}.cpp": f"#include <{header}>\n" for header in headers}
 
 
+@pytest.mark.slow("build")
 @both
 def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) -> None:
     steps = [stepped(scalar, drive) for scalar in SCALARS for drive in drives(scalar)]
     assert compilation(checker(name), tmp_path, {"static.cpp": SCALAR_HEADERS + HEADERS + "".join(steps)}) == (0, "")
 
 
+@pytest.mark.whole_path("build")
 @both
 def test_a_kernel_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
     """Users see none of its warnings."""
@@ -99,6 +102,7 @@ def read_before(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, ...]:
     return *INSTANTIATED, option, str(folder / name)
 
 
+@pytest.mark.slow("build")
 @pytest.mark.parametrize("source", SOURCES)
 def test_clang_compiles_every_source_of_the_extension(source: str, read_before: tuple[str, ...], tmp_path: Path) -> None:
     """With the warnings with which g++ compiles them, each from nothing, whenever the package is built for the tests."""
@@ -106,6 +110,7 @@ def test_clang_compiles_every_source_of_the_extension(source: str, read_before: 
     assert compilation(checker("clang++"), tmp_path, including, *FOREIGN, *read_before) == (0, "")
 
 
+@pytest.mark.slow("build")
 def test_a_pack_steps_in_the_vector_registers_of_neon(tmp_path: Path) -> None:
     """Whose registers hold two doubles: `.2d`. It sums, multiplies, divides, compares and takes roots in them."""
     scalar = "strainwave::Pack<8>"
@@ -133,6 +138,7 @@ void bind(nanobind::module_& scope) {{ strainwave::host::bind<Pair<double>>(scop
 """
 
 
+@pytest.mark.slow("build")
 @pytest.mark.parametrize(
     ("described", "complete"),
     [

@@ -34,11 +34,13 @@ def kernels(scalar: str) -> list[str]:
     return [KERNEL.format(number=i, drive=drive, scalar=scalar) for i, drive in enumerate(drives(scalar))]
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("scalar", ["double", "float"])
 def test_every_model_steps_in_a_cuda_kernel(scalar: str) -> None:
     assert nvrtc.compiled(HEADERS + "".join(kernels(scalar)), *OPTIONS, *INTERMEDIATE)[1] == ""
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("scalar", ["double", "float"])
 def test_a_cuda_kernel_becomes_code_of_a_device(scalar: str) -> None:
     ptx, log = nvrtc.compiled(HEADERS + kernels(scalar)[0], *OPTIONS, *NOT_OPTIMISED)

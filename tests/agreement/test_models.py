@@ -120,6 +120,7 @@ def test_a_gear_with_any_law_runs_one_trajectory_in_every_scalar(part: str, mode
     agree(DRIVE.replace(gear=DRIVE.gear.replace(**{part: law})), seed)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize(("part", "model"), OTHER_PARTS)
 @settings(max_examples=sample(3, 8))
 @given(st.data(), seeds)
@@ -140,6 +141,7 @@ def with_a_start(gear: sw.Gear) -> sw.Gear:
 starting_gears = reduced_gears.map(with_a_start)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 @settings(max_examples=sample(15, 50))
 @given(starting_gears, seeds)
@@ -159,6 +161,7 @@ def whole(gear: sw.Gear, parts: dict[str, Any]) -> Drive:
 other_parts = st.fixed_dictionaries({part: models(family) for part, family in OTHER_FAMILIES.items() if part != "sensors"})
 
 
+@pytest.mark.whole_path("physics")
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 @settings(max_examples=sample(6, 15), suppress_health_check=[HealthCheck.filter_too_much])
 @given(starting_gears, other_parts, built(sw.Sensors), seeds)

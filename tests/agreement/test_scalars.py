@@ -261,6 +261,7 @@ def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: 
         assert np.all(np.abs(slope - shown) <= (1e-5 * size + rounding)[:, None]), known[i]
 
 
+@pytest.mark.slow("physics")
 @every_drive
 def test_derivatives_are_what_differences_show(drive: Drive) -> None:
     """At every sample, stick-slip included: the times of its events move with the numbers.

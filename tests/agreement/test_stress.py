@@ -20,11 +20,13 @@ def test_a_random_drive_ends_in_numbers_or_with_a_reason_and_is_in_a_pack_what_i
     assert not found.wrong, found.said
 
 
+@pytest.mark.slow("physics")
 def test_random_drives_hold_every_model_of_every_list_between_them() -> None:
     found = set().union(*(models_of(model(sw.Drive, np.random.default_rng(number))) for number in range(200)))
     assert {one.__name__ for models in _core.families.values() for one in models.values()} - found == set()
 
 
+@pytest.mark.slow("physics")
 def test_a_drive_that_takes_too_long_is_given_up_and_the_next_begun() -> None:
     """Here all do: a process that is no more answers for its drive."""
     assert [(one.number, one.said, one.wrong) for one in outcomes([3, 4], processes=1, limit=1e-3)] == [

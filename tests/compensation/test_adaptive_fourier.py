@@ -36,6 +36,7 @@ def test_beyond_ninety_degrees_some_of_these_lags_make_it_grow() -> None:
     assert signs == [True] * 4 + [False] * 2
 
 
+@pytest.mark.slow("physics")
 def test_it_leaves_nothing_of_an_error_of_four_orders() -> None:
     """Orders 2 and 2.02 drift apart at 0.4 rad/s: no gain above that learns them faster. So small waves do not make others."""
     orders = [1.0, 2.0, 2.02, 4.0]

@@ -55,6 +55,7 @@ def widths(end: sw.State) -> Array:
 INNER = slice(4, CELLS - 4)  # after a reversal the loop of the gear is closed there
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("gain", [0.5, 1.0, 2.0])
 def test_a_constant_lost_motion_is_learnt_at_its_rate_per_pass(gain: float) -> None:
     """Each pass over a cell of width h at speed v leaves 1 - gamma h / v, to the second order."""
@@ -78,6 +79,7 @@ def test_it_learns_the_lost_motion_that_the_loop_of_the_gear_has() -> None:
     assert abs(lost.extent / rigid - 1.0) > 0.05  # the loop counts
 
 
+@pytest.mark.slow("physics")
 def test_the_error_after_some_passes_is_a_hundredth() -> None:
     """Of a lost motion and a kinematic error of a period of the output, where it moves at constant speed."""
     error = sw.kinematic_error.Fourier(order=[0.1], amplitude=[2e-4], phase=[0.3])
@@ -118,6 +120,7 @@ def test_smoothing_takes_a_wave_over_the_cells_away_at_its_rate(mode: int) -> No
     assert forward[INNER] == pytest.approx(wave[INNER] * np.exp(-rate * count), abs=0.03e-5 * (mode > 0) + 1e-12)
 
 
+@pytest.mark.slow("physics")
 @given(st.floats(1e-6, 2e-4), st.floats(0.0, 0.3), st.floats(0.0, 500.0), st.floats(0.0, 1e3), st.floats(1e-6, 0.1))
 def test_no_value_exceeds_its_limit(limit: float, lag: float, gain: float, smoothing: float, reach: float) -> None:
     """Not even one that grows, as the lag may have it."""
@@ -133,6 +136,7 @@ def test_no_pass_learns_more_than_the_whole_error(end: float) -> None:
     assert 0.1 * largest < max(np.abs(table).max() for table in tables(run.end)) <= 1.01 * largest
 
 
+@pytest.mark.slow("physics")
 def test_within_its_guard_it_does_not_diverge() -> None:
     """The cells pass at v / h = 31 Hz at most, where the loop of (s + 100)^2 lags by two times 45 degrees below 100 rad/s."""
     run = sw.simulate(drive(learner(gain=1e3, lag=0.0), hysteresis=LOOP), passes(60), sample=0.01)

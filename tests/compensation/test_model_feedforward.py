@@ -60,6 +60,7 @@ def wave_error(drawn: list[tuple[float, float, float]], contraction: float) -> s
     return sw.kinematic_error.Fourier(order=order.tolist(), amplitude=amplitude.tolist(), phase=phase.tolist())
 
 
+@pytest.mark.slow("physics")
 @given(waves, st.floats(0.01, 0.98))
 def test_each_round_leaves_at_most_its_share_of_the_error(drawn: list[tuple[float, float, float]], contraction: float) -> None:
     error = wave_error(drawn, contraction)
@@ -68,6 +69,7 @@ def test_each_round_leaves_at_most_its_share_of_the_error(drawn: list[tuple[floa
         assert (after <= contraction * before + 1e-15).all()
 
 
+@pytest.mark.slow("physics")
 @given(waves, st.floats(1.001, 10.0))
 def test_an_error_that_does_not_converge_is_refused_unless_it_is_left_out(
     drawn: list[tuple[float, float, float]], contraction: float
@@ -79,6 +81,7 @@ def test_an_error_that_does_not_converge_is_refused_unless_it_is_left_out(
     assert planned(law, TURN)[0] == pytest.approx(np.zeros(TURN.size), abs=1e-15)
 
 
+@pytest.mark.slow("physics")
 @given(models("kinematic_error"))
 def test_whatever_the_law_of_the_error_what_is_accepted_converges(error: Any) -> None:
     error = suited(error, KINEMATICS)
@@ -147,6 +150,7 @@ def test_every_family_of_springs_and_memories_is_inverted_here() -> None:
     assert {type(law) for law in MEMORIES} == set(_core.families["hysteresis"].values())
 
 
+@pytest.mark.slow("physics")
 @each(("spring", "memory"), itertools.product(SPRINGS, MEMORIES))
 def test_the_twist_is_that_of_the_torque_over_ten_thousand_reversals(spring: Any, memory: Any) -> None:
     """The path of the gear itself, along these twists, is the torque that was asked for."""

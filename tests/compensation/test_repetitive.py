@@ -29,6 +29,7 @@ def peaks(course: Course) -> list[float]:
     return [float(np.abs(course.error[at] - course.error[at].mean()).max()) for at in course.turns()]
 
 
+@pytest.mark.slow("physics")
 @each("order", [1.0, 2.0, 3.0, 4.0])
 def test_the_error_of_a_low_order_falls_by_nine_tenths(order: float) -> None:
     """Waves of the highest order have 40 rad/s; the loop follows those with a lag of some milliseconds."""
@@ -37,6 +38,7 @@ def test_the_error_of_a_low_order_falls_by_nine_tenths(order: float) -> None:
     assert last < 0.1 * first
 
 
+@pytest.mark.slow("physics")
 @settings(max_examples=sample(4, 40))
 @given(st.lists(st.tuples(st.floats(0.1, 1.0), st.floats(-3.1, 3.1)), min_size=4, max_size=4))
 def test_any_shape_of_low_orders_is_learnt(drawn: list[tuple[float, float]]) -> None:
@@ -53,6 +55,7 @@ def values(start: sw.State) -> Array:
     return np.array([found[f"value[{j}]"] for j in range(CELLS)])
 
 
+@pytest.mark.slow("physics")
 @each("mode", [0, 1, 4, 8, 16])
 def test_smoothing_takes_a_wave_over_the_cells_away_at_its_rate(mode: int) -> None:
     """A cell fades to its neighbours while it is passed, a 32nd of a turn: sigma (1 - cos(2 pi m / 32)) / 32."""
@@ -96,6 +99,7 @@ def test_it_learns_between_min_speed_and_max_speed_only(changed: dict[str, float
     assert bool(found.any()) == learns
 
 
+@pytest.mark.slow("physics")
 @given(st.floats(1e-6, 2e-4), st.floats(0.0, 0.3), st.floats(0.0, 500.0), st.floats(0.0, 1e4))
 def test_no_value_exceeds_its_limit(limit: float, lag: float, gain: float, smoothing: float) -> None:
     """Not even one that grows, as the lag may have it."""

@@ -128,6 +128,7 @@ def test_it_recovers_a_drawn_gear_within_the_deviations_that_it_states(seed: int
     assert state(run.end, "learning")["residual"] == pytest.approx(3e-4, rel=0.1)
 
 
+@pytest.mark.slow("physics")
 def test_the_error_of_the_output_falls_by_nine_tenths() -> None:
     one = drive(TwistIdentification(order=[2.0], noise_time=0.01), compliance=1.2, kinematic_error=error((2.0, 2e-4, -1.0)))
     run = sw.simulate(one, SWING, sample=PERIOD)
@@ -140,6 +141,7 @@ def test_the_error_of_the_output_falls_by_nine_tenths() -> None:
     assert np.sqrt(np.mean(with_it**2)) < 0.1 * np.sqrt(np.mean(plain**2))
 
 
+@pytest.mark.slow("physics")
 def test_it_follows_a_stiffness_that_falls_by_a_fifth() -> None:
     """Over 41 s; the estimate, at the end of a swing, is late by less than 1 %."""
     duration, fall, warmer = 41.0, 0.005, 44.6
@@ -296,6 +298,7 @@ def million(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str, st
     return dict(zip(keys, np.loadtxt(printed.splitlines()), strict=True))
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("memory", ["long", "short"])
 def test_its_deviations_are_those_of_two_hundred_drawn_gears(million: Any, memory: str) -> None:
     """Constant numbers, and numbers that wander as it assumes: squares of error over deviation have the mean 1."""
@@ -303,6 +306,7 @@ def test_its_deviations_are_those_of_two_hundred_drawn_gears(million: Any, memor
     assert squares == pytest.approx(np.ones(6), abs=3.5 * np.sqrt(2.0 / 200.0))
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("scalar", ["double", "float"])
 def test_a_million_samples_of_one_torque_and_angle_move_the_offset_alone(million: Any, scalar: str) -> None:
     found = million["one angle", "excited", scalar]
@@ -313,6 +317,7 @@ def test_a_million_samples_of_one_torque_and_angle_move_the_offset_alone(million
     assert value[1] == pytest.approx(total, abs=1e-5)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("scalar", ["double", "float"])
 def test_neither_values_nor_deviations_grow_where_nothing_is_kept(million: Any, scalar: str) -> None:
     """One regressor for a thousand seconds: the priors hold what it leaves open."""
@@ -322,6 +327,7 @@ def test_neither_values_nor_deviations_grow_where_nothing_is_kept(million: Any, 
     assert widest < 1.0 + 1e-6
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("adapted", ["excited", "all"])
 def test_single_precision_has_the_numbers_of_double_precision(million: Any, adapted: str) -> None:
     double, single = (million["moves", adapted, scalar][3:] for scalar in ("double", "float"))

@@ -118,6 +118,7 @@ def test_along_the_motion_of_a_stiff_joint_it_falls_as_predicted() -> None:
     assert value[-1] < 1e-5 * value[0]
 
 
+@pytest.mark.slow("physics")
 def test_the_output_converges_where_the_error_is_known() -> None:
     """On a sine, with gravity: to a hundredth of the kinematic error; where it is left out, it stays."""
     errors = {}
@@ -128,6 +129,7 @@ def test_the_output_converges_where_the_error_is_known() -> None:
     assert errors["unknown"] > 20.0 * errors["known"]
 
 
+@pytest.mark.slow("physics")
 def test_by_the_input_encoder_alone_the_twist_stays() -> None:
     """The output follows but for its twist under the torque of load and acceleration."""
     run = sw.simulate(joint(law_for(feedback="input")), COMMAND, 5e-6, sample=1e-3)
@@ -135,6 +137,7 @@ def test_by_the_input_encoder_alone_the_twist_stays() -> None:
     assert error == pytest.approx(run["torque"][2000:] / 2e7, abs=1e-5)
 
 
+@pytest.mark.slow("physics")
 def test_at_a_set_point_it_comes_to_rest_with_the_rate_of_its_loop() -> None:
     command = sw.scenario.constant(0.2, 1.5)
     run = sw.simulate(joint(law_for()), command, 5e-6, sample=1e-3)
@@ -145,6 +148,7 @@ def test_at_a_set_point_it_comes_to_rest_with_the_rate_of_its_loop() -> None:
     assert rate == pytest.approx(RATE, rel=0.02)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("share", [0.7, 1.3])
 def test_a_wrong_amplitude_leaves_a_bounded_error(share: float) -> None:
     """With e' wrong by D the error obeys de/dt = -lambda e + D omega + g s: |e| <= (D omega + g |s|) / lambda."""

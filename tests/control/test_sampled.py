@@ -107,6 +107,7 @@ def test_a_jump_of_the_command_is_seen_at_the_next_instant(jump: float, seen: fl
     assert run.time[np.argmax(run["voltage"] != 0.0)] == pytest.approx(seen + 1e-4 * (seen > 0.0), abs=1e-9)
 
 
+@pytest.mark.slow("physics")
 def test_its_instants_do_not_drift() -> None:
     """Ten minutes of 7.3 ms, which no step divides: the next sample is due when a clock says so."""
     slow = drive(period=7.3e-3, delay=2e-3)

@@ -125,6 +125,7 @@ CLAIMS: dict[str, Callable[[str], None]] = {
 }  # of the text of a tutorial, about what its cells print
 
 
+@pytest.mark.slow("docs")
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_tutorial_runs_and_shows_what_it_draws(script: Path, tmp_path: Path) -> None:
     tutorials.write_page(script, tmp_path)
@@ -147,6 +148,7 @@ def test_the_files_of_tutorials_are_small_text_and_each_is_used() -> None:
             assert any(tutorials.is_named(path.name, text) for text in texts), path.name
 
 
+@pytest.mark.slow("docs")
 @pytest.mark.skipif(not (tutorial_joint.RIG / "joint.c").is_file(), reason="the joint of another program was not found")
 def test_the_supplied_files_are_those_of_the_joint(tmp_path: Path) -> None:
     """A change of a file, or of the joint, would make the truths of the tutorials wrong."""
@@ -169,6 +171,7 @@ def test_the_page_of_tutorials_lists_each() -> None:
     assert {name: expected[name[:2]] for name in titles} == titles
 
 
+@pytest.mark.slow("docs")
 @pytest.mark.parametrize(
     ("cell", "message"),
     [
@@ -188,6 +191,7 @@ def test_a_cell_that_fails_is_named_with_its_line(cell: str, message: str, tmp_p
         tutorials.run_alone(script, tmp_path / "out")
 
 
+@pytest.mark.slow("docs")
 def test_code_must_not_need_what_a_command_wrote(tmp_path: Path) -> None:
     """A script that is run as a whole has no commands."""
     script = tmp_path / "wrong.py"
@@ -198,6 +202,7 @@ def test_code_must_not_need_what_a_command_wrote(tmp_path: Path) -> None:
         tutorials.run_alone(script, tmp_path / "out")
 
 
+@pytest.mark.slow("docs")
 def test_a_page_shows_what_cells_print_and_draw(tmp_path: Path) -> None:
     """The folder of a tutorial has its data; a command that may fail shows its exit code."""
     (tmp_path / "data.csv").write_text("1\n2\n")

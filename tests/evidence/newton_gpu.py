@@ -3,8 +3,8 @@
     python -m tests.evidence.newton_gpu prepare FOLDER   export drives, and store what native code finds; needs no GPU
     python3 tests/evidence/newton_gpu.py run FOLDER      run them on this machine's GPU; needs Python, a driver and this file
 
-Each drive follows the motion of `tests.evidence.newton_agreement`. Its outputs are compared with native code: the
-largest difference over the largest value of an output. Then many gears are stepped, equal ones and ones with numbers of their own.
+Each drive follows the motion of `tests.evidence.newton_agreement`. The difference from native code is stated for each output,
+over its largest value. Then many gears are stepped, with equal and with own numbers.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry, noises
+from strainwave.diagnose.actuator_ramp import ActuatorRamp, noises, wave_generator
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current
 from strainwave.diagnose.inversion import MisalignmentEstimate
 from strainwave.diagnose.possible_drives import PossibleDrives, drawn_changes
@@ -94,7 +94,7 @@ def units(
     """
     known = drives or PossibleDrives.of(gear_set, ramp)
     chance = np.random.default_rng(seed)
-    law, _ = geometry(ramp.drive)
+    law, _ = wave_generator(ramp.drive)
     law = law.replace(combine=combine)
     seeds = noises(ramp.drive, "seed")
     for unit, change in enumerate(drawn_changes(gear_set, ramp, count, seed)):

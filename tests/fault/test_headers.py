@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
-from tests.support.cplusplus import checker, compilation
+from tests.support.cplusplus import ROOT, checker, compilation
+
+PAGE = ROOT / "docs" / "contributing" / "add-a-fault.md"
 
 USE = """
 #include <strainwave/fault/models.hpp>
@@ -40,3 +43,10 @@ S both(const S& usage) {
 def test_faults_and_onsets_compile_in_every_scalar(scalar: str, tmp_path: Path) -> None:
     source = f"{USE}\n{scalar} of_this({scalar} usage) {{ return both<{scalar}>(usage); }}\n"
     assert compilation(checker("g++"), tmp_path, {"faults.cpp": source}, "-fno-exceptions", "-fno-rtti") == (0, "")
+
+
+def test_the_fault_of_the_page_for_contributors_compiles(tmp_path: Path) -> None:
+    (header,) = re.findall(r"^```cpp\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    use = "int count = 0;\nvoid changes() { StiffSeal<double>{}.changes({}, [](const Change<double>&) { ++count; }); }"
+    source = f"{header}\nnamespace strainwave::fault {{\n{use}\n}}\n".replace("#pragma once\n", "")
+    assert compilation(checker("g++"), tmp_path, {"fault.cpp": source}) == (0, "")

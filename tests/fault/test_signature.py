@@ -56,6 +56,7 @@ def test_a_bearing_shows_by_the_friction_at_the_input() -> None:
     assert line == pytest.approx(0.3 * 0.05 / CONSTANT, rel=0.02)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize(
     ("fault", "order", "power"),
     [

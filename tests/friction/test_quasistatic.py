@@ -122,6 +122,7 @@ def test_rest_keeps_the_torque_and_none_is_before_the_first_motion(law: Any, pat
     assert law.quasistatic([*path, path[-1]], load=load)[-2:].tolist() == 2 * [law.quasistatic(path, load=load)[-1]]
 
 
+@pytest.mark.slow("physics")
 @given(
     laws.filter(lambda law: not law.set_valued and not hasattr(law, "law")),
     signed(log_uniform(1e-3, 1e-1)),

@@ -48,6 +48,7 @@ RESULTS = (
     "FrequencyResponse",
     "Identified",
     "Linearisation",
+    "MeasuredCommand",
     "OrderLine",
     "Orders",
     "Profile",

@@ -22,7 +22,8 @@ import pyarrow.parquet
 from numpy.random import Generator
 from numpy.typing import NDArray
 from strainwave.files.labels import ColumnSource
-from strainwave.files.tables import FORMATS, OpenTable, open_table
+from strainwave.files.table_format import OpenTable
+from strainwave.files.tables import FORMATS, open_table
 from strainwave.identification.reading.source import measurement_files
 
 from tests.fuzz.laws import Case, within_memory

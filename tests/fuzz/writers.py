@@ -7,14 +7,13 @@ import re
 import resource
 import signal
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import strainwave as sw
 from numpy.random import Generator
-from strainwave.report import page
+from strainwave.files import writing
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import TEXTS, picked
@@ -33,12 +32,17 @@ def _simulate(path: Any) -> Path:
     return sw.simulate_to(path, drive, sw.scenario.constant(1.0, 0.05), {"load.inertia": [0.1, 0.2]}, 5e-4, threads=1)
 
 
+def _page(path: Any) -> None:
+    with writing.replacing(path) as file:
+        file.write(b"<!doctype html>" + b"x" * 5000)
+
+
 WRITERS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("to_csv", lambda path: _recording().to_csv(path)),
     ("to_parquet", lambda path: _recording().to_parquet(path)),
     ("GearSet.save", lambda path: sw.GearSet.read("hfuc-25-100").save(path)),
     ("save", lambda path: sw.save(sw.Gear(), path, name="mine", source="assumed")),
-    ("report", partial(page.write, "<!doctype html>" + "x" * 5000)),
+    ("report", _page),
     ("simulate_to", _simulate),
 )  # fmt: skip
 

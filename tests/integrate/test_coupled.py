@@ -68,6 +68,7 @@ def vibrating(seed: int, longest: float) -> Array:
     return block * longest / frequency
 
 
+@pytest.mark.whole_path("physics")
 @pytest.mark.parametrize("longest", [1e-3, 0.5, 3.0, 30.0, 300.0])
 def test_phi_functions_are_those_of_an_augmented_exponential(built: Path, longest: float) -> None:
     """Of vibrations in the units of physics, to 1e-11 of the largest number where places and speeds weigh alike."""
@@ -79,6 +80,7 @@ def test_phi_functions_are_those_of_an_augmented_exponential(built: Path, longes
             assert np.abs(scaled - known).max() < 1e-11 * np.abs(known).max()
 
 
+@pytest.mark.whole_path("physics")
 def test_of_zero_they_are_one_over_the_factorial_and_a_row_of_zeros_stays(built: Path) -> None:
     """What does not move, as a shaft that sticks, must not move by a rounding."""
     resting = vibrating(3, 20.0)
@@ -123,6 +125,7 @@ def exact(kinked: bool, frequency: float = FREQUENCY) -> Array:
     return y
 
 
+@pytest.mark.whole_path("physics")
 def test_what_is_linear_is_exact_in_one_step_of_twenty_radians(built: Path) -> None:
     """A free vibration about where the other end stands, by its closed form."""
     duration = 1e-3
@@ -133,12 +136,14 @@ def test_what_is_linear_is_exact_in_one_step_of_twenty_radians(built: Path) -> N
         assert place == pytest.approx(np.sin(START[0]) + np.exp(-decay * duration) * swing, abs=1e-14)
 
 
+@pytest.mark.slow("physics")
 def test_steps_of_twenty_radians_follow_what_the_swing_does(built: Path) -> None:
     """Where explicit steps would diverge; it is the body's place, all of a metre, that turns the swing."""
     off = np.abs(stepped(built, 50, 100, 400)[:, 0] - exact(False)[0])
     assert np.all(off < [1e-4, 1e-4, 1e-6])
 
 
+@pytest.mark.slow("physics")
 def test_a_kink_within_a_step_is_found(built: Path) -> None:
     """To step over it is an error of first order."""
     off, over = (np.abs(stepped(built, 400, kinked=True, told=told)[0, 0] - exact(True)[0]) for told in (True, False))
@@ -146,6 +151,7 @@ def test_a_kink_within_a_step_is_found(built: Path) -> None:
     assert over > 10.0 * off
 
 
+@pytest.mark.slow("physics")
 def test_derivatives_by_the_stiffness_are_differences(built: Path) -> None:
     step = 10.0
     more, less = (exact(False, FREQUENCY + change) for change in (step, -step))

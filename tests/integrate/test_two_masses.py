@@ -81,6 +81,7 @@ def exact_end() -> Any:
 
 
 # The first three take steps of 0.5 ms; what Moreau and Jean's impulses round at an event is of first order.
+@pytest.mark.whole_path("physics")
 @pytest.mark.parametrize(
     ("method", "tolerance"), [("exponential", 1e-9), ("rosenbrock", 1e-6), ("adaptive", 1e-8), ("moreau_jean", 2e-3)]
 )
@@ -88,10 +89,12 @@ def test_every_method_finds_the_exact_solution(runs: dict[str, Any], method: str
     np.testing.assert_allclose(runs[method], exact_end(), rtol=0, atol=tolerance)
 
 
+@pytest.mark.whole_path("physics")
 def test_every_lane_of_a_pack_is_the_run_alone_to_the_last_bit(runs: dict[str, Any]) -> None:
     assert runs["lanes_that_differ"] == 0
 
 
+@pytest.mark.whole_path("physics")
 @pytest.mark.parametrize(("number", "value"), [("stiffness", STIFFNESS), ("friction", FRICTION)])
 def test_derivatives_are_those_of_the_exact_solution(runs: dict[str, Any], number: str, value: float) -> None:
     little = 1e-5 * value

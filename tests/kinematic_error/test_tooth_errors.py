@@ -339,6 +339,7 @@ def test_a_deviation_of_one_spline_changes_nothing_of_what_is_drawn_of_the_other
     np.testing.assert_allclose(both, flexspline + circular_spline, rtol=0.0, atol=1e-18)
 
 
+@pytest.mark.slow("physics")
 def test_amplitudes_are_those_of_pitches_cut_independently_of_each_other() -> None:
     """Rings with 2000 teeth by the thousand; within four standard deviations of the estimates.
 

@@ -177,6 +177,7 @@ LASTING: dict[str, Callable[[], Any]] = {
 }
 
 
+@pytest.mark.slow("physics")
 @each("name", LASTING)
 def test_a_long_call_heeds_ctrl_c_on_its_way(name: str) -> None:
     with ctrl_c(), pytest.raises(KeyboardInterrupt):
@@ -186,6 +187,7 @@ def test_a_long_call_heeds_ctrl_c_on_its_way(name: str) -> None:
 # Memory
 
 
+@pytest.mark.slow("physics")
 def test_too_little_memory_is_told_with_the_size_that_was_asked_for() -> None:
     """In a process of its own, which may take 100 MB more than it has."""
     script = """

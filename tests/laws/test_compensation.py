@@ -224,6 +224,7 @@ def test_written_to_a_file_and_read_it_is_the_same(tmp_path: Path, place: str, n
     assert load(tmp_path / "drive.toml") == one
 
 
+@pytest.mark.slow("physics")
 @settings(max_examples=sample(10, 40), suppress_health_check=[*HealthCheck])
 @given(part=built(sw.Compensation))
 def test_so_is_any_other(tmp_path: Path, part: sw.Compensation) -> None:
@@ -240,6 +241,7 @@ COMPILED = [
 ]
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("chosen", COMPILED, ids=lambda chosen: "+".join(chosen.values()))
 def test_a_compiled_kernel_gives_the_bits_of_the_general_drive(chosen: dict[str, str]) -> None:
     one = drive_of(chosen)
@@ -335,6 +337,7 @@ def in_both_precisions(drives: list[sw.Drive], folder: Path) -> Array:
     return np.loadtxt(printed.splitlines()).reshape(len(drives), -1, 4)
 
 
+@pytest.mark.slow("physics")
 def test_single_precision_asks_for_the_same_within_a_ten_thousandth(tmp_path: Path) -> None:
     """Of the largest lead, and of the largest torque, which has differences of speeds over a period."""
     found = in_both_precisions([drive_of(chosen) for chosen in COMPILED], tmp_path)

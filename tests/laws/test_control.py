@@ -84,6 +84,7 @@ def test_the_opposite_command_gives_the_opposite_motion(name: str, sampled: bool
         assert np.array_equal(forth[column], -back[column])
 
 
+@pytest.mark.slow("physics")
 @given(models("control"), st.sampled_from([-1.0, 1.0]), st.floats(1e-3, 1e3))
 def test_whatever_is_asked_no_more_than_its_limit_is_given(law: Any, sense: float, size: float) -> None:
     """Of any numbers, at once and after a while."""
@@ -195,6 +196,7 @@ def test_it_goes_on_where_a_run_ended(name: str, sampled: bool) -> None:
     assert second["output_angle"][-1] == pytest.approx(whole["output_angle"][-1], abs=1e-12 * scale)
 
 
+@pytest.mark.slow("physics")
 @given(built(sw.control.Sampled))
 def test_what_is_sampled_says_when_it_acts_next(law: sw.control.Sampled) -> None:
     try:

@@ -50,6 +50,7 @@ def test_friction_is_odd_in_the_motion(law: Any, speed: float, contact: dict[str
     assert law.steady(0.0, **contact) == 0.0
 
 
+@pytest.mark.slow("physics")
 @given(laws.filter(in_bounds), st.lists(signed(speeds), min_size=1, max_size=5))
 def test_an_array_of_speeds_gives_what_each_speed_gives(law: Any, speed: list[float]) -> None:
     assert law.steady([speed, speed]).tolist() == 2 * [[law.steady(v) for v in speed]]
@@ -68,6 +69,7 @@ def test_what_sticks_holds_at_least_what_sliding_sets_in_with(law: Any, contact:
     assert creeping <= law.hold(sense, **contact) * (1.0 + 1e-15) + 1e-290  # the viscous part of so slow a motion
 
 
+@pytest.mark.slow("physics")
 @given(laws.filter(lambda law: not law.set_valued and in_bounds(law)), contacts)
 def test_what_does_not_stick_holds_nothing(law: Any, contact: dict[str, float]) -> None:
     assert law.hold(1.0, **contact) == 0.0
@@ -79,6 +81,7 @@ def test_a_memory_settles_on_steady_sliding(law: Any, speed: float, contact: dic
     assert settled == pytest.approx(law.steady(speed, **contact), rel=1e-12)
 
 
+@pytest.mark.slow("physics")
 @given(with_memory, signed(speeds), st.lists(st.floats(1e-3, 1.0), min_size=2, max_size=10), contacts)
 def test_a_memory_under_one_contact_does_not_depend_on_the_step(
     law: Any, speed: float, steps: list[float], contact: dict[str, float]

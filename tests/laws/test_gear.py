@@ -201,6 +201,7 @@ def test_a_gear_with_any_law_at_any_place_stays_finite_and_no_friction_drives(
     check_friction(drive.gear, run)
 
 
+@pytest.mark.slow("physics")
 @settings(max_examples=sample(20, 60))
 @given(reduced_gears, commands, loads, temperatures)
 def test_any_gear_stays_finite_and_no_friction_drives(
@@ -387,6 +388,7 @@ def test_an_output_that_breaks_away_takes_along_an_input_that_nothing_holds(law:
     assert np.abs(run["input_speed"]).max() > 1.0
 
 
+@pytest.mark.slow("physics")
 @given(backdriving=st.floats(0.5, 8.0), dt=st.floats(2e-6, 2e-5))
 def test_an_output_whose_hold_ends_all_at_once_stops_nothing_else(backdriving: float, dt: float) -> None:
     """Its hold is of the sense it is pushed in: none one way, and large the other way up to that very moment."""
@@ -408,6 +410,7 @@ def test_what_sticks_holds_no_more_than_its_breakaway(
     assert np.abs(run[place]).max() <= breakaway * (1.0 + 1e-14)
 
 
+@pytest.mark.slow("physics")
 @settings(max_examples=sample(10, 30))  # drawing a drive takes longer than the law
 @given(drives, st.floats(0.0, 1e9))
 def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: Drive, twist: float) -> None:

@@ -25,6 +25,7 @@ angles = st.floats(-math.pi, math.pi)
 TURN = np.linspace(0.0, 2.0 * math.pi, 721)
 
 
+@pytest.mark.slow("physics")
 @given(errors, angles)
 def test_slope_is_the_derivative_of_the_error(error: Any, angle: float) -> None:
     h = 1e-5

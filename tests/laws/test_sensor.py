@@ -135,6 +135,7 @@ def test_adaptive_steps_lead_to_the_same(sensor: Any, sampled: bool) -> None:
         assert adaptive[column] == pytest.approx(fine[column], abs=2e-7 * np.abs(fine[column]).max())
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("sensor", [law for law in (LISTED | NESTED).values() if step_of(law)], ids=lambda law: law.name)
 def test_adaptive_steps_lead_to_the_same_within_a_hundredth_of_a_reading(sensor: Any) -> None:
     """Sampled, what reads in steps does not care for those of time. Within a delay each begins where a step of time ends."""

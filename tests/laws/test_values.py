@@ -220,6 +220,7 @@ def test_a_model_that_was_never_made_is_no_part_of_another(model: Any) -> None:
 # Values
 
 
+@pytest.mark.slow("physics")
 @given(any_value)
 def test_what_is_printed_is_what_makes_the_same_value(value: Any) -> None:
     parts_last = reversed(EVERY_MODEL)  # so that a part of a drive wins over a fault or an onset of its name

@@ -15,6 +15,7 @@ from tests.support.geared import MOTOR, RATIO, K, geared
 LOCKED = geared(load=sw.loads.Prescribed(), motor=sw.motor.TorqueSource(inertia=2e-4), damping=0.0)
 
 
+@pytest.mark.slow("physics")
 @given(torque=st.floats(-0.5, 0.5), angle=st.floats(-3.0, 3.0))
 def test_a_locked_gear_vibrates_about_the_twist_that_the_torque_gives(torque: float, angle: float) -> None:
     """A mass on a spring: twist = (i tau / k) (1 - cos w t), w^2 = k / (i^2 J)."""

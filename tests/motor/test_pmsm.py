@@ -384,6 +384,7 @@ def by_hand(target: float, duration: float, *, rests: bool, dt: float = 1e-5) ->
     return np.array(angles)
 
 
+@pytest.mark.slow("physics")
 def test_integrals_that_rest_at_the_limit_of_the_inverter_overshoot_little() -> None:
     """A step of 20 rad, against a recursion written by hand: 26 rad; with integrals that wind up 78 rad, for ever."""
     drive = geared(

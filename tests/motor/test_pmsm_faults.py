@@ -235,6 +235,7 @@ def test_dead_time_takes_no_energy_and_an_uneven_phase_does() -> None:
 LIMITED = {"supply_voltage": 40.0, "current_limit": 12.0}
 
 
+@pytest.mark.slow("physics")
 @given(excess=st.floats(0.0, 0.8), volts=st.floats(0.0, 2.0))
 def test_an_inverter_that_measures_the_current_reaches_its_limit_in_spite_of_faults(excess: float, volts: float) -> None:
     """At a quarter turn of the first phase, where v_d = 0: more voltage is needed for the same current."""

@@ -14,6 +14,7 @@ COMMAND = sw.scenario.sine(0.5, 3.0, 0.5)
 DC = sw.motor.DC(resistance=1.0, back_emf=0.0, torque_constant=0.08, inertia=2e-5)  # its voltage is its current
 
 
+@pytest.mark.slow("physics")
 @given(gain=st.floats(-3.0, 3.0), constant=st.floats(0.01, 0.5))
 def test_a_motor_whose_voltage_is_its_current_is_a_current_source(gain: float, constant: float) -> None:
     control = sw.control.OpenLoop(gain=gain)
@@ -28,6 +29,7 @@ def test_a_motor_whose_voltage_is_its_current_is_a_current_source(gain: float, c
         assert np.array_equal(runs[0][name], runs[1][name])
 
 
+@pytest.mark.slow("physics")
 @given(constant=st.floats(0.01, 0.5))
 def test_a_torque_source_gives_what_it_is_asked_for(constant: float) -> None:
     asked = sw.simulate(geared(motor=sw.motor.TorqueSource(inertia=2e-5), control=sw.control.OpenLoop(gain=constant)), COMMAND)

@@ -222,6 +222,7 @@ def excitation(numbers: list[float], size: float) -> Outside:
 numbers = st.lists(st.floats(-1.0, 1.0), min_size=9, max_size=9)
 
 
+@pytest.mark.slow("physics")
 @given(gears, numbers, numbers, st.floats(-60.0, 60.0), st.floats(1e-6, 5e-5))
 @settings(max_examples=5, deadline=None)
 def test_corrected_it_gives_no_more_than_it_gets(

@@ -244,6 +244,7 @@ def test_beyond_its_critical_speed_a_load_slides_on() -> None:
         assert (len(plateaus(run["output_angle"], run["output_speed"])) > 1) == sticks
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("drive", [SET, FULL], ids=["simplified", "full friction"])
 def test_the_whole_drive_creeps_by_sticking_and_slipping(drive: sw.Drive) -> None:
     """At 0.1 mrad/s of the output both sides do; at 5 mrad/s the motor slides, and the load still does, at its own pace."""

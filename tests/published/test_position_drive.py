@@ -284,6 +284,7 @@ class Slider:
         return sw.simulate(drive, still, dt=1e-4, sample=duration, start=start)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("cycles", [0, 1, 4])
 @pytest.mark.parametrize("method", ["fixed steps", "adaptive"])
 def test_the_limit_cycle_of_stick_and_slip_has_its_closed_form(method: str, cycles: int) -> None:

@@ -58,6 +58,7 @@ def test_the_fast_modes_are_the_known_ones_where_motor_and_load_hang_on_soft_sha
     assert found["free"][-3:] == pytest.approx([6298.71, 37476.81, 66337.87], abs=0.005)
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("fixed", list(FIXED))
 def test_with_the_documents_numbers_it_moves_as_the_equations_have_it(fixed: str) -> None:
     """Three milliseconds, in which the fastest mode swings thirty times; damped by 2 % and less, with the errors of 7.9."""

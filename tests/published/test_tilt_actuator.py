@@ -268,6 +268,7 @@ def test_the_stages_carry_what_the_balance_of_torques_says() -> None:
     assert {name: end[name][-1] for name in expected} == pytest.approx(expected, rel=2e-4)
 
 
+@pytest.mark.slow("physics")
 def test_stages_and_lump_are_one_drive_below_the_modes_of_the_stages() -> None:
     """The lump lacks the inertia of the circular spline, 0.05 %, and vibrations above 3 kHz."""
     staged, ramp = ramp_of(STAGED), sw.scenario.ramp(RATE, 5.0)

@@ -18,7 +18,6 @@ from hypothesis.extra import numpy as hnp
 from strainwave import _core
 from strainwave.analysis.steady import Rates
 from strainwave.equality import ComparedByFields, equal
-from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation.excitation import Excitation
 
 from tests.support.each import each
@@ -41,7 +40,6 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "FrequencyResponse": lambda: sw.frequency_response(DRIVE, [20.0], 0.01),
     "Rates": lambda: Rates.of(DRIVE, DRIVE.rest().numbers, np.zeros(6)),
     "GearSet": lambda: sw.GearSet.read("hfuc-25-100"),
-    "SimulatedExperiment": lambda: SimulatedExperiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
     "drive": lambda: DRIVE,
     "state": lambda: RUN.end,
 } | {

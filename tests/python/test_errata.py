@@ -41,8 +41,9 @@ def test_numbers_of_entries_run_without_a_gap() -> None:
 
 def test_each_link_to_an_entry_leads_to_one() -> None:
     known = {anchor(title) for title, _ in HEADINGS}
-    for page in (Path(__file__).resolve().parents[2] / "docs").rglob("*.md"):
+    root = Path(__file__).resolve().parents[2]
+    for page in (*(root / "docs").rglob("*.md"), *(root / "papers").rglob("*.md")):
         text = page.read_text(encoding="utf-8")
-        used = re.findall(r"\((?:\.\./validation/)?errata\.md#(e-[rpat]\d+[^)]*)\)", text)
+        used = re.findall(r"\((?:\.\./validation/|\.\./\.\./docs/validation/)?errata\.md#(e-[rpat]\d+[^)]*)\)", text)
         used += re.findall(r"\(#(e-[rpat]\d+[^)]*)\)", text) if page.name == "errata.md" else []
         assert known.issuperset(used), (page.name, sorted(set(used) - known))

@@ -22,7 +22,13 @@ from tests.python.command import strainwave
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
-FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ strainwave ))(.*?)^```$", re.MULTILINE | re.DOTALL)
+SLOW_MODULES = (
+    "compensate.py",
+    "detection_limit.py",
+    "influence.py",
+    "two_encoders.py",
+)  # their examples take 0.5 s and more
+FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ (?:strainwave|python papers/)))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -45,10 +51,17 @@ PAGES = [
     page
     for page in (
         *map(ROOT.joinpath, ("README.md", "CONTRIBUTING.md", "python/strainwave/AGENTS.md")),
-        *sorted((ROOT / "docs").rglob("*.md")),
+        *sorted(page for folder in ("docs", "papers") for page in (ROOT / folder).rglob("*.md")),
     )
     if examples(page)
 ]
+
+
+def tier(path: Path) -> list[pytest.MarkDecorator]:
+    """Returns the mark of the examples of a page or a module: README is the whole path."""
+    if path == ROOT / "README.md":
+        return [pytest.mark.whole_path("docs")]
+    return [pytest.mark.slow("docs")] if path.suffix == ".md" or path.name in SLOW_MODULES else []
 
 
 def write_files(page: Path, folder: Path) -> None:
@@ -110,26 +123,31 @@ def draws_pictures(page: Path) -> bool:
     return programs_alone and page.stem in pictures.SHOWN.findall(text)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=tier(page)) for page in PAGES], ids=lambda page: str(page.relative_to(ROOT))
+)
 def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if draws_pictures(page):
         folder = pictures.drawn(page.stem, pictures.script_of(page.stem, {page: page.read_text(encoding="utf-8")}))
         assert (folder / pictures.WARNINGS).read_text(encoding="utf-8") == ""
         return
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "papers").symlink_to(ROOT / "papers")
     write_files(page, tmp_path)
     names: dict[str, object] = {"__name__": "__main__"}
     for example in examples(page):
         run(example, names, page)
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
+@pytest.mark.parametrize(
+    "path", [pytest.param(path, marks=tier(path)) for path in MODULES], ids=lambda path: str(path.relative_to(SOURCE))
+)
 def test_the_examples_in_docstrings_run(path: Path) -> None:
     module = importlib.import_module(".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__"))
     assert doctest.testmod(module).failed == 0
 
 
-@pytest.mark.parametrize("room", [sw, sw.export, sw.rig], ids=lambda room: str(room.__name__))
+@pytest.mark.parametrize("room", [sw, sw.diagnose, sw.export, sw.rig], ids=lambda room: str(room.__name__))
 def test_every_public_function_and_class_has_an_example(room: ModuleType) -> None:
     compiled = {"PassivityWarning"}  # an exception made in C++, which has a text alone
     public = [name for name in room.__all__ if callable(getattr(room, name)) and name not in compiled]

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import ast
-import os
-import runpy
 import shutil
 import tomllib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -16,56 +15,47 @@ import gallery as pages
 import numpy as np
 import pytest
 import strainwave as sw
+from run_script import read
 from scipy import signal
 from strainwave import _core
 
 ROOT = Path(__file__).resolve().parents[2] / "examples"
 SCRIPTS = sorted(ROOT.glob("*.py"))
 DRIVES = sorted((ROOT / "drives").glob("*.toml"))
-DRAWN_ONLY = ("01", "17")  # scripts whose values no test looks at: the run that drew the pages serves
+pytestmark = pytest.mark.slow("docs")  # an example runs for seconds, unless the pages were built
 
 
 @pytest.fixture(scope="module")
-def gallery(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str, Any]]:
-    """Runs the script of a number once, in a folder of its own, and gives what it has found by name."""
-    found: dict[str, dict[str, Any]] = {}
+def gallery() -> Callable[[str], dict[str, Any]]:
+    """Returns the values of the example of a number, by name, and its folder. The pages show the pictures of the same run."""
 
+    @cache
     def of(number: str) -> dict[str, Any]:
-        if number not in found:
-            (script,) = ROOT.glob(f"{number}_*.py")
-            folder, before, printing = tmp_path_factory.mktemp(script.stem), Path.cwd(), np.get_printoptions()
-            os.chdir(folder)
-            try:
-                found[number] = runpy.run_path(str(script), run_name="__main__") | {"folder": folder}
-            finally:
-                os.chdir(before)
-            assert np.get_printoptions() == printing  # else examples of pages that run later print other digits
-        return found[number]
+        folder = drawn(number)
+        return read(folder / pictures.VALUES) | {"folder": folder}
 
     return of
 
 
+def drawn(number: str) -> Path:
+    """Returns the folder of the example of a number."""
+    (script,) = ROOT.glob(f"{number}_*.py")
+    return pictures.drawn(script.stem, script.read_text(encoding="utf-8"))
+
+
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_an_example_says_what_it_shows_and_draws_it(
-    script: Path, gallery: Callable[[str], dict[str, Any]], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_example_says_what_it_shows_and_draws_it(script: Path) -> None:
     text = script.read_text(encoding="utf-8")
     assert len(ast.get_docstring(ast.parse(text)) or "") > 100
     assert 20 <= len(text.splitlines()) <= 80
-    if script.stem[:2] in DRAWN_ONLY:
-        folder = pictures.drawn(script.stem, text)
-        printed = (folder / pictures.PRINTED).read_text(encoding="utf-8")
-        assert (folder / pictures.WARNINGS).read_text(encoding="utf-8") == ""
-    else:
-        folder = gallery(script.stem[:2])["folder"]
-        printed = capsys.readouterr().out
-    assert printed  # its numbers
+    folder = drawn(script.stem[:2])
+    assert (folder / pictures.PRINTED).read_text(encoding="utf-8")  # its numbers
+    assert (folder / pictures.WARNINGS).read_text(encoding="utf-8") == ""
     assert [path.stat().st_size > 10_000 for path in folder.glob("*.png")] == [True]
 
 
 def test_a_compensated_joint_has_less_error_also_if_the_model_is_ten_percent_wrong() -> None:
-    script = ROOT / "17_compensated_joint.py"
-    printed = (pictures.drawn(script.stem, script.read_text(encoding="utf-8")) / pictures.PRINTED).read_text(encoding="utf-8")
+    printed = (drawn("17") / pictures.PRINTED).read_text(encoding="utf-8")
     cascade, compensated = (
         [float(each) for each in line.split("]")[1].split()] for line in printed.splitlines() if "error [urad]" in line
     )
@@ -453,7 +443,7 @@ def test_the_model_of_a_soft_gear_leads_also_if_its_loop_is_wide_or_narrow(galle
     found = gallery("22")
 
     def lag(name: str) -> float:
-        commands = [np.degrees(found["along"](step).value(found["time"])) for step in found["steps"]]
+        commands = [np.degrees(path.value(found["time"])) for path in found["paths"]]
         return max(float(np.abs(run - to).max()) for run, to in zip(found["runs"][name, "path"], commands, strict=True))
 
     assert lag("and model") < 0.1 * lag("motor, arm integrated")

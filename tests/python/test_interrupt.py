@@ -60,6 +60,7 @@ print(*(job for job in jobs if job in _core.loaded_jobs(DRIVE)))
 '''
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("kernels", ["off", os.environ["STRAINWAVE_KERNELS"]], ids=["general drive", "kernels"])
 def test_ctrl_c_ends_each_verb_on_its_way(kernels: str) -> None:
     variables = os.environ | {"STRAINWAVE_KERNELS": kernels}

@@ -135,6 +135,7 @@ def test_neither_torque_at_rest_nor_the_filters_answer_to_a_stop_reach_the_fit(c
 # --- statistics: seeds are fixed, so every run is the same
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("dwell", [0.0, 0.15])
 @pytest.mark.parametrize(("position_noise", "torque_noise"), [(2e-5, 0.05), (2e-5, 0.3), (1e-3, 0.05)])
 def test_truth_lies_within_three_deviations(dwell: float, position_noise: float, torque_noise: float) -> None:
@@ -149,6 +150,7 @@ def test_truth_lies_within_three_deviations(dwell: float, position_noise: float,
     assert np.mean(inside) >= 0.95
 
 
+@pytest.mark.slow("physics")
 def test_deviation_is_the_scatter_of_the_estimates() -> None:
     """Neither too small nor generous: 200 estimates scatter by 0.85 to 1.15 of what each record predicts."""
     position, torque, time = record(6000)
@@ -167,6 +169,7 @@ def textbook_deviation(rows: Regression, parameters: Array) -> Array:
     return np.sqrt(variance * np.diag(np.linalg.inv(rows.matrix.T @ rows.matrix)))
 
 
+@pytest.mark.slow("physics")
 def test_correlated_residuals_are_covered_where_the_textbook_covariance_is_not() -> None:
     position, torque, time = record(10_000)
     inside, textbook = [], []
@@ -215,6 +218,7 @@ def closed_loop(seed: int, samples: int = 6000) -> tuple[Array, Array, Array]:
     return measured, applied + sensor, time
 
 
+@pytest.mark.slow("physics")
 def test_closed_loop_does_not_bias_the_estimate() -> None:
     errors = np.array([in_deviations(rigid_drive(*closed_loop(seed))) for seed in range(40)])
     assert np.mean(np.all(np.abs(errors) < 3, axis=1)) >= 0.95

@@ -1,4 +1,4 @@
-"""Which part of the package may import which: arrows point one way, from the command down to the files."""
+"""Which part of the package may import which, by the map for contributors: from the command down to the files."""
 
 from __future__ import annotations
 
@@ -7,29 +7,15 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
+import pytest
 import strainwave as sw
 
+from tests.support.rooms import layers
+
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "orders", "identification", "tuning", "dataset", "diagnose", "export", "rig", "studies"}
-BELOW = {"drawing", "files", "native", "simulation"}
-LAYERS = {
-    "drawing": {"drawing"},
-    "files": {"drawing", "files"},
-    "native": {"files", "native"},
-    "simulation": BELOW,
-    "analysis": {*BELOW, "analysis"},
-    "orders": {*BELOW, "analysis", "orders"},
-    "identification": {*BELOW, "analysis", "orders", "identification"},
-    "tuning": {*BELOW, "analysis", "tuning"},
-    "dataset": {*BELOW, "dataset"},
-    "diagnose": {*BELOW, "analysis", "orders", "identification", "tuning", "diagnose"},
-    "export": {*BELOW, "tuning", "export"},
-    "rig": {*BELOW, "analysis", "orders", "identification", "rig"},
-    "studies": {*BELOW, "analysis", "orders", "diagnose", "studies"},
-    "report": {*BELOW, *ANALYSES, "report"},
-    "commands": {*BELOW, *ANALYSES, "report", "commands", "demo"},
-}
+LAYERS = layers()  # of the map for contributors
 TOP = {"__main__", "demo"}
 
 
@@ -44,12 +30,14 @@ def imported(path: Path) -> frozenset[str]:
     )
 
 
+@pytest.mark.slow("physics")
 def test_each_layer_imports_from_those_below_alone() -> None:
     known = {*LAYERS, *TOP}
     for layer, below in LAYERS.items():
         for path in sorted((PACKAGE / layer).rglob("*.py")):
             parts = {name.split(".")[0] for name in imported(path)} & known
-            assert parts <= below, f"{path.relative_to(PACKAGE)} imports {parts - below}"
+            above = parts - below - ({"demo"} if layer == "commands" else set())  # a verb, and a script of its own
+            assert above == set(), f"{path.relative_to(PACKAGE)} imports {above}"
 
 
 def test_nothing_imports_the_command_but_its_start() -> None:
@@ -57,6 +45,7 @@ def test_nothing_imports_the_command_but_its_start() -> None:
     assert users == {"__main__"}
 
 
+@pytest.mark.slow("physics")
 def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs() -> None:
     code = "import strainwave.{}, sys; print({} & sys.modules.keys())"
     for module, heavy in (
@@ -65,3 +54,15 @@ def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs(
     ):
         done = subprocess.run([sys.executable, "-c", code.format(module, heavy)], capture_output=True, text=True, check=True)
         assert done.stdout.strip() == "set()", module
+
+
+def test_papers_import_public_modules_alone() -> None:
+    public = {f"strainwave.{name}" for name in sw.__all__ if isinstance(getattr(sw, name), ModuleType)}
+    scripts = sorted((Path(__file__).parents[2] / "papers").rglob("*.py"))
+    assert scripts
+    for path in scripts:
+        nodes = list(ast.walk(ast.parse(path.read_text())))
+        of = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+        plain = {each.name for node in nodes if isinstance(node, ast.Import) for each in node.names}
+        private = {name for name in of | plain if name.startswith("strainwave.")} - public
+        assert not private, f"{path.parent.name}/{path.name} imports {private}"

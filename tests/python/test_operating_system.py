@@ -100,6 +100,7 @@ def printed(folder: Path) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow("physics")
 def test_every_module_is_imported(printed: dict[str, Any]) -> None:
     package = Path(sw.__file__).parent
     files = {path.relative_to(package).with_suffix("") for path in package.rglob("*.py")} - {Path("__init__")}
@@ -107,11 +108,13 @@ def test_every_module_is_imported(printed: dict[str, Any]) -> None:
     assert set(printed["modules"]) - {"strainwave._core"} == names
 
 
+@pytest.mark.slow("physics")
 def test_a_run_has_the_same_bits(printed: dict[str, Any]) -> None:
     run = sw.simulate(sw.load("tilt-actuator"), sw.scenario.sine(0.1, 2.0, 0.2), 1e-4)
     assert printed["torque"] == hashlib.sha256(run["torque"].tobytes()).hexdigest()
 
 
+@pytest.mark.slow("physics")
 def test_files_are_written_and_replaced_and_no_draft_is_left(folder: Path, printed: dict[str, Any]) -> None:
     assert printed["same"]
     assert (folder / "text.txt").read_bytes() == "ä\n".encode()
@@ -120,11 +123,13 @@ def test_files_are_written_and_replaced_and_no_draft_is_left(folder: Path, print
     assert not list(folder.rglob(".strainwave*"))
 
 
+@pytest.mark.slow("physics")
 def test_a_claimed_folder_is_refused_to_others(printed: dict[str, Any]) -> None:
     refusal = f"{Path('..')}/windows0 is being written by another process; wait until it ends"
     assert printed["claims"] == [refusal, refusal]
 
 
+@pytest.mark.slow("physics")
 def test_a_data_set_is_the_same(folder: Path, printed: dict[str, Any], tmp_path: Path) -> None:
     """Its list of digests names all files, as on this system. The worker goes on though its parent is another process."""
     make(folder / "plan.toml", tmp_path / "set", runner="slurm", workers=1).unlink()
@@ -132,10 +137,12 @@ def test_a_data_set_is_the_same(folder: Path, printed: dict[str, Any], tmp_path:
     assert (folder / "set" / "SHA256SUMS").read_bytes() == (tmp_path / "set" / "SHA256SUMS").read_bytes()
 
 
+@pytest.mark.slow("physics")
 def test_an_ensemble_is_complete(folder: Path) -> None:
     assert sw.Ensemble.read(folder / "ensemble").parameters["motor.resistance"].tolist() == [1.0, 1.1]
 
 
+@pytest.mark.slow("physics")
 def test_a_gear_is_identified(folder: Path) -> None:
     assert sorted(path.name for path in (folder / "out").iterdir()) == [
         "gear.toml",
@@ -147,6 +154,7 @@ def test_a_gear_is_identified(folder: Path) -> None:
     assert friction.coulomb == pytest.approx(FRICTION.coulomb, rel=0.05)
 
 
+@pytest.mark.slow("physics")
 def test_the_command_states_that_no_kernel_is_used(printed: dict[str, Any]) -> None:
     reason = "there are none on Windows; the general code gives the same numbers"
     assert printed["cache"] == f"no kernel is used: {reason}\n"

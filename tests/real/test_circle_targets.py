@@ -36,6 +36,7 @@ def markers(image: Image) -> list[Marker]:
     return find_markers(image.grey, radius=(4.5, 30.0), dark=True)
 
 
+@pytest.mark.slow("rig")
 def test_most_of_the_targets_are_found_and_hardly_anything_else(image: Image, markers: list[Marker]) -> None:
     print(f"\n{len(markers)} round dark spots of 4.5 to 30 px in radius")
     assert image.grey.shape == (2000, 3000)
@@ -43,6 +44,7 @@ def test_most_of_the_targets_are_found_and_hardly_anything_else(image: Image, ma
     assert len(markers) > 200
 
 
+@pytest.mark.slow("rig")
 @pytest.mark.parametrize("place", WALL + FLOOR)
 def test_discs_that_one_sees_are_among_them(markers: list[Marker], place: tuple[int, int]) -> None:
     near = min(markers, key=lambda marker: np.hypot(marker.x - place[0], marker.y - place[1]))
@@ -52,6 +54,7 @@ def test_discs_that_one_sees_are_among_them(markers: list[Marker], place: tuple[
     assert near.contrast > 0.2
 
 
+@pytest.mark.slow("rig")
 def test_it_says_why_this_is_no_test_with_two_markers() -> None:
     frame = look(PHOTOGRAPH)
     assert frame.markers is None

@@ -39,6 +39,7 @@ def measured(name: str) -> TorsionLoop:
     return TorsionLoop.of(recording, sw.Gear())
 
 
+@pytest.mark.slow("rig")
 @pytest.mark.parametrize("name", LOOPS)
 def test_a_measured_loop_is_predicted_where_it_was_held_out(name: str, record_property: Callable[[str, object], None]) -> None:
     loop = measured(name)
@@ -52,6 +53,7 @@ def test_a_measured_loop_is_predicted_where_it_was_held_out(name: str, record_pr
     assert held_out < 0.4 * without  # the memory is what explains the loop
 
 
+@pytest.mark.slow("rig")
 @pytest.mark.parametrize("name", LOOPS[::2][: sample(1, 3)])  # one of each gear, if samples are whole
 def test_all_models_are_ranked_on_a_measured_loop(name: str) -> None:
     """The friction of the motor is inside these loops; nothing of it is known, so all of it counts as hysteresis."""

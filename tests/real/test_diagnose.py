@@ -118,6 +118,7 @@ def blind(joint: Joint) -> Diagnosis:
     return diagnosed([as_run(joint, joint.recording, joint.name)], Question())
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
 def test_the_ripple_of_a_ur10e_joint_is_found_blind_with_amplitudes_by_direction_and_load(joint: int) -> None:
     """Its gear of 101 has lines at 202, or at 200, as either spline sees the wave generator."""
@@ -132,6 +133,7 @@ def test_the_ripple_of_a_ur10e_joint_is_found_blind_with_amplitudes_by_direction
     assert max(each.amplitude / each.sigma for each in run.wave.cells) > 4.0
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("joint", [5, 6])
 def test_a_kinova_joint_at_constant_speed_has_its_ratio_blind_and_its_ripple_at_that_ratio(joint: int) -> None:
     (run,) = blind(of_kinova(ARMS / "kinova-gen3" / f"joint_{joint}_trapez.csv", joint)).runs
@@ -157,6 +159,7 @@ def test_no_wave_generator_is_found_in_a_direct_drive() -> None:
     assert examined >= 3
 
 
+@pytest.mark.slow("diagnose")
 def test_halves_of_one_healthy_joint_give_no_alarm_and_added_ripple_does() -> None:
     """Most recordings are too short, or move otherwise in their second half, and say so."""
     counts = {"compared": 0, "alarm": 0, "not comparable": 0, "added ripple found": 0}

@@ -48,6 +48,7 @@ def number(path: str) -> FileEstimate:
     return next((each.estimate for each in found if each.source == "records at constant speed"), found[0].estimate)
 
 
+@pytest.mark.slow("identification")
 def test_friction_and_gravity_are_those_of_a_regression_over_all_moving_rows() -> None:
     rows = []
     for name, (time, angle, torque) in pairs().items():
@@ -72,6 +73,7 @@ def test_sweeps_with_irregular_speed_and_rest_at_the_end_are_runs_at_constant_sp
     assert not any(each.refused for each in runs)
 
 
+@pytest.mark.slow("identification")
 def test_loops_inside_stiction_are_presliding_and_a_ramp_breaks_away_behind_them() -> None:
     kinds = {each.name: each.recognised.kind for each in arm().files if each.recognised is not None}
     loops = [each for each in arm().files if each.name.startswith("sig0")]

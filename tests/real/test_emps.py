@@ -165,6 +165,7 @@ def test_pulses_are_a_voltage_added_to_the_controller_output(identification: Log
     assert relative(without.torque - without.matrix @ PUBLISHED, without.torque) > 0.5
 
 
+@pytest.mark.slow("identification")
 def test_the_best_friction_predicts_the_second_record_better_than_coulombs(
     identification: Log, validation: Log, report: Report
 ) -> None:

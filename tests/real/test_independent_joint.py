@@ -18,6 +18,7 @@ LOG_SECONDS, LOG_RATE = 15, 500  # s, Hz
 MAX_SHARE = 0.1  # of the error of the tuned cascade with constant feed-forward
 
 
+@pytest.mark.slow("identification")
 def test_the_firmware_takes_away_nine_tenths_of_the_error(tmp_path: Path) -> None:
     for name in independent_joint.FILES:
         shutil.copy(measured(3) / name, tmp_path)

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.rig.influence.influence import JOINT_FRICTION_FALL_RATE
 from strainwave.rig.influence.series import Series, analyse_series, figures_of
 from strainwave.rig.influence.trend import Trend
 from strainwave.rig.loop import Loop
+from torsion_influences import JOINT_FRICTION_FALL_RATE
 
 Array = NDArray[np.float64]
 
@@ -48,6 +48,7 @@ def by_torque(loops: tuple[list[Loop], list[str]]) -> dict[str, Trend]:
     return trends
 
 
+@pytest.mark.slow("rig")
 def test_area_and_width_grow_with_the_torque(by_torque: dict[str, Trend]) -> None:
     """As document T has it: 28 loops of +-4 and +-25 to 36 N.m, three builds."""
     for name in ("area", "width"):
@@ -58,12 +59,14 @@ def test_area_and_width_grow_with_the_torque(by_torque: dict[str, Trend]) -> Non
     assert by_torque["area"].interval[0] > by_torque["width"].interval[1]  # it also grows along the torque
 
 
+@pytest.mark.slow("rig")
 def test_the_slope_of_unloading_falls_with_the_torque(by_torque: dict[str, Trend]) -> None:
     """Against document T's first entry: friction within holds the shaft over more of a small loop than of a large one."""
     assert by_torque["high_stiffness"].significant
     assert by_torque["high_stiffness"].interval[1] < 0.0
 
 
+@pytest.mark.slow("rig")
 def test_areas_are_those_of_polygons(loops: tuple[list[Loop], list[str]]) -> None:
     """By Gauss's formula over all points of a loop."""
     for loop, area in zip(loops[0], figures_of(loops[0])["area"], strict=True):

@@ -17,6 +17,7 @@ QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backd
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"trials not found: {FOLDER} (set STRAINWAVE_TRIALS)")
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize(
     ("name", "quadrants"),
     [

@@ -46,6 +46,7 @@ def test_a_cycle_to_four_percent_has_the_lost_motion_of_the_gear() -> None:
     assert found.lost_motion.value == pytest.approx(truth, rel=0.02)
 
 
+@pytest.mark.slow("rig")
 def test_the_whole_loop_has_the_losses_and_the_spring_of_the_gear() -> None:
     found = analyse(read_loop(FOLDER / "full.csv"), rated_torque=RATED)
     assert not found.whole_angle

@@ -25,6 +25,7 @@ MAX_OUTLIERS = 0.01  # of the samples of a channel without any
 pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason=f"measured data not found: {DATA} (set STRAINWAVE_DATA)")
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("joint", ["left-hip-pitch", "right-knee"])
 def test_the_delay_of_a_joint_turned_by_hand_is_bounded(joint: str) -> None:
     """Without a bound the torque of the hand comes 3.8 s, or 1.2 s, before the motion that it makes."""
@@ -38,6 +39,7 @@ def test_the_delay_of_a_joint_turned_by_hand_is_bounded(joint: str) -> None:
     assert all(abs(delay) < MAX_DELAY_SAMPLES * step for delay in delays)
 
 
+@pytest.mark.slow("identification")
 def test_friction_in_amperes_without_a_torque_constant_is_that_of_the_joint() -> None:
     """By stiffness in N.m/rad over inertia in A.s2/rad the pass band ends at 1.5 Hz: 0.55 A, where 1.8 A are right."""
     columns = {"time": "1", "output_angle": "2", "output_speed": "8", "current": "14"}
@@ -72,6 +74,7 @@ def values(result: FileResult) -> dict[str, float]:
     return {each.path.rpartition(".")[2]: each.value for each in result.estimates}
 
 
+@pytest.mark.slow("identification")
 def test_a_delay_that_another_part_hides_is_found() -> None:
     """The pass band shows no delay of two samples without the loss under load, and no loss without the delay."""
 
@@ -83,6 +86,7 @@ def test_a_delay_that_another_part_hides_is_found() -> None:
     assert delayed["gravity_torque"] == pytest.approx(as_recorded["gravity_torque"], rel=0.01)
 
 
+@pytest.mark.slow("identification")
 def test_a_gap_takes_no_part() -> None:
     """Rows invented across seven seconds made Coulomb's torque 1.43 A where 0.98 A are right, and the loss vanish."""
 
@@ -94,6 +98,7 @@ def test_a_gap_takes_no_part() -> None:
         assert with_a_gap[name] == pytest.approx(as_recorded[name], rel=0.03)
 
 
+@pytest.mark.slow("identification")
 def test_rounding_of_the_time_decides_nothing() -> None:
     """Soundness of an instant between samples flipped with 1e-13 s, and with it the model."""
 
@@ -126,6 +131,7 @@ def test_a_motor_beside_a_joint_without_an_encoder_is_counted_at_the_joint() -> 
     assert not any(name.startswith("output_") for name in found.columns)
 
 
+@pytest.mark.slow("identification")
 def test_a_log_of_a_speed_alone_determines_what_its_angle_would() -> None:
     """The angle is summed up from the speed; only the phase of gravity counts from another zero."""
     table = np.loadtxt(DATA / "ur10e" / "ur-20_01_22-joint_2.csv", delimiter=",")

@@ -44,6 +44,7 @@ def told(path: Path) -> OrdersFound:
     return orders_found(recognise(path).recording, path.name)
 
 
+@pytest.mark.slow("orders")
 @joint_is_here
 @pytest.mark.parametrize("name", ["log_full.csv", "two_loads/light.csv", "two_loads/middle.csv", "two_loads/heavy.csv"])
 def test_two_encoders_tell_the_error_of_an_independent_joint(folder: Path, name: str) -> None:
@@ -105,6 +106,7 @@ def of_the_ur10e(joint: int, others: bool) -> FileMapping:
     return FileMapping(columns=columns, units={"output_angle": "rad", "current": "A"})
 
 
+@pytest.mark.slow("orders")
 @arms_are_here
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
 def test_a_joint_of_the_ur10e_alone_has_its_ratio(joint: int) -> None:
@@ -117,6 +119,7 @@ def test_a_joint_of_the_ur10e_alone_has_its_ratio(joint: int) -> None:
     assert set(found.concluded) <= {100, 101}
 
 
+@pytest.mark.slow("orders")
 @arms_are_here
 @pytest.mark.parametrize("others", [True, False])
 @pytest.mark.parametrize("name", ["01_17-ptp_10_points", "02_05-20sec_12harm", "02_19_14harm50secLoad"])
@@ -131,6 +134,7 @@ def test_no_joint_of_the_moving_ur10e_gets_a_ratio_of_another(name: str, others:
         assert any(each.kind == "joint" and abs(each.order - 201.0) < 3.0 for ripple in found for each in ripple.lines)
 
 
+@pytest.mark.slow("orders")
 @arms_are_here
 @pytest.mark.parametrize("name", ["joint_{}_trapez.csv", "Trajectory1.csv", "RunTrajectory1.csv"])
 def test_no_joint_of_the_kinova_gets_another_ratio_than_100(name: str) -> None:

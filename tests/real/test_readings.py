@@ -49,6 +49,7 @@ def values(found: Identified) -> dict[str, float]:
     return {each.estimate.path: each.estimate.value for each in found.parameters}
 
 
+@pytest.mark.slow("identification")
 @needs_trials
 @pytest.mark.parametrize(
     "name", ["moteus/output.csv", "epos/permille.csv", "twincat/scope_single.csv", "plotjuggler/export.csv"]
@@ -61,12 +62,14 @@ def test_a_joint_is_right_at_the_first_command_or_with_the_options_of_the_questi
     assert values(found)["gear.friction_input.viscous"] == pytest.approx(4e-4, rel=0.01)
 
 
+@pytest.mark.slow("identification")
 @needs_trials
 def test_revolutions_at_the_output_are_decided_by_what_each_reading_leaves() -> None:
     (result,) = identify("csg-20-100", [TRIALS / "moteus" / "output.csv"]).files
     assert result.remarks[0].startswith("read as rev, rev/s at the output, which leaves 1.2 % of TORQUE unexplained")
 
 
+@pytest.mark.slow("identification")
 @needs_arms
 def test_friction_of_a_robot_with_its_motor_in_joint_units() -> None:
     """Published for axis 1: 375 to 420 N.m and 1700 to 1900 N.m.s/rad at the joint; a single stroke tells it to some 8 %."""
@@ -79,6 +82,7 @@ def test_friction_of_a_robot_with_its_motor_in_joint_units() -> None:
     assert "friction of the start set" in {each.name for each in found.failed}  # which is of another size
 
 
+@pytest.mark.slow("identification")
 @needs_trials
 def test_rank_reads_a_log_as_identify_does() -> None:
     read, start = read_measurements(measurement_files([TRIALS / "moteus" / "output.csv"]), None, GearSet.read("csg-20-100"))
@@ -88,6 +92,7 @@ def test_rank_reads_a_log_as_identify_does() -> None:
     assert rank(start, file)[0].error < 0.8  # N.m of 19; 0.98 in radians
 
 
+@pytest.mark.slow("identification")
 @needs_arms
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_sign_that_is_given_changes_no_number_of_a_joint_turned_by_hand(sign: int) -> None:

@@ -17,6 +17,7 @@ CHOSEN = (
 TRIALS = [trial for trial in real_joints.trials() if trial.file in CHOSEN]
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("trial", TRIALS, ids=lambda trial: trial.file)
 def test_a_joint_that_moves_alone_is_predicted_better_than_by_plain_least_squares(trial: real_joints.Trial) -> None:
     found = real_joints.outcome(trial)
@@ -34,6 +35,7 @@ def test_a_record_one_way_at_one_speed_determines_the_friction_there() -> None:
     assert not found.failed
 
 
+@pytest.mark.slow("identification")
 def test_halves_of_a_record_determine_the_same_numbers() -> None:
     (trial,) = (each for each in real_joints.trials() if each.file == "ur10e/ur-20_01_22-joint_2.csv")
     pairs = list(real_joints.halves(trial))
@@ -41,6 +43,7 @@ def test_halves_of_a_record_determine_the_same_numbers() -> None:
     assert sum(pair.apart < real_joints.MAX_DISTANCE for pair in pairs) >= real_joints.MIN_WITHIN * len(pairs)
 
 
+@pytest.mark.slow("identification")
 def test_one_speed_beside_other_joints_that_move_is_no_friction() -> None:
     """The torque of a joint that holds an arm up is not its friction: 13 N.m, and a gear written."""
     (trial,) = (each for each in real_joints.trials() if each.name == "kinova-gen3/RunTrajectory1.csv 2")

@@ -51,6 +51,7 @@ def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float]
     return by_the_first_half
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
 def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int, float], sw.Prediction]) -> None:
     found = predicted(joint, TORQUE_CONSTANT)
@@ -65,10 +66,12 @@ def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int
     assert any(each.kind in ("order", "either") and abs(each.order - 2.0) < 0.05 for each in found.lines)
 
 
+@pytest.mark.slow("identification")
 def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int, float], sw.Prediction]) -> None:
     assert predicted(2, 4.0 * TORQUE_CONSTANT).error == pytest.approx(predicted(2, TORQUE_CONSTANT).error, rel=0.05)
 
 
+@pytest.mark.slow("identification")
 def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: Path) -> None:
     """Joint 1 shows another friction at low speed, joint 2 a loss under load: together they are the friction of none."""
     files = [tmp_path / name for name in ("a.csv", "b.csv")]
@@ -82,6 +85,7 @@ def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: P
     assert "steady_friction" in check.message
 
 
+@pytest.mark.slow("identification")
 def test_halves_of_a_joint_do_not_contradict_each_other(tmp_path: Path) -> None:
     for joint in (1, 2):
         (tmp_path / str(joint)).mkdir()

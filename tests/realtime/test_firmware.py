@@ -52,17 +52,20 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow("export")
 def test_a_step_asks_for_mathematics_and_nothing_else(programs: Path) -> None:
     """No heap, no exception, no initialisation, not even a routine that copies."""
     assert undefined(programs) <= LIBM
 
 
+@pytest.mark.slow("export")
 def test_a_step_on_a_microcontroller_is_in_single_precision_throughout(tmp_path: Path) -> None:
     """Clang copies and clears a state by calling memcpy and memset, which every freestanding environment has to provide."""
     assert compilation(zig(), tmp_path, {"steps.cpp": HEADERS + "".join(STEPS.values())}, *CORTEX, *FIRMWARE) == (0, "")
     assert undefined(tmp_path) <= LIBM | {"memcpy", "memset"}
 
 
+@pytest.mark.slow("export")
 def test_the_stack_of_a_step_is_known_and_small(programs: Path, record_property: Callable[[str, object], None]) -> None:
     """The sum over all functions of a drive bounds the deepest chain of calls, as none calls itself."""
     for usage in programs.glob("*.su"):
@@ -74,6 +77,7 @@ def test_the_stack_of_a_step_is_known_and_small(programs: Path, record_property:
         assert 0 < stack < (26 if large else 20) * 1024  # 20 with laws that modulate others at all three places
 
 
+@pytest.mark.slow("export")
 def test_the_code_of_a_step_fits_a_microcontroller(programs: Path, record_property: Callable[[str, object], None]) -> None:
     for program in programs.glob("*.o"):
         symbols = [line.split() for line in printed("nm", "--print-size", "--defined-only", program) if len(line.split()) == 4]

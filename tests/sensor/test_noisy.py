@@ -81,6 +81,7 @@ def test_samples_half_a_bandwidth_apart_are_close_to_independent(multiple: int) 
     assert abs(np.mean(correlations)) < 0.1
 
 
+@pytest.mark.slow("physics")
 def test_different_seeds_have_nothing_in_common() -> None:
     seeds = [0, 1, 2, 3, 4096, 4097, 8192, 16777215]
     found = np.stack([heard(seed) for seed in seeds]) / AMPLITUDE

@@ -83,6 +83,7 @@ def agree(run: sw.Recording, known: dict[str, np.ndarray], tolerance: float) -> 
         assert np.abs(run[name] - values).max() <= tolerance * np.abs(values).max(), name
 
 
+@pytest.mark.slow("physics")
 @orientation
 @pytest.mark.parametrize("vary", [lambda gear: gear, everywhere], ids=["even", "varying"])
 @pytest.mark.parametrize("speed", [0.0, 70.0])
@@ -94,6 +95,7 @@ def test_a_run_is_what_the_equations_integrated_by_scipy_give(fixed: str, vary: 
     agree(run, known, 1e-8)
 
 
+@pytest.mark.slow("physics")
 @orientation
 @pytest.mark.parametrize("combine", ["single", "mean", "max"])
 def test_misalignment_moves_the_stages_as_the_equations_have_it(fixed: str, combine: str) -> None:
@@ -282,6 +284,7 @@ FRICTIONS = {
 }
 
 
+@pytest.mark.slow("physics")
 @orientation
 @pytest.mark.parametrize(("seed", "error"), [(0, ERROR), (1, MISALIGNED), (2, RELIEVED)])
 @pytest.mark.parametrize("friction", FRICTIONS.values(), ids=FRICTIONS)
@@ -376,6 +379,7 @@ def test_stiff_and_light_stages_answer_as_the_lumped_gear_does(fixed: str) -> No
             assert np.abs(staged.response(frequency, name, source) - known).max() < 1e-6 * np.abs(known).max()
 
 
+@pytest.mark.slow("physics")
 @orientation
 def test_the_stiffer_and_lighter_the_stages_the_closer_a_run_is_to_the_lumped_gear(fixed: str) -> None:
     """In proportion to compliance and mass, so that twice as stiff and light it is half as far."""

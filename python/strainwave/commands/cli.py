@@ -26,6 +26,7 @@ from strainwave.commands.drives import drives
 from strainwave.commands.export import export
 from strainwave.commands.gears import gears
 from strainwave.commands.identify import identify
+from strainwave.commands.misalignment import misalignment
 from strainwave.commands.models import models
 from strainwave.commands.orders import orders
 from strainwave.commands.plan_experiments import plan_experiments
@@ -34,7 +35,6 @@ from strainwave.commands.rank import rank
 from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
-from strainwave.commands.study import study
 from strainwave.messages import one_line, with_options
 
 VERBS = (
@@ -43,6 +43,7 @@ VERBS = (
     rank,
     orders,
     diagnose,
+    misalignment,
     plan_experiments,
     compensate,
     demo,
@@ -69,7 +70,6 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help: rich alone takes longer to import than the help may take to appear
     pretty_exceptions_enable=False,
 )
-app.add_typer(study, name="study")
 app.add_typer(rig, name="rig")
 app.add_typer(export, name="export")
 for verb in VERBS:

@@ -1,4 +1,4 @@
-"""The command `strainwave demo`: gears from published measurements, and published experiments simulated with one of them."""
+"""The command `strainwave demo`: two gears from published measurements."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ EXPECTED = (
 
 
 def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
-    """Identify two gears from published measurements, and simulate published experiments with one of them."""
-    from strainwave.demo import PUBLISHED, experiments, position_drive, torsion_rig
+    """Identify two gears from published measurements, and write a gear file and a report of each."""
+    from strainwave.demo import PUBLISHED, position_drive, torsion_rig
     from strainwave.files.writing import write_folder
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
@@ -26,10 +26,9 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
         for name, identify in (("torsion-rig", torsion_rig), ("position-drive", position_drive)):
             turn(name.replace("-", " "))
             found = identify()
-            runs = experiments(found) if name == "position-drive" else []
             published = PUBLISHED.glob(f"{'torsional' if name == 'torsion-rig' else 'position'}*")
             provenance = Provenance.of_this_command(published)
-            write_folder(out / name, identify_files(found, provenance, accepted=True, experiments=runs))
+            write_folder(out / name, identify_files(found, provenance, accepted=True))
             print("\n".join(identify_summary(found)))
             if found.failed and name == "position-drive":
                 print(EXPECTED)

@@ -1,219 +1,141 @@
-"""The command `strainwave export`: a gear in the form of another program, with what that form loses."""
+"""The command `strainwave export`: a gear in the form of another program, with what that form loses.
+
+The verbs are made of the functions of `strainwave.export.FORMS`: each argument is an option, described as in the docstring.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import re
+from collections.abc import Callable, Collection, Iterator
+from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from types import NoneType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args, get_origin
 
 import typer
+from typer.core import TyperGroup
 
 from strainwave.commands.options import numeric, whole
 
 if TYPE_CHECKING:
-    from strainwave.export.exported import Exported
+    from strainwave.export.exported import Exported, Form
 
-export = typer.Typer(help="Write a gear in the form of another program, and state what that form loses.")
+
+class Exports(TyperGroup):
+    """The verbs of all exports, made at their first use: what they import takes longer than the help of others may take."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        from strainwave.export import FORMS
+
+        written_here = dict(self.commands)
+        self.commands = {form.verb: written_here.pop(form.verb, None) or verb_of(form) for form in FORMS} | written_here
+        return super().list_commands(ctx)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        self.list_commands(ctx)
+        return super().get_command(ctx, cmd_name)
+
+
+export = typer.Typer(cls=Exports, help="Write a gear in the form of another program, and state what that form loses.")
 
 Gear = Annotated[str, typer.Argument(help="A gear or drive: a set by name, or a file as identify writes it.")]
-Torque = Annotated[float | None, numeric("Largest torque at the output in N.m; usually the peak torque of the ratings.")]
-Name = Annotated[str, typer.Option(help="Of the gear in the files.")]
 Drive = Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")]
-Step = Annotated[float | None, numeric("Internal step in s; 0.2 ms, or shorter if the drive needs that.")]
-Into = Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")]
-Joint = Annotated[str | None, typer.Option(help="With --into: name of the hinge behind the gear.")]
-LoadInertia = Annotated[float | None, numeric("Inertia at the output in kg.m2; usually that of the load.")]
-Draws = Annotated[int, whole("Number of drawn gears, for domain randomisation.")]
-Seed = Annotated[int, whole("Seed of the draw.")]
+MODELS = {"gear": Gear, "drive": Drive}
 Out = Annotated[Path, typer.Option(help="Folder for the files written.", file_okay=False)]
 
 
-@export.command("joint")
-def joint(
-    gear: Gear,
-    max_torque: Torque = None,
-    name: Name = "gear",
-    out: Out = Path("out/joint"),
-) -> None:
-    """Numbers of a joint without a gear: frictionloss, armature, damping for MuJoCo; dynamics and transmission for URDF."""
-    from strainwave.export.joint_numbers import joint as exported
+class Conversion(NamedTuple):
+    """An option whose value is another one than that of the argument, and the function that converts it."""
+
+    annotation: Any
+    argument: Callable[[Any], Any]
+
+
+def _model_text(file: Path | None) -> str | None:
+    """Return the text of the MJCF file of a robot; None if none is given."""
+    from strainwave.export.mujoco import MAX_MODEL_BYTES
+    from strainwave.files.budget import read_text
+
+    return None if file is None else read_text(file, MAX_MODEL_BYTES)
+
+
+def _with_binaries(platforms: list[str] | None) -> list[str] | None:
+    """Return the platforms that get a binary; None if none is given."""
+    return None if platforms is None else [each for each in platforms if each != "source"]
+
+
+CONVERSIONS = {
+    "into": Conversion(Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")], _model_text),
+    "platforms": Conversion(
+        Annotated[
+            list[str] | None,
+            typer.Option(
+                "--platform",
+                help="Of a binary, as x86_64-windows; may be repeated. `source` makes no binary. Default: this machine.",
+            ),
+        ],
+        _with_binaries,
+    ),
+}
+
+
+def verb_of(form: Form) -> Any:
+    """Return the verb of an export, which writes the files into a folder and prints the losses."""
     from strainwave.files.gear_set import GearSet
 
-    _write(exported(GearSet.read(gear), max_torque=max_torque, name=name), out)
+    summary, meanings = described(form.write)
+    model, *others = signature(form.write, eval_str=True).parameters.values()
+    first = model.replace(name=form.model, annotation=MODELS[form.model])
+    options = [option for each in others for option in option_of(each, meanings)]
+    out = Parameter("out", Parameter.KEYWORD_ONLY, default=Path("out", form.folder or form.verb), annotation=Out)
+
+    def verb(**values: Any) -> None:
+        gear, folder = GearSet.read(values.pop(form.model)), values.pop("out")
+        for name in CONVERSIONS.keys() & values:
+            values[name] = CONVERSIONS[name].argument(values[name])
+        _write(form.write(gear, **values), folder)
+
+    parameters = [first, *options, out]
+    verb.__signature__ = signature(verb).replace(parameters=parameters)  # type: ignore[attr-defined]
+    verb.__annotations__ = {each.name: each.annotation for each in parameters}
+    alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+    alone.command(form.verb, help=summary)(verb)
+    return typer.main.get_command(alone)
 
 
-@export.command("mjcf")
-def mjcf(
-    gear: Gear,
-    max_torque: Torque = None,
-    load_inertia: LoadInertia = None,
-    into: Into = None,
-    joint: Joint = None,
-    draws: Draws = 0,
-    seed: Seed = 0,
-    name: Name = "gear",
-    out: Out = Path("out/mjcf"),
-) -> None:
-    """A model for MuJoCo without a plugin: twist with hysteresis, friction with a bristle, motor; alone or in a robot."""
-    from strainwave.export.mujoco import mjcf as exported
-    from strainwave.files.gear_set import GearSet
-
-    found = exported(
-        GearSet.read(gear), max_torque=max_torque, load_inertia=load_inertia, into=_model_text(into), joint=joint, draws=draws,
-        seed=seed, name=name,
-    )  # fmt: skip
-    _write(found, out)
+def option_of(parameter: Parameter, meanings: dict[str, str]) -> Iterator[Parameter]:
+    """Yield the option of an argument; none if its value is none that a command line can have."""
+    annotation = str if get_origin(parameter.annotation) is Literal else parameter.annotation
+    kinds = {*(get_args(annotation) or (annotation,))} - {NoneType}
+    if parameter.name in CONVERSIONS:
+        yield parameter.replace(annotation=CONVERSIONS[parameter.name].annotation)
+    elif kinds <= {str, float, int, bool}:
+        option = _option(parameter, kinds, meanings[parameter.name])
+        yield parameter.replace(annotation=Annotated[annotation, option], kind=Parameter.KEYWORD_ONLY)
 
 
-@export.command("ros2")
-def ros2(
-    gear: Gear,
-    max_torque: Torque = None,
-    name: Annotated[str, typer.Option(help="Of the joint.")] = "joint",
-    out: Out = Path("out/ros2"),
-) -> None:
-    """Limits, feed-forward and transmission of a joint for ros2_control, and a node that simulates its drive."""
-    from strainwave.export.ros2 import ros2 as exported
-    from strainwave.files.gear_set import GearSet
-
-    _write(exported(GearSet.read(gear), max_torque=max_torque, name=name), out)
+def _option(parameter: Parameter, kinds: set[Any], meaning: str) -> Any:
+    if parameter.default is Parameter.empty:
+        return typer.Argument(help=meaning)
+    if parameter.default is False:
+        return typer.Option(f"--{parameter.name.replace('_', '-')}", help=meaning)  # without --no-…
+    if float in kinds:
+        return numeric(meaning)
+    return whole(meaning) if int in kinds else typer.Option(help=meaning)
 
 
-@export.command("bam")
-def bam(
-    gear: Gear,
-    max_torque: Torque = None,
-    actuator: Annotated[str, typer.Option(help="Name of an actuator that BAM has, with its control law.")] = "erob80_100",
-    out: Out = Path("out/bam"),
-) -> None:
-    """Parameters of BAM (better actuator models), with friction, inertia and torque constant at the output."""
-    from strainwave.export.bam_parameters import bam as exported
-    from strainwave.files.gear_set import GearSet
-
-    _write(exported(GearSet.read(gear), actuator=actuator, max_torque=max_torque), out)
+def described(function: Callable[..., Any]) -> tuple[str, dict[str, str]]:
+    """Return what a function returns, by the first line of its docstring, and the meaning of each argument, as sentences."""
+    text = cleandoc(function.__doc__ or "")
+    summary, _, rest = text.partition("\n\n")
+    (arguments,) = re.findall(r"^Args:\n((?: .*\n)+)", rest, re.MULTILINE)
+    entries = re.findall(r"^    (\w+): (.*(?:\n {8}.*)*)", arguments, re.MULTILINE)
+    return _sentence(summary.removeprefix("Return ").rstrip(".")), {name: _sentence(meaning) for name, meaning in entries}
 
 
-@export.command("slot")
-def slot(
-    gear: Gear,
-    name: Annotated[
-        str,
-        typer.Argument(help="coulomb-viscous, speed-table, viscous-coulomb-scale, anticogging-map or torque-offset."),
-    ],
-    side: Annotated[str, typer.Option(help="Shaft of speeds and torques: input or output.")] = "input",
-    unit: Annotated[str, typer.Option(help="N.m or, at the input, A.")] = "N.m",
-    speed: Annotated[float | None, numeric("Of the output in rad/s: the largest, of a map that of the motion.")] = None,
-    threshold: Annotated[float | None, numeric("Lowest speed of the output in rad/s; usually 1 % of the largest.")] = None,
-    points: Annotated[int | None, whole("Number of points of a table.")] = None,
-    load: Annotated[float | None, numeric("Torque at the output against forward motion in N.m.")] = None,
-    rated_torque: Annotated[float | None, numeric("Of the motor in N.m; usually that of the ratings.")] = None,
-    travel: Annotated[float, numeric("Of the motion of a torque-offset, from end to end in rad.")] = 0.2,
-    period: Annotated[float, numeric("At which a torque-offset is sent, in s.")] = 1e-3,
-    temperature: Annotated[float, numeric("Of the gear in K.")] = 293.15,
-    members: Annotated[int, whole("Number of drawn gears that judge the scales.")] = 200,
-    seed: Seed = 0,
-    out: Out = Path("out/slot"),
-) -> None:
-    """Numbers of friction and ripple that robot controllers, joint firmware and servo drives have a slot for."""
-    from strainwave.export.slots import slot as exported
-
-    found = exported(
-        gear, name, side=side, unit=unit, speed=speed, threshold=threshold, points=points, load=load,
-        rated_torque=rated_torque, travel=travel, period=period, temperature=temperature, members=members, seed=seed,
-    )  # fmt: skip
-    _write(found, out)
-
-
-@export.command("fmu")
-def fmu(
-    drive: Drive,
-    version: Annotated[int, typer.Option(help="Of FMI: 2 or 3.")] = 2,
-    platform: Annotated[
-        list[str] | None,
-        typer.Option(help="Of a binary, as x86_64-windows; may be repeated. `source` makes no binary. Default: this machine."),
-    ] = None,
-    model_exchange: Annotated[bool, typer.Option("--model-exchange", help="For the solver of the tool.")] = False,
-    step: Step = None,
-    name: Annotated[str | None, typer.Option(help="Of the model and of the file.")] = None,
-    out: Out = Path("out/fmu"),
-) -> None:
-    """The whole drive as an FMU for Simulink, OpenModelica, Dymola or FMPy."""
-    from strainwave.export.fmu import fmu as exported
-    from strainwave.files.gear_set import GearSet
-
-    platforms = None if platform is None else [each for each in platform if each != "source"]
-    found = exported(
-        GearSet.read(drive), version=version, platforms=platforms, model_exchange=model_exchange, step=step, name=name
-    )
-    _write(found, out)
-
-
-@export.command("mujoco-plugin")
-def mujoco_plugin(
-    drive: Drive,
-    into: Into = None,
-    joint: Joint = None,
-    load_inertia: LoadInertia = None,
-    max_torque: Torque = None,
-    command: Annotated[str, typer.Option(help="Within a timestep: held, or followed at the rate of the last one.")] = "held",
-    step: Step = None,
-    name: Annotated[str, typer.Option(help="Of the library, the plugin and the actuator.")] = "gear",
-    out: Out = Path("out/mujoco-plugin"),
-) -> None:
-    """The whole drive as an actuator plugin, compiled for the MuJoCo that is installed, with a model that has it."""
-    from strainwave.export.engine_plugin import mujoco_plugin as exported
-    from strainwave.files.gear_set import GearSet
-
-    found = exported(
-        GearSet.read(drive), into=_model_text(into), joint=joint, load_inertia=load_inertia, max_torque=max_torque,
-        command=command, step=step, name=name,  # type: ignore[arg-type] # checked there
-    )  # fmt: skip
-    _write(found, out)
-
-
-@export.command("modelica")
-def modelica(
-    drive: Drive,
-    max_torque: Torque = None,
-    period: Annotated[float | None, numeric("Of the exchange in s; 0.5 ms, or shorter if the drive needs that.")] = None,
-    step: Step = None,
-    name: Annotated[str, typer.Option(help="Of the package and the library.")] = "StrainWaveDrive",
-    out: Out = Path("out/modelica"),
-) -> None:
-    """The whole drive as a Modelica package: a component with a flange, and the library that it calls."""
-    from strainwave.export.modelica_package import modelica as exported
-    from strainwave.files.gear_set import GearSet
-
-    _write(exported(GearSet.read(drive), max_torque=max_torque, period=period, step=step, name=name), out)
-
-
-@export.command("newton")
-def newton(
-    drive: Drive,
-    scalar: Annotated[
-        str, typer.Option(help="Type of all numbers: double, or float for GPUs that are slow with doubles.")
-    ] = "double",
-    step: Step = None,
-    draws: Draws = 0,
-    seed: Seed = 0,
-    gpu: Annotated[bool, typer.Option(help="Code for GPUs, if the package nvidia-cuda-nvrtc is installed.")] = True,
-    compare: Annotated[bool, typer.Option(help="Compare with the simulation, if Newton is installed.")] = True,
-    out: Out = Path("out/strainwave_drive"),
-) -> None:
-    """The drive as an actuator of Newton, for thousands of joints in one launch, on the CPU and on GPUs."""
-    from strainwave.export.newton import newton as exported
-    from strainwave.files.gear_set import GearSet
-
-    found = exported(
-        GearSet.read(drive),
-        scalar=scalar,  # type: ignore[arg-type] # checked there
-        step=step,
-        draws=draws,
-        seed=seed,
-        gpu=gpu,
-        compare=compare,
-    )
-    _write(found, out)
+def _sentence(words: str) -> str:
+    text = " ".join(words.split())
+    return f"{text[0].upper()}{text[1:]}."
 
 
 @export.command("firmware")
@@ -257,14 +179,6 @@ def from_bam(
     out.parent.mkdir(parents=True, exist_ok=True)
     found.save(out)
     print(f"{found.name}: {found.note}\nwrote {out}")
-
-
-def _model_text(file: Path | None) -> str | None:
-    """Return the text of the MJCF file of a robot; None if none is given."""
-    from strainwave.export.mujoco import MAX_MODEL_BYTES
-    from strainwave.files.budget import read_text
-
-    return None if file is None else read_text(file, MAX_MODEL_BYTES)
 
 
 def _listing(files: Collection[str]) -> str:

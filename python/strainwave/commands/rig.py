@@ -273,8 +273,6 @@ def watch(
 
 @rig.command()
 def influence(
-    gear: Annotated[str, typer.Argument(help="A set by name, or a gear file.")] = "csg-25-100",
-    torque: Annotated[float | None, numeric("Largest torque at the output in N.m; by default the rated one.")] = None,
     measured: Annotated[
         Path | None,
         typer.Option(help="A series of loops, .csv: what was varied, as torque_max or temperature, and area, width or file."),
@@ -283,32 +281,25 @@ def influence(
         list[str] | None,
         typer.Option(help="A measured loop, and what was varied, as cold.csv,temperature=5 degC; once for each loop."),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for report.html and the tables.")] = Path("out/rig-influence"),
+    out: Annotated[Path, typer.Option(help="Folder for report.html.")] = Path("out/rig-influence"),
 ) -> None:
-    """Put document T's table of influences to a gear, to the catalogue and to measured series.
+    """Test a measured series of torsion loops for trends over what was varied.
 
-    Varies torque level, ratio, modulus, friction of the bearing and temperature, prints which of the table's entries hold,
-    with a number for each, and tests measured series for trends.
+    Prints the dependence of area, width and stiffness on torque level, temperature, preload, ratio, modulus, cycles and hours,
+    each with its 95 % interval and its probabilities.
     """
-    from rich.console import Console
-
-    from strainwave.files.gear_set import GearSet
-    from strainwave.report.influence import influence_report, summary, tables
-    from strainwave.report.page import write_results
+    from strainwave.files.writing import write_folder
+    from strainwave.report.influence import influence_report, summary
     from strainwave.report.provenance import Provenance
-    from strainwave.rig.influence.influence import influence as run
-    from strainwave.rig.influence.series import read_series, series_of
+    from strainwave.rig.influence.series import analyse_series, read_series, series_of
 
-    if measured is not None and loop:
-        raise ValueError("--measured and --loop are two ways to give one series; give one of them")
-    series = read_series(measured) if measured is not None else series_of(loop) if loop else None
-    with Console(stderr=True).status("reading") as status:
-        found = run(GearSet.read(gear), torque, series, progress=status.update)
-        status.update("report")
-        html = influence_report(found, Provenance.of_this_command([] if series is None else series.files))
-    write_results(out, html, tables=tables(found))
-    print(summary(found))
-    print(f"wrote {out / 'report.html'} and {len(tables(found))} tables beside it")
+    if (measured is None) == (not loop):
+        raise ValueError("give one series: a table with --measured, or its loops with --loop")
+    series = read_series(measured) if measured is not None else series_of(loop or [])
+    trends = analyse_series(series)
+    write_folder(out, {"report.html": influence_report(series, trends, Provenance.of_this_command(series.files))})
+    print(summary(series, trends))
+    print(f"wrote {out / 'report.html'}")
 
 
 # ---- A test that was made ---------------------------------------------------------------------------------------------

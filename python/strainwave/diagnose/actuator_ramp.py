@@ -19,6 +19,7 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.resolution import MAX_STEP_PHASE
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, ramp
+from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,11 @@ class ActuatorRamp:
         duration: of the ramp [s]
         dt: largest step [s]
         load_torque: constant torque that acts on the output besides the load of the drive [N.m]
+
+    >>> import strainwave as sw
+    >>> ramp = sw.diagnose.ActuatorRamp.of(sw.load("tilt-actuator-lumped"), stroke=0.6, duration=2.0)
+    >>> ramp.loop, round(ramp.turning, 1)  # speed of the input [rad/s]
+    ('output', 30.3)
     """
 
     drive: Drive
@@ -63,6 +69,11 @@ class ActuatorRamp:
     def of(cls, drive: Drive, stroke: float, duration: float) -> ActuatorRamp:
         """Return the ramp of a drive, with steps that its fastest mode allows.
 
+        Args:
+            drive: whose controller is a position loop around a speed loop
+            stroke: of the output [rad]
+            duration: of the ramp [s]
+
         Raises:
             ValueError: the stroke or the time is too small or too large, the ramp is less than three turns of the input, or
                 the drive has no position loop that closes on both sides, or an output that is moved from outside
@@ -71,7 +82,7 @@ class ActuatorRamp:
         duration = arguments.number("time", duration, "s", "[]", low=MIN_TIME, high=MAX_TIME)
         if not hasattr(drive.load, "inertia"):
             raise ValueError(
-                f"the load {quoted(drive.load.name)} of the drive moves its output from outside; the study needs one that the "
+                f"the load {quoted(drive.load.name)} of the drive moves its output from outside; the ramp needs one that the "
                 "motor moves, as inertia and aerodynamic are"
             )
         turns = stroke * abs(drive.gear.kinematics.ratio) / (2.0 * np.pi)
@@ -103,6 +114,19 @@ class ActuatorRamp:
     def sample(self) -> float:
         """Time between the rows of a run [s]."""
         return min(MAX_SAMPLE_TIME, 2.0 * np.pi / self.turning / MIN_ROWS_PER_TURN)
+
+    @property
+    def loop(self) -> str:
+        """The side on which the position loop closes: "output" or "input"."""
+        control: Any = self.drive.control
+        while not hasattr(control, "feedback"):
+            control = control.law
+        return str(control.feedback)
+
+    @property
+    def seeds(self) -> list[str]:
+        """Paths of the seeds of all noises of the drive's sensors."""
+        return noises(self.drive, "seed")
 
     @property
     def gain_path(self) -> str:
@@ -138,8 +162,12 @@ class ActuatorRamp:
         """Return the recording of one run, with all channels."""
         return simulate(self.drive, self.command, self.dt, sample=self.sample, load_torque=self.load_torque)
 
-    def many(self, members: Sequence[Mapping[str, float]], record: Sequence[str]) -> Ensemble:
+    def many(self, members: Sequence[Mapping[str, float]], record: Sequence[str] | None = None) -> Ensemble:
         """Return runs that differ in some numbers; the drive has those that a run does not name.
+
+        Args:
+            members: for each run the numbers in which it differs from the drive, by path
+            record: columns; without it all that the drive shows
 
         Raises:
             ValueError: one of them cannot be run to its end, or does not follow the ramp
@@ -153,7 +181,7 @@ class ActuatorRamp:
             columns,
             dt=self.dt,
             sample=self.sample,
-            record=list(dict.fromkeys(("input_angle", *record))),
+            record=list(dict.fromkeys(("input_angle", *(outputs(self.drive) if record is None else record)))),
             load_torque=self.load_torque,
         )
         if runs.failures:
@@ -190,6 +218,11 @@ def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
     1/K = 1/K_t + tan^2(alpha_t) / (K_b r_g^2) + 1 / (K_m r_g^2 cos^2(alpha_t)) + 1/K_CS + 1 / (K_WG i^2)
 
     Each damper takes the rate that its spring takes of the twist: c = K^2 sum c_j / K_j^2.
+
+    >>> import strainwave as sw
+    >>> ramp = sw.diagnose.ActuatorRamp.of(sw.load("tilt-actuator"), stroke=0.6, duration=2.0)
+    >>> sw.diagnose.in_series(ramp).drive.gear.structure.name
+    'lumped'
     """
     gear: Any = ramp.drive.gear
     stages: Any = gear.structure
@@ -211,8 +244,14 @@ def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
     return ActuatorRamp.of(ramp.drive.replace(gear=gear.replace(**one)), ramp.stroke, ramp.duration).loaded(ramp.load_torque)
 
 
-def geometry(drive: Drive) -> tuple[Any, bool]:
-    """Return the `Misalignment` of a drive, straight, and True if it is assumed because the drive has none."""
+def wave_generator(drive: Drive) -> tuple[Any, bool]:
+    """Return the `Misalignment` of a drive, straight, and True if it is assumed because the drive has none.
+
+    >>> import strainwave as sw
+    >>> law, assumed = sw.diagnose.wave_generator(sw.load("tilt-actuator-lumped"))
+    >>> law.pitch_radius, assumed  # m
+    (0.025, False)
+    """
     own = next(_laws(drive.gear.kinematic_error), None)
     law: Any = ASSUMED if own is None else own
     straight: dict[str, Any] = {
@@ -246,7 +285,7 @@ def _control_path(drive: Drive, name: str) -> str:
         inner = parts(control)
         if not inner:
             raise ValueError(
-                f"the controller {quoted(control.name)} of the drive has no {name}, but {listed(known)}; the study needs a "
+                f"the controller {quoted(control.name)} of the drive has no {name}, but {listed(known)}; the ramp needs a "
                 "position loop around a speed loop, as cascade and position_speed are"
             )
         place, control = f"{place}.{inner[0].name}", getattr(control, inner[0].name)

@@ -76,6 +76,11 @@ class MisalignmentEstimate:
         misfit: mean square of the residual over that of noise; about 1 if `combine` is right
         c_x: place of the generator on its shaft along the major axis [m], if the lobe further out carries
         c_x_sigma: its standard deviation [m]; nan if it is not estimated
+
+    >>> import numpy as np
+    >>> found = MisalignmentEstimate("current", "single", (3e-6, 4e-6), 1e-14 * np.eye(2), 40, 1.1)
+    >>> round(1e6 * found.size, 1), round(1e6 * found.half_widths[0], 1), found.contains((3.1e-6, 4e-6))  # um
+    (5.0, 0.2, True)
     """
 
     column: str
@@ -216,7 +221,14 @@ def harmonics(law: Any) -> Complex:
 
 
 def displaced(law: Any, m: tuple[float, float], c_x: float = 0.0) -> Any:
-    """Return the law with the shaft at m [m] in the housing and the generator c_x [m] off the shaft along its major axis."""
+    """Return the law with the shaft at m [m] in the housing and the generator c_x [m] off the shaft along its major axis.
+
+    >>> import strainwave as sw
+    >>> law, _ = sw.diagnose.wave_generator(sw.load("tilt-actuator-lumped"))
+    >>> moved = sw.diagnose.displaced(law, (3e-6, 4e-6), c_x=-2e-6)
+    >>> round(1e6 * moved.housing_eccentricity, 3), round(1e6 * moved.generator_eccentricity, 3)  # um
+    (5.0, 2.0)
+    """
     x, y = m
     return law.replace(
         housing_eccentricity=float(np.hypot(x, y)),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp, geometry
+from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp, wave_generator
 from strainwave.diagnose.inversion import ORDERS, answer_per_error, harmonics, phasors, runs_with_probe
 from strainwave.diagnose.reaction import CurrentPerError, current_per_error
 from strainwave.files.gear_set import GearSet
@@ -63,7 +63,7 @@ class PossibleDrives:
         gains = np.array([answer_per_error(*pair, "current") for pair in pairs])
         ripple = np.array([phasors(straight, "current") for straight, _ in pairs])
         trends = np.array([trend(straight)[0] for straight, _ in pairs[1:]])
-        law, _ = geometry(ramp.drive)
+        law, _ = wave_generator(ramp.drive)
         return cls(ramp, pairs[0][0], gains[0], gains[1:], ripple[1:] - ripple[0], trends, current_per_error(ramp), law)
 
     def like(self, recording: Recording) -> tuple[Complex, Complex, Array]:

@@ -9,17 +9,17 @@
 ['controller.cpp', 'controller.h', 'controller.hpp']
 """
 
-from strainwave.export.bam_parameters import bam, read_bam
-from strainwave.export.engine_plugin import mujoco_plugin
+from strainwave.export.bam_parameters import BAM, bam, read_bam
+from strainwave.export.engine_plugin import MUJOCO_PLUGIN, mujoco_plugin
 from strainwave.export.exported import Exported
-from strainwave.export.firmware import Firmware, firmware
-from strainwave.export.fmu import fmu
-from strainwave.export.joint_numbers import joint
-from strainwave.export.modelica_package import modelica
-from strainwave.export.mujoco import mjcf
-from strainwave.export.newton import newton
-from strainwave.export.ros2 import ros2
-from strainwave.export.slots import slot
+from strainwave.export.firmware import FIRMWARE, Firmware, firmware
+from strainwave.export.fmu import FMU, fmu
+from strainwave.export.joint_numbers import JOINT, joint
+from strainwave.export.modelica_package import MODELICA, modelica
+from strainwave.export.mujoco import MJCF, mjcf
+from strainwave.export.newton import NEWTON, newton
+from strainwave.export.ros2 import ROS2, ros2
+from strainwave.export.slots import SLOT, slot
 from strainwave.tuning.loss import ExportLoss
 
 __all__ = [
@@ -38,3 +38,6 @@ __all__ = [
     "ros2",
     "slot",
 ]
+
+# In the order of `strainwave export --help` and of the guide to exports.
+FORMS = (JOINT, MJCF, MUJOCO_PLUGIN, NEWTON, BAM, FMU, MODELICA, ROS2, FIRMWARE, SLOT)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, arguments, friction, kinematics, motor
 from strainwave.export.elements import GearElements, friction_losses
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.joint_numbers import left_out_if_rigid
 from strainwave.files.budget import read_text
 from strainwave.files.gear_set import GearSet, gear_set_of
@@ -162,3 +162,6 @@ def read_bam(path: str | Path, ratio: float) -> GearSet:
         motor=motor.CurrentSource(torque_constant=constant, inertia=0.0),
     )
     return replace(GearSet.of(drive, name=path.stem, source=f"BAM, {path.name}"), note=note)
+
+
+BAM = Form(bam, "BAM", "its parameter file; `from-bam` reads one", "mujoco.md#bam-both-ways")

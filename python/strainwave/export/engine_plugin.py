@@ -23,7 +23,7 @@ from strainwave import Drive, arguments, loads
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import ShaftFriction, max_torque_of
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import (
     Element,
@@ -246,3 +246,11 @@ def _remarks(file: str, version: str, content: bytes) -> Iterator[str]:
     yield "the error is of first order in the timestep: halve it and compare"
     yield f'load it before the model: mujoco.mj_loadPluginLibrary("{file}")'
     yield f"{file} is for MuJoCo {version} alone, {len(content) / 1e3:.0f} kB; export it again after an update of MuJoCo"
+
+
+MUJOCO_PLUGIN = Form(
+    mujoco_plugin,
+    "MuJoCo on a CPU: the whole drive",
+    "a library for your version of MuJoCo, and a model that uses it",
+    "mujoco-plugin.md",
+)

@@ -1,9 +1,11 @@
-"""Result of an export: files, the numbers in them, and what they lose against the gear."""
+"""Result of an export: files, the numbers in them, and what they lose against the gear; and how an export is listed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from inspect import signature
+from typing import Any, NamedTuple, get_args
 
 from strainwave.files.recording import Recording
 from strainwave.tuning.loss import ExportLoss
@@ -40,3 +42,32 @@ class Exported:
     left_out: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     table: Recording | None = None
+
+
+class Form(NamedTuple):
+    """An export as the command and the documentation list it.
+
+    Attributes:
+        write: function that exports; its docstring describes the verb and its options, its name is that of the verb
+        program: that takes the files, and for what, in Markdown
+        files: what is written, in Markdown
+        page: of the how-to guides, with its anchor if it describes several exports
+        folder: for the files, unless another one is given; by default that of the verb's name
+    """
+
+    write: Callable[..., Any]
+    program: str
+    files: str
+    page: str
+    folder: str = ""
+
+    @property
+    def verb(self) -> str:
+        """Word of the command."""
+        return self.write.__name__.replace("_", "-")
+
+    @property
+    def model(self) -> str:
+        """What it needs: a gear, of which a function takes the name or path, too; or a drive."""
+        model, *_ = signature(self.write, eval_str=True).parameters.values()
+        return "gear" if str in get_args(model.annotation) else "drive"

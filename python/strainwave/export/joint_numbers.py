@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, twist_at_largest
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.mujoco import DEFAULT_TIMESTEP, friction_attributes
 from strainwave.files.gear_set import GearSet, gear_set_of
 
@@ -130,3 +130,6 @@ def _urdf(values: Mapping[str, str], ratio: float, name: str) -> str:
   </transmission>
 </robot>
 """
+
+
+JOINT = Form(joint, "MuJoCo, Isaac, a URDF: numbers of a joint", "`joint.xml` and `joint.urdf`", "mujoco.md")

@@ -17,7 +17,7 @@ from strainwave import Drive, arguments
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import max_torque_of
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.internal_step import internal_step
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
@@ -275,3 +275,6 @@ package {name} "A drive with strain wave gear, by strainwave: {in_words(drive)}"
   annotation(uses(Modelica(version="4.0.0")));
 end {name};
 """
+
+
+MODELICA = Form(modelica, "Modelica", "a package with a flange, and its library", "modelica.md")

@@ -17,7 +17,7 @@ import numpy as np
 
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, quoted
 from strainwave.tuning.drawn import drawn_gears
@@ -329,3 +329,11 @@ def _lugre(at_input: ShaftFriction) -> str:
     assert law is not None
     numbers = (law.bristle_stiffness, law.bristle_damping, law.coulomb, law.breakaway, law.stribeck_speed)
     return " ".join(repr(float(each)) for each in numbers)
+
+
+MJCF = Form(
+    mjcf,
+    "MuJoCo or MuJoCo Warp: torsion and hysteresis",
+    "a model in XML, alone or in your robot, without a plugin",
+    "mujoco.md",
+)

@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 
 from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.joint_numbers import joint, remark_on_rotor
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet, gear_set_of
@@ -114,3 +114,6 @@ def _description(ratio: float, name: str) -> str:
   </transmission>
 </ros2_control>
 """
+
+
+ROS2 = Form(ros2, "ROS 2", "limits and friction for `ros2_control`, and a node", "ros.md")

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
 from strainwave import Drive, Gear, arguments, loads, motor
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
@@ -185,7 +185,8 @@ def slot(
         travel: of that motion, from end to end [rad]
         period: at which a torque offset is sent [s]
         temperature: of the gear [K]
-        members, seed: number of drawn gears, of whose friction scales are judged, and seed of the draw
+        members: number of drawn gears, by which friction scales are judged
+        seed: of the draw
 
     Returns:
         The numbers with their units, the loss of each, and the table of a slot that takes one.
@@ -551,3 +552,6 @@ OPTIONS: dict[str, frozenset[str]] = {
     "torque-offset": frozenset({"speed", "rated_torque", "motion", "travel", "period"}),
 }  # that a slot uses, besides side, unit and temperature
 OF_THE_INPUT = ("anticogging-map", "torque-offset")
+
+
+SLOT = Form(slot, "a robot controller or servo drive", "the numbers of its slots for friction and ripple", "slots.md")

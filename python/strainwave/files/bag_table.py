@@ -13,6 +13,7 @@ from strainwave.files.bag_containers import bag_files, messages_of
 from strainwave.files.bag_messages import JOINTS, NUMBERS, UNITS, joint_states, plain_number
 from strainwave.files.budget import ReadBudget
 from strainwave.files.labels import check_names, read_by_others
+from strainwave.files.table_format import Format
 from strainwave.messages import one_line
 
 
@@ -76,3 +77,11 @@ class _Series:
         order = np.argsort(self.recorded, kind="stable")
         time = (np.array(self.stamps)[order] - begin).astype(float) * 1e-9
         return Grid(time, {f"{prefix}{name}": np.array(values)[order] for name, values in self.columns.items()})
+
+
+ABOUT = (
+    "a file, or the folder of a bag. Each joint state has `knee.position`, `knee.velocity`, `knee.effort` over the time in "
+    "its header; topics of plain numbers are columns, too. With several topics of joint states, the topic precedes the "
+    "name."
+)
+FORMAT = Format((".bag", ".mcap", ".db3"), open_bag, "Bags of ROS 1 and 2", "of the message: rad, rad/s, N.m", about=ABOUT)

@@ -14,7 +14,8 @@ import numpy as np
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import ReadBudget, RefusedFile, budget_of
 from strainwave.files.labels import read_by_others
-from strainwave.files.variables import MAX_MATRIX_COLUMNS, MAX_NESTING, Unreadable, object_of_matlab, table_of
+from strainwave.files.table_format import Format
+from strainwave.files.variables import IN_THE_NAME, MAX_MATRIX_COLUMNS, MAX_NESTING, Unreadable, object_of_matlab, table_of
 from strainwave.messages import one_line, quoted
 
 MAX_ATTRIBUTE = 1000  # bytes of the name of a class
@@ -194,3 +195,7 @@ def _class(node: Any) -> str:
         return ""
     value = node.attrs["MATLAB_class"]
     return value.decode("latin-1") if isinstance(value, bytes) else str(value)
+
+
+ABOUT = "series, matrices and lengths as in MAT files. They need h5py: `pip install 'strainwave[formats]'`."
+FORMAT = Format((".h5", ".hdf5"), open_hdf5, "HDF5", IN_THE_NAME, about=ABOUT)

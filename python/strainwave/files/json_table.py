@@ -16,7 +16,8 @@ import numpy as np
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import ReadBudget, RefusedFile, read_regular
 from strainwave.files.labels import unreadable
-from strainwave.files.variables import MAX_NESTING, table_of
+from strainwave.files.table_format import Format
+from strainwave.files.variables import IN_THE_NAME, MAX_NESTING, table_of
 from strainwave.messages import one_line
 
 BYTES_OF_VALUE = 64  # that a value takes in memory as Python has it
@@ -150,3 +151,7 @@ def _types(values: list[Any]) -> set[type]:
     """The types of values in a list, and in the lists in it."""
     found = set(map(type, values))
     return found | set(map(type, chain.from_iterable(each for each in values if isinstance(each, list))))
+
+
+ABOUT = 'series by their names, `{"t": […], "q": [[…], …]}`, or a row for each sample, in one list or one a line.'
+FORMAT = Format((".json", ".jsonl"), open_json, "JSON", IN_THE_NAME, about=ABOUT)

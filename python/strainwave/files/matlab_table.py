@@ -11,7 +11,8 @@ from strainwave.files.budget import ReadBudget, budget_of, open_regular, read_re
 from strainwave.files.hdf5_table import hdf5_variables
 from strainwave.files.labels import read_by_others
 from strainwave.files.matlab_variables import HEADER_BYTES, variables_of_version_4, variables_of_version_5
-from strainwave.files.variables import table_of
+from strainwave.files.table_format import Format
+from strainwave.files.variables import IN_THE_NAME, table_of
 from strainwave.messages import one_line
 
 VERSION = slice(124, 128)  # of version 5 and later: version and byte order
@@ -38,3 +39,12 @@ def _variables(path: Path, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
         else:
             raise ValueError("no MAT file")
     yield from ((name, value) for name, value in found if name and not name.startswith("__"))
+
+
+ABOUT = (
+    "version 4 to 7.3. A series is a variable or a field of a structure, as `data.joint2.q`. A matrix contains several, "
+    "`q_1`, `q_2` …. The most frequent length is read; of an array or a cell of structures, the longest; of a Simulink "
+    "scope, its signals by their labels. Only MATLAB can read its objects (timetable, timeseries, Simulink data set): save "
+    "their values, as `s = struct('t', x.Time, 'q', x.Data)`. Version 7.3 needs h5py: `pip install 'strainwave[formats]'`."
+)
+FORMAT = Format((".mat",), open_mat, "MAT", IN_THE_NAME, about=ABOUT)

@@ -21,6 +21,7 @@ from strainwave.files.mdf3_blocks import channel_groups
 from strainwave.files.mdf4_blocks import Mdf4File
 from strainwave.files.mdf_channels import Bytes, ChannelGroup, channel_values
 from strainwave.files.mdf_conversion import RefusedChannel
+from strainwave.files.table_format import Format
 from strainwave.messages import one_line
 
 Array = NDArray[np.float64]
@@ -103,3 +104,10 @@ def _unique(name: str, group: int, taken: Collection[str], tries: Counter[tuple[
         tries[name, group] += 1
         found = f"{name}.{group}.{count}" if count else f"{name}.{group}"
     return found
+
+
+ABOUT = (
+    "version 2 to 4: the numeric channels; invalid values become nan. Linear, rational and table conversions are applied. A "
+    "formula is never evaluated: its channel is left out and named."
+)
+FORMAT = Format((".mf4", ".mdf"), open_mdf, "MDF", "of the channel", about=ABOUT)

@@ -14,7 +14,8 @@ from numpy.lib import format as numpy_format
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import ReadBudget, RefusedFile, budget_of, open_regular
 from strainwave.files.labels import read_by_others
-from strainwave.files.variables import Unreadable, table_of
+from strainwave.files.table_format import Format
+from strainwave.files.variables import IN_THE_NAME, Unreadable, table_of
 from strainwave.messages import one_line
 
 ZIP = b"PK"  # first letters of a file of several arrays
@@ -74,3 +75,7 @@ def _whole(file: BinaryIO, count: int) -> bytes:
     if len(data) < count:
         raise RefusedFile(f"ends {count - len(data)} bytes before its last number; it is damaged")
     return data
+
+
+ABOUT = "series, matrices and lengths as in MAT files. Arrays of Python objects are not loaded."
+FORMAT = Format((".npy", ".npz"), open_numpy, "NumPy", IN_THE_NAME, about=ABOUT)

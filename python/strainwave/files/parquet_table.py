@@ -22,6 +22,7 @@ from strainwave.files.labels import (
     unreadable,
 )
 from strainwave.files.parquet_pages import check_columns
+from strainwave.files.table_format import Format
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -134,3 +135,12 @@ def _seconds(table: pyarrow.Table, field: pyarrow.Field) -> Array:
 
     whole = table.column(field.name).cast(pyarrow.timestamp("ns", field.type.tz)).to_numpy()
     return seconds_since_first(whole)
+
+
+FORMAT = Format(
+    (".parquet",),
+    open_parquet,
+    "Parquet",
+    "in the metadata `unit` of the field, else in its name as in text",
+    "float64, with checksums",
+)

@@ -6,58 +6,33 @@ Only files are known here, not what a recording must obey; `Recording` asks for 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.files import (
+    bag_table,
+    hdf5_table,
+    json_table,
+    matlab_table,
+    mdf_table,
+    numpy_table,
+    parquet_table,
+    text_table,
+)
 from strainwave.files.bag_table import open_bag
 from strainwave.files.budget import RefusedFile, open_regular
-from strainwave.files.hdf5_table import open_hdf5
-from strainwave.files.json_table import open_json
-from strainwave.files.labels import ColumnSource, Content, Label, sources_of, unreadable
-from strainwave.files.matlab_table import open_mat
+from strainwave.files.labels import sources_of, unreadable
 from strainwave.files.mdf_table import MAGIC, open_mdf
-from strainwave.files.numpy_table import open_numpy
-from strainwave.files.parquet_table import open_parquet
+from strainwave.files.table_format import Format, OpenTable
 from strainwave.files.text_layout import NUMBER
 from strainwave.files.text_table import open_text
 from strainwave.messages import one_line, quoted
 
 Array = NDArray[np.float64]
-
-
-class OpenTable(Protocol):
-    """A file whose columns are known, but not yet read."""
-
-    @property
-    def file(self) -> str:
-        """Return the name of the file in messages."""
-
-    @property
-    def title(self) -> str: ...
-
-    @property
-    def labels(self) -> Sequence[Label]: ...
-
-    @property
-    def left_out(self) -> Sequence[str]:
-        """Parts of the file that are not among the columns, each with the reason."""
-
-    @property
-    def contents(self) -> Sequence[Content]:
-        """Return the content of each column, by its first rows."""
-
-    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
-        """The columns wanted; whatever is no number is refused."""
-
-    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
-        """The columns wanted, nan where nothing is written, dates as seconds since the first; in words what was left out."""
-
-    def place(self, row: int) -> str:
-        """Return the name of a row in messages, counted from 0."""
 
 
 def _open_dat(path: str | Path) -> OpenTable:
@@ -70,26 +45,18 @@ def _open_dat(path: str | Path) -> OpenTable:
     return open_mdf(path) if begin.startswith(MAGIC) else open_text(path)
 
 
-FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {
-    ".csv": open_text,
-    ".txt": open_text,
-    ".tsv": open_text,
-    ".log": open_text,
-    ".parquet": open_parquet,
-    ".dat": _open_dat,
-    ".mat": open_mat,
-    ".h5": open_hdf5,
-    ".hdf5": open_hdf5,
-    ".npy": open_numpy,
-    ".npz": open_numpy,
-    ".json": open_json,
-    ".jsonl": open_json,
-    ".mf4": open_mdf,
-    ".mdf": open_mdf,
-    ".bag": open_bag,
-    ".mcap": open_bag,
-    ".db3": open_bag,
-}
+LISTED = (
+    text_table.FORMAT,
+    parquet_table.FORMAT,
+    Format((".dat",), _open_dat, "Text or MDF", "as in files of that format"),
+    matlab_table.FORMAT,
+    hdf5_table.FORMAT,
+    numpy_table.FORMAT,
+    json_table.FORMAT,
+    mdf_table.FORMAT,
+    bag_table.FORMAT,
+)
+FORMATS = {suffix: each.open for each in LISTED for suffix in each.suffixes}
 BEGIN_BYTES = 4096  # of a file with an unknown suffix, by which it is taken for a table of numbers
 MIN_ROWS = 5  # of numbers in them
 INSTEAD = {  # what to do with other files that people have

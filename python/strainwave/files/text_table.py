@@ -28,6 +28,7 @@ from strainwave.files.labels import (
     seconds_since_first,
     unreadable,
 )
+from strainwave.files.table_format import Format
 from strainwave.files.text_layout import (
     CLOCK,
     MAX_LINE_BYTES,
@@ -397,3 +398,12 @@ def _not_a_number(text: str, marks: str) -> str:
     if NUMBER.fullmatch(text) and len(marks) == 1:
         return f'{quoted(text)} is not a number with the decimal mark "{marks}"'
     return f"{quoted(text)} is not a number"
+
+
+FORMAT = Format(
+    (".csv", ".txt", ".tsv", ".log"),
+    open_text,
+    "Text",
+    "in the header: `speed [rad/s]` or `speed (rad/s)`",
+    "reads back bit for bit",
+)

@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 
 MAX_MATRIX_COLUMNS = 100  # more columns are no channels
 MAX_NESTING = 6  # structures in structures: a bound for the work that a file from outside can cause
+IN_THE_NAME = "in the name, if at all, as `speed_rpm`"  # where the unit of a variable stands
 NUMBERS_OF_SCOPE = ".signals.values"  # as Simulink saves a scope, with a series of the time
 
 

@@ -9,14 +9,10 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from strainwave import Drive
-from strainwave.drawing import marks
-from strainwave.drawing.style import DARK, FIGURE_WIDTH, LIGHT, RUNS, STYLE
-from strainwave.report.experiment import SimulatedExperiment
-from strainwave.simulation.signals import outputs
+from strainwave.drawing.style import DARK, LIGHT, STYLE
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -24,41 +20,6 @@ if TYPE_CHECKING:
 
 Element = ElementTree.Element
 Draw = Callable[["Figure"], None]
-
-# ---- What can be drawn -----------------------------------------------------------------------------------------------
-
-
-def experiment(simulated: SimulatedExperiment, name: str) -> str:
-    """Command, response and, where both are of one unit, their difference over time."""
-    first, comparable = simulated.runs[0][1], simulated.comparable
-    command_unit, response_unit = first.unit(simulated.command), first.unit(simulated.response)
-
-    def draw(figure: Figure) -> None:
-        response, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-        command = response if comparable else below
-        marks.curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linewidth=0.9, label="command")
-        for number, (label, run) in enumerate(simulated.runs):
-            colour, line, width = RUNS[number % len(RUNS)]
-            style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "linewidth": width}
-            style["label"] = f" {label}"  # matplotlib leaves out labels that begin with an underscore
-            answer = run.values(simulated.response, response_unit)
-            marks.curve(response, run.time, answer, **style)
-            if comparable:
-                marks.curve(below, run.time, answer - run.values(simulated.command, command_unit), **style)
-        marks.label_axes(response, output_name(simulated.response), response_unit)
-        marks.label_axes(below, "response − command" if comparable else "command", command_unit, "time", "s")
-        marks.legend(figure, response)
-
-    return inline(draw, (FIGURE_WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
-
-
-def output_name(column: str) -> str:
-    """Return the name of a column of a simulation in words."""
-    known = outputs(Drive())
-    return known[column].doc if column in known else column.replace("_", " ")
-
-
-# ---- From a drawing to SVG -------------------------------------------------------------------------------------------
 
 
 def inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> Markup:

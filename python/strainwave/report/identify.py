@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from operator import attrgetter
 from typing import Any
 
@@ -24,10 +24,8 @@ from strainwave.identification.results.combined_parameter import (
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
-from strainwave.report import figures
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows, percent
-from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render
 from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
@@ -37,19 +35,12 @@ MIN_WIDENED = 1.05  # factor of the standard deviation of a mean, from which on 
 DIGITS_WITH_SPREAD = 4  # of a number that is followed by the scatter of individual gears
 
 
-def identify_report(
-    found: Identified,
-    provenance: Provenance | None = None,
-    *,
-    experiments: Sequence[SimulatedExperiment] = (),
-    accepted: bool = False,
-) -> str:
+def identify_report(found: Identified, provenance: Provenance | None = None, *, accepted: bool = False) -> str:
     """Return the report of an identification, as one HTML file that needs nothing else.
 
     Args:
         found: the result
         provenance: how the page came to be, if that is to be shown
-        experiments: simulated with the gear
         accepted: if true, the gear is written in spite of failed checks
 
     Returns:
@@ -82,7 +73,6 @@ def identify_report(
             "files": [_file(each, anchors[id(each)], given) for each in alone],
             "sections": list(_sections(found, given)),
             "checks": [(each, number(each.value, 3), number(each.limit, 3)) for each in found.checks],
-            "experiments": list(_experiments(experiments)),
         },
         provenance,
     )
@@ -341,7 +331,7 @@ def _sections(found: Identified, given: Mapping[str, float]) -> Iterator[dict[st
         }
 
 
-# ---- Comparison of files, and experiments --------------------------------------------------------------------------------
+# ---- Comparison of files ---------------------------------------------------------------------------------------------
 
 
 def _comparisons(found: Identified) -> Iterator[tuple[str, str]]:
@@ -366,17 +356,3 @@ def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.EstimateR
         agrees = "agrees" if name in each.mean_of else "not counted"
         look = plots.BEYOND if name in each.contradicts else "copy of another" if name in copies else agrees
         yield plots.EstimateRow(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
-
-
-def _experiments(experiments: Sequence[SimulatedExperiment]) -> Iterator[dict[str, Any]]:
-    """Yield experiments with their figures; a remark that they share stands with the first."""
-    before = ""
-    for position, experiment in enumerate(experiments):
-        below = "how far it is from the command" if experiment.comparable else "the command"
-        yield {
-            "experiment": experiment,
-            "remark": "" if experiment.remark == before else experiment.remark,
-            "figure": figures.experiment(experiment, f"experiment-{position}"),
-            "caption": f"{figures.output_name(experiment.response)} over time, and {below}.",
-        }
-        before = experiment.remark

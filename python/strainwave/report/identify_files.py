@@ -19,7 +19,6 @@ from strainwave.identification.results.combined_parameter import CombinedParamet
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.messages import listed, with_options
 from strainwave.report.errors import share_held_out
-from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
@@ -32,20 +31,13 @@ COLUMNS = (
 MAX_REMARKS = 8  # of a file on a terminal; the report has all
 
 
-def identify_files(
-    found: Identified,
-    provenance: Provenance | None = None,
-    *,
-    accepted: bool = False,
-    experiments: Sequence[SimulatedExperiment] = (),
-) -> dict[str, str]:
+def identify_files(found: Identified, provenance: Provenance | None = None, *, accepted: bool = False) -> dict[str, str]:
     """Return the files of a result by their names: numbers as JSON and CSV, the gear, and the report.
 
     Args:
         found: the result
         provenance: command, date and files, if the report is to show them
         accepted: if true, the gear is among them in spite of failed checks
-        experiments: simulated with the gear
     """
     text = StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
@@ -54,7 +46,7 @@ def identify_files(
     files = {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
     if accepted or not found.failed:
         files["gear.toml"] = gear_file.text(found.accepted)
-    return files | {"report.html": identify_report(found, provenance, experiments=experiments, accepted=accepted)}
+    return files | {"report.html": identify_report(found, provenance, accepted=accepted)}
 
 
 def _results(found: Identified) -> dict[str, Any]:

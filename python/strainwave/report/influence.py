@@ -1,160 +1,56 @@
-"""The page of what influences a torsion loop, and the same in lines for a terminal."""
+"""The page of the influences on the loops of a measured series, and the same in lines for a terminal."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
-from math import degrees, isfinite
+from collections.abc import Sequence
+from math import isfinite
 from typing import Any
 
-from strainwave.files.recording import Recording
-from strainwave.report import influence_figures as plots
-from strainwave.report.influence_claims import (
-    InfluenceClaim,
-    counts,
-    entries,
-    life,
-    over_size,
-    steps_and_falls,
-)
-from strainwave.report.influence_trends import bent_words, chance, change_of, trend_words
+from strainwave.report.influence_figures import series_figure
 from strainwave.report.page import render
-from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
-from strainwave.rig.influence.influence import OWN, SPECIMEN, Influence, Sweep
-from strainwave.rig.influence.series import FACTORS, QUANTITIES
+from strainwave.rig.influence.series import FACTORS, QUANTITIES, Series
 from strainwave.rig.influence.trend import SHUFFLE_COUNT, Trend
-from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number, quantity
+from strainwave.rig.influence.trend_words import bent_words, chance, change_of, trend_words
 
 LETTERS_PER_LINE = 110  # on a terminal
 
 
-def influence_report(found: Influence, provenance: Provenance | None = None) -> str:
-    """The page, as one HTML file that needs nothing else.
+def influence_report(series: Series, trends: Sequence[Trend], provenance: Provenance | None = None) -> str:
+    """Return the page, as one HTML file that needs nothing else.
 
     Args:
-        found: what was found
+        series: what was measured
+        trends: of it, as `analyse_series` returns them
         provenance: how the page came to be, if that is to be shown
 
     Returns:
         HTML; the same for the same arguments
     """
-    table, age = entries(found), life(found)
-    series = found.series
     return render(
         "influence.html.jinja",
         {
-            "title": found.gear_set.name,
-            "torque": quantity(found.torque, "N.m", 3),
-            "input_torque": quantity(found.input_torque, "N.m", 3),
-            "friction": quantity(found.friction, "N.m", 3),
-            "table": [*table, *([age] if age else [])],
-            "counts": [(verdict, count) for verdict, count in counts(table)],
-            "measured": any(each.measured for each in (*table, age) if each),
-            "loops": [
-                plots.loops_figure(found.drawn[OWN], "loops-own"),
-                plots.loops_figure(found.drawn[SPECIMEN], "loops-specimen"),
-            ],
-            "amplitudes": [
-                plots.amplitude_figure(found.amplitude[OWN], "amplitude-own"),
-                plots.amplitude_figure(found.amplitude[SPECIMEN], "amplitude-specimen"),
-            ],
-            "levels": [
-                _level_table(f"{found.gear_set.name}, at the output", found.amplitude[OWN], ARCMIN_PER_RADIAN, "′"),
-                _level_table("Document T’s gear, at the input", found.amplitude[SPECIMEN], degrees(1.0), "°"),
-            ],
-            "ratio_figure": plots.ratio_figure(found.rows),
-            "steps": steps_and_falls(found.rows)[0],
-            "sizes": list(_size_rows(found)),
-            "shares": {part: f"{number(100.0 * share, 3)} %" for part, share in found.shares.items()},
-            "preload_figure": plots.preload_figure(found.preload, found.input_torque, found.friction)
-            if found.preload is not None
-            else "",
-            "temperature_figure": plots.temperature_figure(found.temperature),
-            "rates": list(_rate_rows(found)),
-            "series": None if series is None else series.name,
-            "series_points": 0 if series is None else len(series),
-            "series_figures": []
-            if series is None
-            else [plots.series_figure(series, found.trends, name) for name in FACTORS if name in series.varied],
-            "trends": [_trend_row(each) for each in found.trends],
+            "title": series.name,
+            "points": len(series),
+            "figures": [series_figure(series, trends, name) for name in FACTORS if name in series.varied],
+            "sentences": [trend_words(each) for each in trends],
+            "trends": [_row(each) for each in trends],
             "shuffles": SHUFFLE_COUNT,
-            "numbers": list(numbers({"": found.gear_set})),
-            "note": found.gear_set.note,
         },
         provenance,
     )
 
 
-def summary(found: Influence) -> str:
-    """Return the results as lines of text."""
-    table, age = entries(found), life(found)
-    lines = [f"{found.gear_set.name}: loops up to {quantity(found.torque, 'N.m', 3)} at the output"]
-    lines += [", ".join(f"{count} {verdict}" for verdict, count in counts(table))]
-    for each in (*table, *([age] if age else [])):
-        lines += ["", *_entry_lines(each)]
+def summary(series: Series, trends: Sequence[Trend]) -> str:
+    """Return the trends as lines of text, a sentence for each."""
+    lines = [f"{series.name}, {len(series)} loops"]
+    for each in trends:
+        lines += textwrap.wrap(trend_words(each), LETTERS_PER_LINE, initial_indent="  ", subsequent_indent="    ")
     return "\n".join(lines)
 
 
-def _entry_lines(entry: InfluenceClaim) -> Iterator[str]:
-    yield from textwrap.wrap(f"{entry.parameter}, {entry.regime}: “{entry.words}”", LETTERS_PER_LINE)
-    inside = textwrap.TextWrapper(LETTERS_PER_LINE, initial_indent="  ", subsequent_indent="  ")
-    yield from inside.wrap(f"{entry.verdict}: {entry.answer}")
-    if entry.measured:
-        yield from inside.wrap(f"measured, {entry.measured_verdict}: {' '.join(entry.measured)}")
-
-
-def tables(found: Influence) -> dict[str, Recording]:
-    """The sweeps as tables, by name."""
-    named = {
-        "torque-level": (found.amplitude[OWN], "torque_max", "N.m"),
-        "torque-level-document-t": (found.amplitude[SPECIMEN], "torque_max", "N.m"),
-        "modulus": (found.material, "modulus", "1"),
-        "temperature": (found.temperature, "temperature", "K"),
-    }
-    if found.preload is not None:
-        named["preload"] = (found.preload, "preload", "1")
-    return {name: _table(*each) for name, each in named.items()}
-
-
-UNITS = {"area": "J", "width": "rad", "width_at_zero": "rad"}
-
-
-def _table(sweep: Sweep, name: str, unit: str) -> Recording:
-    columns = {name: sweep.levels, **sweep.figures}
-    return Recording(columns, {name: unit, **{each: UNITS.get(each, "N.m/rad") for each in sweep.figures}})
-
-
-def _level_table(title: str, sweep: Sweep, angle: float, unit: str) -> dict[str, Any]:
-    return {"title": title, "rows": list(_level_rows(sweep, angle, unit))}
-
-
-def _level_rows(sweep: Sweep, angle: float, unit: str) -> Iterator[list[str]]:
-    for row, level in enumerate(sweep.levels.tolist()):
-        yield [
-            quantity(level, "N.m", 3),
-            quantity(float(sweep["area"][row]), "J", 3),
-            f"{number(angle * float(sweep['width'][row]), 3)}{unit}",
-            *(quantity(float(sweep[name][row]), "N.m/rad", 3) for name in ("high_stiffness", "low_stiffness", "stiffness")),
-        ]
-
-
-def _size_rows(found: Influence) -> Iterator[list[str]]:
-    for ratio in sorted({row.ratio for row in found.rows}):
-        sizes = sorted(row.size for row in found.rows if row.ratio == ratio)
-        if len(sizes) > 3:
-            powers = [over_size(found.rows, ratio, name) for name in ("k1", "k2", "k3", "t1")]
-            yield [str(ratio), f"{sizes[0]} to {sizes[-1]}", *(f"{fixed(v, 2)} ± {fixed(h, 2)}" for v, h in powers)]
-
-
-def _rate_rows(found: Influence) -> Iterator[list[str]]:
-    rates = found.rates
-    values = (rates.stiffness, rates.hysteresis, rates.friction)
-    for words, value, source in zip(("Spring", "Hysteresis", "Friction at the input"), values, rates.sources, strict=True):
-        yield [words, f"{number(100.0 * value, 3)} % per kelvin", source]
-
-
-def _trend_row(trend: Trend) -> dict[str, Any]:
+def _row(trend: Trend) -> dict[str, Any]:
     return {
         "quantity": QUANTITIES[trend.quantity][0],
         "factor": FACTORS[trend.factor].words,

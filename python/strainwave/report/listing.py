@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
-from math import tau
+from math import inf, tau
 
 import numpy as np
 
-from strainwave import Drive
+from strainwave import Drive, arguments
 from strainwave.analysis.agreement import Agreement
 from strainwave.analysis.difference import Difference
 from strainwave.analysis.linear import Linearisation, linearise, modes
+from strainwave.analysis.strokes import stroke_within, strokes_apart
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_file import at_rest
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import RatingCheck, check_ratings
 from strainwave.files.recording import Recording
-from strainwave.messages import one_line
+from strainwave.messages import one_line, shortened
 
 Row = Sequence[str]
+STROKE_COUNT = 12  # moves of growing stroke
+MIN_STROKE_SHARE = 1e-2  # of the largest stroke [1]: the smallest
 MIN_CORRELATION = 0.5  # smaller ones are not listed
 NO_FREQUENCY = 1e-7  # relative frequency or damping ratio [1] that counts as none: double zeros have the root of the rounding
 ROUNDING_SHARE = 1e-12  # of the largest value of a column [1]: smaller values are rounding
@@ -36,6 +39,8 @@ def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> s
     >>> print(listing(GearSet.read("csg-25-100")).splitlines()[0])
     CSG-25-100, Harmonic Drive
     """
+    if not isinstance(gear_set, GearSet):
+        raise TypeError(f"gear_set = {shortened(gear_set)} must be a gear set, as sw.GearSet.read(name) returns it")
     lines = [", ".join(filter(None, (gear_set.name, gear_set.maker)))]
     if gear_set.note:
         lines.append(_printable(gear_set.note))
@@ -75,6 +80,36 @@ def difference_table(found: Sequence[Difference]) -> str:
         rows.append((each.path, *each.texts, "" if each.unit == "1" else each.unit, change, apart))
     columns = 6 if any(apart for *_, apart in rows[1:]) else 5
     return "\n".join(aligned([row[:columns] for row in rows], "<>><>>"[:columns]))
+
+
+def stroke_table(first: Drive, second: Drive, stroke: float, tolerance: float) -> str:
+    """Return the difference of two drives over moves of growing stroke, and the stroke at which it exceeds a tolerance.
+
+    Args:
+        first, second: two models of a drive
+        stroke: the largest, of the output [deg]
+        tolerance: root mean square of the difference of the output angle [mrad]
+
+    >>> from strainwave import load
+    >>> print(stroke_table(*map(load, ("position-drive-full-friction", "position-drive")), 100.0, 0.1).splitlines()[-1])
+    the output differs by less than 0.1 mrad rms up to a stroke of 3.48 rad of the motor, 2 deg of the output
+    """
+    ratio = abs(float(second.gear.kinematics.ratio))
+    largest = ratio * np.radians(arguments.number("stroke", stroke, "deg", low=0.0))
+    apart = strokes_apart(first, second, np.geomspace(MIN_STROKE_SHARE * largest, largest, STROKE_COUNT).tolist())
+    rows: list[Row] = [("stroke [rad]", "output angle, rms [mrad]", *(["current, rms [A]"] if "current" in apart else []))]
+    rows += [
+        (f"{row[0]:.4g}", f"{1e3 * row[1]:.3g}", *(f"{each:.3g}" for each in row[2:3]))
+        for row in zip(*(apart[name] for name in apart.names), strict=True)
+    ]
+    allowed = f"the output differs by less than {tolerance:g} mrad rms"
+    if (reach := stroke_within(apart, 1e-3 * arguments.number("tolerance", tolerance, "mrad", low=0.0))) == inf:
+        verdict = f"{allowed} at every stroke up to {largest:.3g} rad of the motor"
+    elif reach <= float(apart["stroke"][0]):
+        verdict = f"the output differs by {tolerance:g} mrad rms or more at every stroke"
+    else:
+        verdict = f"{allowed} up to a stroke of {reach:.3g} rad of the motor, {np.degrees(reach / ratio):.3g} deg of the output"
+    return "\n".join([*aligned(rows, ">>>"[: len(rows[0])]), verdict])
 
 
 def range_table(recording: Recording) -> str:

@@ -1,17 +1,14 @@
-"""Pages: a template filled in and written as one file."""
+"""Pages: a template filled in, as one file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
 from importlib import metadata
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from strainwave import typeset
 from strainwave.drawing.style import DARK, LIGHT
-from strainwave.files import writing
-from strainwave.files.recording import Recording
 from strainwave.messages import printable
 from strainwave.report import figures
 from strainwave.report.provenance import Provenance
@@ -55,40 +52,3 @@ def _environment() -> Environment:
     environment.filters |= {verb.__name__: verb for verb in (typeset.number, typeset.unit, typeset.symbols, typeset.breakable)}
     environment.globals["zip"] = zip
     return environment
-
-
-def write_results(
-    folder: Path, html: str, *, runs: Mapping[str, Recording] | None = None, tables: Mapping[str, Recording] | None = None
-) -> None:
-    """Write the results of a study to a folder: recordings as Parquet, tables as CSV, and last the page as report.html.
-
-    Args:
-        folder: made if it is not there
-        html: the page; what stood in its place stays until it is complete
-        runs, tables: by the name of the file without its ending
-
-    Raises:
-        OSError: folder or file cannot be written; the message names it and the reason
-    """
-    with writing.making(folder):
-        for name, run in (runs or {}).items():
-            run.to_parquet(folder / f"{name}.parquet")
-            writing.written.append(folder / f"{name}.parquet")
-        for name, table in (tables or {}).items():
-            table.to_csv(folder / f"{name}.csv")
-            writing.written.append(folder / f"{name}.csv")
-        write(html, folder / "report.html")
-        writing.written.append(folder / "report.html")
-
-
-def write(html: str, path: str | Path) -> None:
-    """Write a page; what stood at `path` stays until the new page is complete.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write("<!doctype html>", f"{folder}/report.html")
-    ...     Path(f"{folder}/report.html").read_text()
-    '<!doctype html>'
-    """
-    with writing.replacing(path) as file:
-        file.write(html.encode())

@@ -15,9 +15,10 @@ from strainwave.rig.bench.rig_file import load, rigs, write_rig
 from strainwave.rig.bench.setup import Camera, Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import append_step, read_steps, write_steps
-from strainwave.rig.influence.influence import Influence
-from strainwave.rig.influence.series import Series, analyse_series, read_series
+from strainwave.rig.influence.cycle import Cycle, Factors, cycle, cycle_to
+from strainwave.rig.influence.series import Series, analyse_series, read_series, series_of
 from strainwave.rig.influence.trend import Trend
+from strainwave.rig.influence.trend_words import trend_words
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.measurement import TorsionTest, loops, read_test
 from strainwave.rig.reading.recorded import read_loop
@@ -39,9 +40,10 @@ __all__ = [
     "Camera",
     "Circle",
     "Comparison",
+    "Cycle",
     "Deviation",
+    "Factors",
     "Image",
-    "Influence",
     "Loop",
     "LoopAnalysis",
     "LoopSummary",
@@ -68,6 +70,8 @@ __all__ = [
     "check",
     "closure_of_secants",
     "compare",
+    "cycle",
+    "cycle_to",
     "cycles",
     "find_markers",
     "friction_at_rest",
@@ -87,6 +91,7 @@ __all__ = [
     "referred",
     "render",
     "rigs",
+    "series_of",
     "simulate_test",
     "soft_parts",
     "stiffness_budget",
@@ -94,6 +99,7 @@ __all__ = [
     "taubin",
     "torque_budget",
     "torque_of",
+    "trend_words",
     "without_friction",
     "words_on_band",
     "write_rig",

@@ -38,7 +38,13 @@ def test_a_vanishing_sine_is_answered_as_the_linear_view_says(signal: str) -> No
     ("law", "loads", "amplitude", "tolerance"),
     [
         (sw.hysteresis.MaxwellSlip(stiffness=[3e3, 2e3], breakaway=[0.5, 100.0]), (0.0, 8.0), 1e-5, 1e-6),
-        (sw.hysteresis.FadingMemory(stiffness=4e3, forgetting=1e3), (0.0, 8.0), 0.03, 2e-3),
+        pytest.param(
+            sw.hysteresis.FadingMemory(stiffness=4e3, forgetting=1e3),
+            (0.0, 8.0),
+            0.03,
+            2e-3,
+            marks=pytest.mark.slow("analysis"),
+        ),
         (made(sw.hysteresis.BoucWen), (0.0,), 1e-5, 1e-6),
         (sw.hysteresis.Preisach(density=made(sw.hysteresis.PowerDensity)), (0.0, 8.0), 1e-5, 1e-3),
         (made(sw.hysteresis.Regimes), (8.0,), 1e-5, 1e-6),

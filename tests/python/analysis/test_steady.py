@@ -232,6 +232,7 @@ def test_an_angle_that_is_lost_among_turns_is_no_place_to_rest() -> None:
         sw.equilibrium(drive, command=0.01, load_torque=0.1)
 
 
+@pytest.mark.whole_path("analysis")
 @settings(max_examples=sample(8, 20))
 @given(smooth_drives)
 def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:

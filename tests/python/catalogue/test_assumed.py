@@ -41,12 +41,14 @@ def rated_torque(name: str) -> float:
     return part * float(figures(rated, "ratings", "rated_torque")[0])
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_hysteresis_loss_after_rated_torque_is_half_the_makers_bound(name: str) -> None:
     half_bound = 0.5 * HYSTERESIS_LOSS[column(name)] * ARCMIN
     assert Torsion.of(name).hysteresis_loss(rated_torque(name)) == pytest.approx(half_bound, rel=ROUNDING)
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_lost_motion_at_four_percent_of_rated_torque_is_within_the_makers_bound(name: str) -> None:
     positive, _, negative, _, _ = Torsion.of(name).cycle(0.04 * rated_torque(name))
@@ -62,6 +64,7 @@ def test_every_element_slips_below_rated_torque_and_holds_an_equal_share(name: s
     assert torsion.stiffness == pytest.approx(torsion.slopes[0] * np.array([2 / 3, 1 / 3, 1 / 6]), rel=ROUNDING)
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_the_first_loading_is_the_published_curve_beyond_the_twist_at_which_the_last_element_slips(name: str) -> None:
     """Secant K1 to T1, then slopes K2 and K3, of the gear that the package loads."""
@@ -78,6 +81,7 @@ def test_the_first_loading_is_the_published_curve_beyond_the_twist_at_which_the_
     assert loaded[~beyond] == pytest.approx(published[~beyond], rel=0.35)
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_small_twists_and_reversals_meet_thirteen_sixths_of_the_springs_slope(name: str) -> None:
     gear, torsion = sw.load(name), Torsion.of(name)
@@ -177,6 +181,7 @@ def under_waves(gear: sw.Gear, peak: float) -> sw.Run:
     return sw.simulate(drive, sw.scenario.constant(0.0, 1.0), load_torque=waves)
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_a_load_that_wavers_below_breakaway_leaves_the_gear_where_it_stands(name: str) -> None:
     gear = sw.load(name)
@@ -186,6 +191,7 @@ def test_a_load_that_wavers_below_breakaway_leaves_the_gear_where_it_stands(name
     assert np.ptp(after_each_wave) < 1e-5 * np.abs(run["twist"]).max()
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_a_load_beyond_breakaway_turns_the_gear(name: str) -> None:
     gear = sw.load(name)
@@ -193,6 +199,7 @@ def test_a_load_beyond_breakaway_turns_the_gear(name: str) -> None:
     assert abs(run["input_angle"][-1]) > 1e-6
 
 
+@pytest.mark.slow("files")
 @every_set
 def test_breakaway_at_the_output_is_the_starting_torque_times_the_ratio(name: str) -> None:
     """But for the slope of the kinematic error where the gear stands."""

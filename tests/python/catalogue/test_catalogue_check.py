@@ -30,6 +30,7 @@ from tests.support.each import each
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 
 
+@pytest.mark.slow("files")
 @each("name", [name for name in SETS if identity(name)[1] in KNEES])
 def test_printed_figures_are_those_of_the_makers_tables(name: str) -> None:
     size, printed = identity(name)[1], check.printed_figures(sw.GearSet.read(name))
@@ -51,6 +52,7 @@ def test_a_set_shows_what_its_maker_prints(name: str) -> None:
     assert ("lost" in figures) is (name in {"csg-14-50", "shg-58-120", "hfuc-32-30"})
 
 
+@pytest.mark.slow("files")
 def test_the_page_has_all_sets_and_names_the_worst(tmp_path: Path) -> None:
     page = tmp_path / "catalogue-check.md"
     shutil.copy(DOCS / "reference" / "catalogue-check.md", page)

@@ -31,6 +31,7 @@ GOOD_LOOP = "twist [mrad],torque [N.m]\n" + "".join(
 )
 
 
+@pytest.mark.whole_path("commands")
 def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> None:
     (tmp_path / "table.csv").write_text(GOOD_TABLE)
     (tmp_path / "loop.csv").write_text(GOOD_LOOP)
@@ -182,6 +183,7 @@ def test_a_terminal_that_lacks_letters_is_no_failure(tmp_path: Path, monkeypatch
 # As a process
 
 
+@pytest.mark.slow("commands")
 def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: Path) -> None:
     command = Path(sys.executable).with_name("strainwave")
     arguments = [command, "identify", "nowhere.toml", "table.csv"]
@@ -190,6 +192,7 @@ def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: 
     assert "nowhere.toml" in result.stderr
 
 
+@pytest.mark.slow("commands")
 @pytest.mark.parametrize("verb", [("gears",), ("models",), ("--help",)])
 def test_a_reader_that_has_seen_enough_is_no_failure(verb: tuple[str, ...]) -> None:
     reader, writer = os.pipe()
@@ -200,6 +203,7 @@ def test_a_reader_that_has_seen_enough_is_no_failure(verb: tuple[str, ...]) -> N
     assert (process.returncode, wrong) == (0, b"")
 
 
+@pytest.mark.slow("commands")
 def test_output_that_is_lost_is_told_and_does_not_turn_success_into_failure() -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no /dev/full")
@@ -209,6 +213,7 @@ def test_output_that_is_lost_is_told_and_does_not_turn_success_into_failure() ->
     assert (process.returncode, wrong) == (0, b"strainwave: the output cannot be printed: No space left on device\n")
 
 
+@pytest.mark.slow("commands")
 @pytest.mark.parametrize("phase", ["typer", "pydantic", "pyarrow", "scipy", "jinja2"])
 def test_an_interrupt_ends_in_one_line_with_nothing_written(phase: str, tmp_path: Path) -> None:
     """In each phase a package is imported: for the command itself, to read gear and table, to fit, to report."""
@@ -256,6 +261,7 @@ __main__.main()
 """
 
 
+@pytest.mark.slow("commands")
 def test_an_interrupt_ends_what_runs_in_the_core_too() -> None:
     interrupted(subprocess.Popen([sys.executable, "-c", RUNNING], stdout=subprocess.PIPE, stderr=subprocess.PIPE))
 
@@ -323,6 +329,7 @@ def test_a_model_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Pat
     refused(tmp_path, ["models", "lugree"], "there is no model lugree", "near to it is lugre", "strainwave models lists all")
 
 
+@pytest.mark.slow("commands")
 def test_a_failed_check_is_printed_first_and_no_gear_is_written_until_it_is_accepted(tmp_path: Path) -> None:
     speeds = np.geomspace(1.0, 300.0, 12) / 80.0
     rows = "".join(f"{speed},{80.0 * 0.05 + 6400.0 * 3e-4 * speed}\n" for speed in speeds)

@@ -82,6 +82,7 @@ def test_a_run_has_the_columns_the_numbers_and_the_tolerance_that_are_asked_for(
     assert "adaptive, rtol 1e-07" in result.stdout
 
 
+@pytest.mark.slow("commands")
 @pytest.mark.parametrize(("name", "begins"), [("run.svg", b"<?xml"), ("run.png", b"\x89PNG"), ("run.pdf", b"%PDF")])
 def test_a_picture_is_drawn_of_what_changes(name: str, begins: bytes, folder: Path) -> None:
     result = strainwave("simulate", "joint.toml", "--scenario", "ramp.toml", "--plot", name, folder=folder)
@@ -90,6 +91,7 @@ def test_a_picture_is_drawn_of_what_changes(name: str, begins: bytes, folder: Pa
     assert result.stdout.endswith(f"wrote {name}\n")
 
 
+@pytest.mark.slow("commands")
 def test_a_run_in_which_nothing_changes_is_drawn_too(folder: Path) -> None:
     (folder / "rest.toml").write_text("duration = 0.1\ncommand = 0.0")
     result = strainwave("simulate", "position-drive", "--scenario", "rest.toml", "--plot", "run.svg", folder=folder)
@@ -120,6 +122,7 @@ def test_ratings_are_told_whatever_is_recorded(folder: Path) -> None:
     assert sw.Recording.read(folder / "jump.csv").names == ("time", "current")
 
 
+@pytest.mark.slow("commands")
 def test_warnings_are_told_in_one_line(folder: Path) -> None:
     bristle = sw.friction.LuGre(
         coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5, viscous=4e-4
@@ -185,6 +188,9 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["compare", "a.csv", "none.csv"], ("none.csv cannot be read: No such file",)),
         (["compare", "a.csv", "b.csv", "--column", "speed"], ('no column "speed"; there are time, torque',)),
         (["compare", "a.csv", "points.csv"], ("no column in common",)),
+        (["compare", "a.csv", "b.csv", "--stroke", "5"], ("--measured and --stroke run two drives",)),
+        (["compare", "position-drive", "position-drive", "--stroke", "0"], ("stroke = 0.0 deg must lie in (0, inf)",)),
+        (["compare", "position-drive", "position-drive", "--measured", "a.csv"], ('a.csv has no column "command"',)),
         (["compare", "a.csv", "nan.csv"], ('nan.csv line 3, column "torque": nan is not finite',)),
         (["compare", "a.csv", "later.csv"], ("no time in common: 0 s to 1 s and 5 s to 6 s; shift the time of one",)),
         (["compare", "a.csv", "speed.csv"], ('column "torque": cannot convert "rad/s" to "N.m"; name the columns',)),
@@ -293,6 +299,7 @@ def test_drives_are_listed_with_what_they_are(tmp_path: Path) -> None:
     assert strainwave("drives", "position-drive", folder=tmp_path).stdout.startswith("position-drive ")
 
 
+@pytest.mark.slow("commands")
 def test_an_interrupt_of_a_run_leaves_nothing(folder: Path) -> None:
     """The picture is drawn before anything is written, with a package that waits here."""
     (folder / "matplotlib.py").write_text("import os, time\nos.write(1, b'here\\n')\ntime.sleep(30.0)")

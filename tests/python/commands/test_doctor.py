@@ -125,6 +125,7 @@ def test_kernels_that_are_not_used_are_shown_with_the_reason(
     assert stat.S_IMODE(kernels.stat().st_mode) == 0o777
 
 
+@pytest.mark.slow("commands")
 def test_it_imports_nothing_that_takes_long() -> None:
     code = f"from strainwave.commands.doctor import doctor; doctor(); import sys; print({HEAVY} & sys.modules.keys())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import json
+from inspect import signature
 from pathlib import Path
+from typing import Any
 
 import pytest
+import strainwave as sw
+import typer
+from strainwave.commands.export import export
+from strainwave.export import FORMS
+from strainwave.export.exported import Form
 
 from tests.python.command import refused, strainwave
 
 
+@pytest.mark.slow("commands")
 def test_each_kind_writes_its_files_and_numbers(tmp_path: Path) -> None:
     for words, file in (
         (("joint", "csg-20-100"), "joint.urdf"),
@@ -21,6 +29,33 @@ def test_each_kind_writes_its_files_and_numbers(tmp_path: Path) -> None:
         folder = tmp_path / words[0]
         assert (folder / file).exists()
         assert json.loads((folder / "export.json").read_text())["kind"] == words[0]
+
+
+NO_OPTIONS = {"slot": {"motion"}, "firmware": {"folder"}}  # arguments: a motion is no text, and the folder is --out
+
+
+@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.verb)
+def test_each_argument_of_an_export_is_an_option_with_its_default(form: Form) -> None:
+    group = typer.main.get_group(export)
+    verb: Any = group.get_command(typer.Context(group), form.verb)
+    options = {option.name: option for option in verb.params}
+    _, *others = signature(form.write).parameters.values()
+    arguments = {each.name: each for each in others if each.name not in NO_OPTIONS.get(form.verb, ())}
+    assert options.keys() - arguments.keys() == {form.model, "out"}
+    assert arguments.keys() <= options.keys()
+    for name, each in arguments.items():
+        assert options[name].help
+        assert each.default in (each.empty, options[name].default)
+
+
+def test_every_export_is_a_verb(tmp_path: Path) -> None:
+    functions = {name for name in sw.export.__all__ if name.islower()} - {"read_bam"}
+    assert {form.write.__name__ for form in FORMS} == functions
+    shown = strainwave("export", "--help", folder=tmp_path).stdout
+    assert [line.split()[0] for line in shown.partition("Commands:")[2].splitlines() if line] == [
+        *(form.verb for form in FORMS),
+        "from-bam",
+    ]
 
 
 def test_a_controller_becomes_firmware(tmp_path: Path) -> None:

@@ -36,6 +36,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@pytest.mark.whole_path("orders")
 def test_several_files_become_lines_a_page_numbers_and_spectra(folder: Path) -> None:
     result = strainwave("orders", "both.csv", "joint.csv", "--out", "found", folder=folder)
     assert result.returncode == 0, result.stderr
@@ -65,6 +66,7 @@ def test_a_constant_speed_without_time_needs_a_rate_and_says_what_it_cannot_tell
     assert "a second run at another speed settles it" in result.stdout.replace("\n    ", " ")
 
 
+@pytest.mark.slow("commands")
 def test_what_cannot_be_is_refused_in_one_line(folder: Path) -> None:
     refused(folder, ["orders", "joint.csv", "--column", "torque=Nothing"], "Nothing")
     refused(folder, ["orders", "both.csv", "--ratio", 100], "both.csv", "is not that of the angles")
@@ -78,6 +80,7 @@ def test_what_cannot_be_is_refused_in_one_line(folder: Path) -> None:
     refused(folder, ["orders", "both.csv", "--side", "left"], "--side left must be one of input, output")
 
 
+@pytest.mark.slow("commands")
 def test_a_ratio_given_as_a_constant_is_that_of_the_option(folder: Path) -> None:
     for option in (["--ratio", 80], ["--constant", "ratio=80"]):
         result = strainwave("orders", "both.csv", *option, "--out", "given", folder=folder)

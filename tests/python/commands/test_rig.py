@@ -118,6 +118,7 @@ def test_a_plan_that_cannot_be_made_is_refused(tmp_path: Path, options: tuple[st
 # ---- simulate and analyse ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow("commands")
 def test_a_virtual_test_gives_back_the_row_of_document_t(made: Path, analysed: Result) -> None:
     out = made.parent / "found"
     names = {"report.html", "results.json", "loop-0deg.csv", "loop-0deg.parquet", "angles.csv", "angles.parquet"}
@@ -136,6 +137,7 @@ def test_a_virtual_test_gives_back_the_row_of_document_t(made: Path, analysed: R
     assert f"for a gear: strainwave identify {GEAR} found/loop-0deg.csv\n" in analysed.stdout
 
 
+@pytest.mark.slow("commands")
 def test_the_photographs_stay_as_they_are_and_the_report_has_their_hashes(test: Path, tmp_path: Path) -> None:
     before = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in test.iterdir()}
     assert strainwave("rig", "analyse", "test", folder=tmp_path).returncode == 0
@@ -145,6 +147,7 @@ def test_the_photographs_stay_as_they_are_and_the_report_has_their_hashes(test: 
     assert all(digest in html for name, digest in before.items() if name.endswith(".png") or name in ("steps.csv", "rig.toml"))
 
 
+@pytest.mark.slow("commands")
 def test_the_loop_feeds_an_identification_without_retyping(made: Path, analysed: Result) -> None:
     command = next(line for line in analysed.stdout.splitlines() if line.startswith("for a gear: "))
     result = strainwave(*command.removeprefix("for a gear: strainwave ").split(), "--out", "gear", folder=made.parent)
@@ -153,6 +156,7 @@ def test_the_loop_feeds_an_identification_without_retyping(made: Path, analysed:
     assert "gear.stiffness.a1," in (made.parent / "gear" / "numbers.csv").read_text()
 
 
+@pytest.mark.slow("commands")
 def test_a_loop_that_others_measured_is_analysed(tmp_path: Path) -> None:
     result = strainwave("rig", "analyse", LOOP, "--gear", GEAR, "--rated-torque", 0.36, folder=tmp_path)
     assert result.returncode == 0, result.stderr
@@ -163,6 +167,7 @@ def test_a_loop_that_others_measured_is_analysed(tmp_path: Path) -> None:
     assert np.allclose(again.values("input_angle", "deg"), Recording.read(LOOP)["input_angle"])
 
 
+@pytest.mark.slow("commands")
 def test_columns_of_a_loop_may_have_other_names_and_no_units(tmp_path: Path) -> None:
     loop = Recording.read(LOOP)
     rows = zip(loop.values("input_angle", "deg").tolist(), loop.values("input_torque", "N.m").tolist(), strict=True)
@@ -178,6 +183,7 @@ def test_columns_of_a_loop_may_have_other_names_and_no_units(tmp_path: Path) -> 
     assert np.allclose(again.values("input_angle", "deg"), loop.values("input_angle", "deg"))
 
 
+@pytest.mark.slow("commands")
 def test_loops_of_an_earlier_analysis_are_told(tmp_path: Path) -> None:
     for position in (30, 0):
         result = strainwave("rig", "analyse", LOOP, "--positions", position, folder=tmp_path)
@@ -192,6 +198,7 @@ def test_a_virtual_test_says_what_its_steps_of_torque_cost(tmp_path: Path) -> No
     )
 
 
+@pytest.mark.slow("commands")
 def test_loops_of_several_files_are_compared(tmp_path: Path) -> None:
     other = Recording.read(LOOP)
     Recording({"input_angle": 1.02 * other["input_angle"], "input_torque": other["input_torque"]}, other.units).to_csv(
@@ -202,6 +209,7 @@ def test_loops_of_several_files_are_compared(tmp_path: Path) -> None:
     assert "they differ" in result.stdout
 
 
+@pytest.mark.slow("commands")
 def test_friction_from_a_table_is_taken_out(tmp_path: Path) -> None:
     speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0])
     Recording({"speed": speed, "torque": 0.02 + 1e-3 * speed}, {"speed": "rad/s", "torque": "N.m"}).to_csv(
@@ -224,6 +232,7 @@ def test_friction_from_a_table_is_taken_out(tmp_path: Path) -> None:
     assert "loop-0deg.csv: a torsion loop or branch" in gear.stdout
 
 
+@pytest.mark.slow("commands")
 def test_departures_from_the_plan_are_told(test: Path, tmp_path: Path) -> None:
     steps = read_steps(test)
     write_steps([step for step in steps if step.number != 3], test / "steps.csv")
@@ -231,6 +240,7 @@ def test_departures_from_the_plan_are_told(test: Path, tmp_path: Path) -> None:
     assert "Step 3 of the plan is skipped" in result.stdout
 
 
+@pytest.mark.slow("commands")
 def test_a_photograph_that_tells_nothing_is_left_out_and_told(test: Path, tmp_path: Path) -> None:
     (test / "step-004.png").write_bytes(b"not a picture")
     result = strainwave("rig", "analyse", "test", folder=tmp_path)
@@ -282,6 +292,7 @@ def test_photographs_that_are_not_there_are_refused_where_none_is_left(test: Pat
     refused(tmp_path, ("rig", "analyse", "test"), "no position has two steps with torque and angle")
 
 
+@pytest.mark.slow("commands")
 def test_results_are_whole_or_not_there(made: Path, tmp_path: Path) -> None:
     (tmp_path / "found" / "report.html").mkdir(parents=True)
     refused(tmp_path, ("rig", "analyse", made, "--out", "found"), "report.html cannot be written: it is a folder")
@@ -290,6 +301,7 @@ def test_results_are_whole_or_not_there(made: Path, tmp_path: Path) -> None:
 # ---- measure ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow("commands")
 def test_a_test_is_rehearsed_broken_off_and_resumed(tmp_path: Path, typed: list[str]) -> None:
     measure = ("rig", "measure", "--camera", "virtual", "--interval", 1e-6, *SMALL, "--out", "test")
     typed += ["", "t 23.5", "", "q"]
@@ -314,6 +326,7 @@ def test_a_test_is_rehearsed_broken_off_and_resumed(tmp_path: Path, typed: list[
     assert strainwave("rig", "analyse", "test", folder=tmp_path).returncode == 0
 
 
+@pytest.mark.slow("commands")
 def test_another_plan_does_not_go_on_with_a_test(tmp_path: Path, typed: list[str]) -> None:
     measure = ("rig", "measure", "--camera", "virtual", "--interval", 1e-6, "--out", "test")
     typed += ["", "q"]
@@ -371,6 +384,7 @@ def test_a_camera_without_opencv_says_what_to_install(
     assert "install strainwave[video]" in result.stderr.splitlines()[-1]
 
 
+@pytest.mark.slow("commands")
 def test_a_guide_that_is_killed_leaves_what_was_done(tmp_path: Path) -> None:
     command = [
         sys.executable,
@@ -401,6 +415,7 @@ def test_a_guide_that_is_killed_leaves_what_was_done(tmp_path: Path) -> None:
 # ---- watch -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow("commands")
 def test_a_folder_is_followed(made: Path, tmp_path: Path) -> None:
     result = strainwave("rig", "watch", made, "--idle", 1e-3, "--interval", 1e-3, folder=tmp_path)
     assert result.returncode == 0

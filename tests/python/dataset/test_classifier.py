@@ -34,6 +34,7 @@ def runs(effect: float, own: float, seed: int = 0) -> LabelledRuns:
     return LabelledRuns({"first": first} | others, label, unit, condition)
 
 
+@pytest.mark.slow("dataset")
 def test_a_feature_that_determines_the_fault_is_found_on_units_and_conditions_that_are_held_out() -> None:
     labelled = runs(effect=12.0, own=1.0)
     found = benchmark(labelled, lambda train: labelled.features["first"] > 6.0)
@@ -43,12 +44,14 @@ def test_a_feature_that_determines_the_fault_is_found_on_units_and_conditions_th
     assert found.detector.accuracy > 0.98
 
 
+@pytest.mark.slow("dataset")
 def test_a_split_by_run_pretends_what_held_out_units_do_not_have() -> None:
     found = benchmark(runs(effect=0.0, own=1.0))
     assert found.leaky.accuracy > 0.95  # the forest recognises units
     assert found.by_unit.low < 0.5 < found.by_unit.high + 0.1
 
 
+@pytest.mark.slow("dataset")
 def test_chance_has_one_over_the_labels_inside_the_quantiles_of_its_shuffles() -> None:
     """Features of the unit alone: the answers of a shuffle are the same for all runs of a unit, and differ between shuffles."""
     found = benchmark(runs(effect=0.0, own=1.0)).chance
@@ -57,6 +60,7 @@ def test_chance_has_one_over_the_labels_inside_the_quantiles_of_its_shuffles() -
     assert found.units == round(classifier.HELD_OUT_SHARE * UNITS)
 
 
+@pytest.mark.slow("dataset")
 def test_counts_of_the_confusion_are_those_of_the_runs_that_were_held_out() -> None:
     found = benchmark(runs(effect=3.0, own=0.0))
     assert found.confusion.sum() == found.by_unit.runs

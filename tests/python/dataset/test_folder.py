@@ -66,6 +66,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return plan, make(plan, place / "set", workers=1)
 
 
+@pytest.mark.slow("dataset")
 def test_killed_workers_and_commands_leave_an_equal_data_set(whole: tuple[Path, Path], tmp_path: Path) -> None:
     plan, reference = whole
     folder = tmp_path / "set"
@@ -85,6 +86,7 @@ def test_killed_workers_and_commands_leave_an_equal_data_set(whole: tuple[Path, 
     assert hashes(folder) == hashes(reference)
 
 
+@pytest.mark.whole_path("dataset")
 def test_a_data_set_leaves_no_temporary_files(whole: tuple[Path, Path]) -> None:
     names = {path.name for path in whole[1].iterdir()}
     assert names == {"SHA256SUMS", "card.md", "manifest.json", "plan.toml", "samples", "shards"}
@@ -93,6 +95,7 @@ def test_a_data_set_leaves_no_temporary_files(whole: tuple[Path, Path]) -> None:
     )
 
 
+@pytest.mark.whole_path("dataset")
 def test_the_sums_are_those_of_the_files(whole: tuple[Path, Path]) -> None:
     """Each line is the digest, two spaces and the name, as sha256sum writes and checks it."""
     lines = [line.split("  ", 1) for line in (whole[1] / "SHA256SUMS").read_text().splitlines()]
@@ -101,6 +104,7 @@ def test_the_sums_are_those_of_the_files(whole: tuple[Path, Path]) -> None:
     }
 
 
+@pytest.mark.slow("dataset")
 def test_drafts_of_killed_workers_are_removed(whole: tuple[Path, Path], tmp_path: Path) -> None:
     plan, reference = whole
     folder = tmp_path / "set"
@@ -111,6 +115,7 @@ def test_drafts_of_killed_workers_are_removed(whole: tuple[Path, Path], tmp_path
     assert hashes(folder) == hashes(reference)
 
 
+@pytest.mark.whole_path("dataset")
 def test_pandas_reads_labels_parameters_and_features(whole: tuple[Path, Path]) -> None:
     frame = pandas.read_parquet(whole[1] / "shards")
     plan = DatasetPlan.of(MANY)
@@ -121,6 +126,7 @@ def test_pandas_reads_labels_parameters_and_features(whole: tuple[Path, Path]) -
     assert np.stack(samples["current"].to_list()).shape == (plan.members, 6)
 
 
+@pytest.mark.whole_path("dataset")
 def test_the_manifest_has_unit_and_role_of_each_column_and_the_source_of_each_parameter(whole: tuple[Path, Path]) -> None:
     content = json.loads((whole[1] / "manifest.json").read_text())
     frame = pandas.read_parquet(whole[1] / "shards")
@@ -134,6 +140,7 @@ def test_the_manifest_has_unit_and_role_of_each_column_and_the_source_of_each_pa
     assert {"strainwave", "numpy", "scipy", "pyarrow", "python"} <= set(content["versions"])
 
 
+@pytest.mark.whole_path("dataset")
 def test_the_card_names_every_column_and_what_limits_the_data(whole: tuple[Path, Path]) -> None:
     text = (whole[1] / "card.md").read_text()
     for name in pandas.read_parquet(whole[1] / "shards").columns:
@@ -142,6 +149,7 @@ def test_the_card_names_every_column_and_what_limits_the_data(whole: tuple[Path,
     assert "No run was measured." in text
 
 
+@pytest.mark.whole_path("dataset")
 def test_another_plan_is_refused_in_the_same_folder(whole: tuple[Path, Path], tmp_path: Path) -> None:
     before = hashes(whole[1])
     with pytest.raises(FileExistsError, match=r"has the data set of another plan \(Small\); take another folder"):
@@ -189,6 +197,7 @@ def test_a_worker_that_is_refused_ends_the_command_with_its_reason(tmp_path: Pat
         make(write(tmp_path), tmp_path / "set", workers=1)
 
 
+@pytest.mark.slow("dataset")
 def test_the_script_of_a_caller_is_not_run_again(tmp_path: Path) -> None:
     """No guard of __main__: workers run nothing of the script."""
     write(tmp_path)
@@ -204,6 +213,7 @@ def test_the_script_of_a_caller_is_not_run_again(tmp_path: Path) -> None:
 # Slurm
 
 
+@pytest.mark.slow("dataset")
 def test_a_slurm_array_makes_an_equal_data_set(whole: tuple[Path, Path], tmp_path: Path) -> None:
     plan, reference = whole
     folder = tmp_path / "a set"
@@ -263,6 +273,7 @@ def test_a_wrong_command_is_refused(tmp_path: Path, arguments: list[str], said: 
 # Dask
 
 
+@pytest.mark.slow("dataset")
 def test_dask_makes_an_equal_data_set_though_workers_are_killed(whole: tuple[Path, Path], tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     plan, reference = whole
@@ -290,6 +301,7 @@ def test_dask_makes_an_equal_data_set_though_workers_are_killed(whole: tuple[Pat
     assert hashes(folder) == hashes(reference)
 
 
+@pytest.mark.slow("dataset")
 def test_dask_without_an_address_is_refused(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     with pytest.raises(ValueError, match="needs the address of a scheduler"):

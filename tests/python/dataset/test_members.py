@@ -51,6 +51,7 @@ def test_shards_have_every_member_once_and_none_spans_two_conditions() -> None:
     assert all(first // each == (last - 1) // each for first, last in spans)
 
 
+@pytest.mark.slow("dataset")
 def test_a_member_made_alone_is_its_row_of_the_data_set(faulty: tuple[Shards, list[dict[str, Any]]]) -> None:
     made, all_rows = faulty
     for index in (0, 61, 130, len(all_rows) - 1):

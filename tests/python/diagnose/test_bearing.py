@@ -58,6 +58,7 @@ def test_the_orders_are_those_of_the_fault() -> None:
     assert "bearing 2, outer ring" in two
 
 
+@pytest.mark.slow("diagnose")
 def test_a_simulated_fault_of_a_bearing_is_named(records: dict[str, sw.Recording]) -> None:
     healthy = [read(records[name], name) for name in ("day-0", "day-1", "day-2")]
     question = Question(JOINT, ratio=100.0, bearings=(BEARING,))
@@ -73,6 +74,7 @@ def test_a_simulated_fault_of_a_bearing_is_named(records: dict[str, sw.Recording
     assert not names["bearing, inner ring"].detected
 
 
+@pytest.mark.slow("diagnose")
 def test_the_command_names_the_element(records: dict[str, sw.Recording], tmp_path: Path) -> None:
     JOINT.save(tmp_path / "joint.toml")
     records["bearing"].to_csv(tmp_path / "bearing.csv")
@@ -93,6 +95,7 @@ def test_a_multiple_of_a_bearing_that_is_no_whole_order_is_its_cause() -> None:
     assert other.endswith("a bearing, the motor, or a resonance")
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize(
     ("options", "reason"),
     [

@@ -50,6 +50,7 @@ def results(folder: Path, name: str) -> dict[str, dict[str, object]]:
     return {each["name"]: each for each in joint["recordings"]}
 
 
+@pytest.mark.whole_path("diagnose")
 def test_a_change_is_an_alarm_with_its_cause_and_a_later_healthy_day_is_none(folder: Path) -> None:
     done = strainwave("diagnose", "later.csv", "crack.csv", *JOINT, "--baseline", "healthy", "--out", "a", folder=folder)
     assert done.returncode == 3, done.stderr
@@ -68,6 +69,7 @@ def test_a_change_is_an_alarm_with_its_cause_and_a_later_healthy_day_is_none(fol
         assert each["low"] < 0.06 < each["high"]
 
 
+@pytest.mark.slow("diagnose")
 def test_a_quiet_recording_ends_with_exit_code_0_and_states_the_smallest_change(folder: Path) -> None:
     done = strainwave("diagnose", "later.csv", *JOINT, "--baseline", "healthy", "--out", "b", folder=folder)
     assert done.returncode == 0, done.stderr
@@ -95,6 +97,7 @@ def test_a_run_without_load_is_insensitive_and_not_healthy(folder: Path) -> None
     assert done.returncode == 0
 
 
+@pytest.mark.slow("diagnose")
 def test_a_recording_at_rest_is_refused_beside_those_that_are_used(folder: Path) -> None:
     done = strainwave("diagnose", "rest.csv", "later.csv", *JOINT, "--out", "e", folder=folder)
     assert done.returncode == 0, done.stderr
@@ -112,6 +115,7 @@ def test_without_a_ratio_the_page_states_that_the_amplitude_per_error_is_not_kno
     assert "is detected with probability 0.9. It is not known without the ratio of the gear." in page
 
 
+@pytest.mark.slow("diagnose")
 def test_recordings_of_one_name_in_several_folders_have_hours_and_reasons_of_their_own(folder: Path) -> None:
     for day, name in enumerate(("later.csv", "rest.csv", "rest.csv")):
         (folder / f"d{day}").mkdir()
@@ -125,6 +129,7 @@ def test_recordings_of_one_name_in_several_folders_have_hours_and_reasons_of_the
     assert list(joint["refused"]) == ["d1/run.csv", "d2/run.csv"]
 
 
+@pytest.mark.slow("diagnose")
 def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
     names = [f"wear-{k}.csv" for k in range(6)]
     options = ("--hours", "0,100,200,300,400,500", "--threshold", "20", "--baseline", "healthy", "--out", "f")
@@ -168,6 +173,7 @@ def test_options_that_do_not_fit_are_refused_in_one_line(folder: Path, words: tu
     refused(folder, ("diagnose", *words), reason)
 
 
+@pytest.mark.slow("diagnose")
 def test_a_record_that_is_no_ramp_has_a_note_and_no_misalignment(folder: Path) -> None:
     drive = ("--gear", "tilt-actuator-lumped", "--geometry", "--out", "g")
     done = strainwave("diagnose", "later.csv", *drive, folder=folder)
@@ -177,6 +183,7 @@ def test_a_record_that_is_no_ramp_has_a_note_and_no_misalignment(folder: Path) -
     assert "no misalignment is estimated" in done.stdout
 
 
+@pytest.mark.slow("diagnose")
 def test_a_plan_prints_the_limit_of_each_order(folder: Path) -> None:
     drive = sw.GearSet.read("csg-20-100").with_parts(
         motor=sw.motor.CurrentSource(torque_constant=0.05, inertia=1.5e-4),

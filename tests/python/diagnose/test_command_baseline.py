@@ -54,6 +54,7 @@ def test_blocks_have_equal_motion() -> None:
     assert np.allclose(moved, moved.mean(), rtol=0.05)
 
 
+@pytest.mark.slow("diagnose")
 def test_false_alarms_are_no_more_than_stated() -> None:
     """Of 80 healthy recordings, at a stated rate of 1 in 10: more alarms than 1 in 1000 sets would have are a failure."""
     alarms = sum(bool(against(joint(2 * k), joint(2 * k + 1), false_alarm=0.1).alarms) for k in range(80))
@@ -61,6 +62,7 @@ def test_false_alarms_are_no_more_than_stated() -> None:
     assert alarms <= binom.isf(1e-3, 80, 0.1)
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("drift", [0.5, 1.0])
 def test_a_drift_that_goes_on_from_the_baseline_is_no_alarm(drift: float) -> None:
     alarms = [against(joint(k, drift=drift), joint(100 + k, drift=drift, begin=1.0)).alarms for k in range(10)]

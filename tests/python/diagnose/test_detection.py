@@ -47,6 +47,7 @@ def test_the_signal_to_noise_that_is_needed_has_the_power_asked_for() -> None:
     assert needed_signal_to_noise(0.9, 1e-3, 12.0) > needed_signal_to_noise(0.9, 1e-3, inf)
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("freedom", [16.0, inf])
 @pytest.mark.parametrize("true", [0.0, 1.0, 4.0])
 def test_the_interval_of_an_amplitude_covers_it_as_often_as_stated(true: float, freedom: float) -> None:

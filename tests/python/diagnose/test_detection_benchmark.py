@@ -36,6 +36,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(detection_benchmark, "FAULTS", {name: (fault, (1.0,)) for name, (fault, _) in FAULTS.items()})
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.usefixtures("few")
 def test_severe_faults_are_alarms_and_healthy_days_are_none() -> None:
     (result,) = results(1, [CASE], {(CASE.noise, CASE.length): (inf, 0.0)}, seed=5)
@@ -50,6 +51,7 @@ def test_severe_faults_are_alarms_and_healthy_days_are_none() -> None:
     assert f"| crack | {BASE.label} | 1 | > 1 | 1 |" in lines
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.usefixtures("few")
 def test_thresholds_are_exceeded_by_the_stated_share_of_healthy_days(monkeypatch: pytest.MonkeyPatch) -> None:
     """A rate of 1 in 3 of six days, three in each condition: the third largest change, which two days exceed."""

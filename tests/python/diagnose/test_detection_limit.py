@@ -46,6 +46,7 @@ def test_the_limit_is_that_of_the_closed_form() -> None:
     assert found.arcminutes == pytest.approx(found.amplitude / RAD_PER_ARCMIN)
 
 
+@pytest.mark.slow("diagnose")
 def test_the_limit_falls_with_load_time_and_a_quieter_sensor() -> None:
     base = planned()
     assert planned(40.0).amplitude == pytest.approx(0.5 * base.amplitude, rel=0.01)
@@ -76,6 +77,7 @@ def test_the_page_has_the_tables_of_load_speed_and_duration() -> None:
     assert [varied.count(name) for name in ("load_torque", "speed", "duration")] == [5, 10, 4]
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize(
     "printed",  # those that take the least time; `python -m tests.evidence.detection_limits` computes all
     [
@@ -90,6 +92,7 @@ def test_a_limit_is_the_one_that_the_page_prints(printed: PrintedLimit) -> None:
     assert printed.is_met_by(found), found.arcminutes
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("name", ["space-pointing-joint", "position-drive", "two-inertia-gear, PI"])
 def test_the_planned_limit_is_met(name: str) -> None:
     case = next(each for each in cases() if each.name == name)
@@ -99,6 +102,7 @@ def test_the_planned_limit_is_met(name: str) -> None:
     assert shares[1] == pytest.approx(0.9, abs=3.0 * sqrt(0.09 / 1000) + 0.01)
 
 
+@pytest.mark.slow("diagnose")
 def test_order_lines_detects_what_was_planned() -> None:
     """The recordings that a user has, each with its noise, through the function that a user calls."""
     case = Case("signature", signature_drive(), 10.0, 20.0, 0.05)
@@ -111,12 +115,14 @@ def test_order_lines_detects_what_was_planned() -> None:
     assert found / draws == pytest.approx(0.9, abs=3.0 * sqrt(0.09 / draws))
 
 
+@pytest.mark.slow("diagnose")
 def test_the_bound_of_amplitudes_is_reached_on_a_catalogue_drive() -> None:
     spread, reported = bound_ratio(next(each for each in cases() if each.name == "position-drive"), 1000)
     assert spread == pytest.approx(1.0, abs=0.2)
     assert reported == pytest.approx(1.0, abs=0.2)
 
 
+@pytest.mark.slow("diagnose")
 def test_a_cogging_line_at_the_order_asks_for_a_baseline() -> None:
     limit = detection_limit(
         sw.load("robot-joint"), speed=50.0, load_torque=40.0, duration=5.0, sample_rate=1000.0, noise=0.01, order=6.0

@@ -36,6 +36,7 @@ def found() -> list[Diagnosis]:
     return list(diagnoses(2, DAYS, day_spread=0.1, noise=(0.003, 0.003), false_alarm=RATE))
 
 
+@pytest.mark.slow("diagnose")
 def test_healthy_units_raise_no_more_alarms_than_stated(found: list[Diagnosis]) -> None:
     runs = [run for each in found for run in each.runs]
     assert len(runs) == 2 * DAYS.later
@@ -43,6 +44,7 @@ def test_healthy_units_raise_no_more_alarms_than_stated(found: list[Diagnosis]) 
     assert min(least_probability(run) for run in runs) > RATES[-1]  # six runs: none is an alarm at 0.001
 
 
+@pytest.mark.slow("diagnose")
 def test_the_least_probability_of_a_run_determines_its_alarm_at_every_stated_rate(found: list[Diagnosis]) -> None:
     for each in found:
         for run in each.runs:
@@ -64,6 +66,7 @@ def day(random: np.random.Generator, amplitudes: np.ndarray, spread: float, nois
     return joint_motion(usable(recording, "a day", ratio=100.0))
 
 
+@pytest.mark.slow("diagnose")
 def test_the_comparison_alone_has_no_more_alarms_than_stated_in_many_runs() -> None:
     random, probabilities = np.random.default_rng(2), list[float]()
     for _ in range(UNITS):

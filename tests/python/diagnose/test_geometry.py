@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
-from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
+from strainwave.diagnose.actuator_ramp import ActuatorRamp, wave_generator
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.geometry import Geometry, misalignment_from_current, ramp_of
 from strainwave.diagnose.inversion import displaced, tilted
@@ -21,7 +21,7 @@ from tests.support.signature_drive import signature_ramp
 
 SET = GearSet.read("tilt-actuator-lumped")
 RAMP = ActuatorRamp.of(SET.drive, stroke=float(np.radians(60.0)), duration=3.0)
-LAW, _ = geometry(SET.drive)
+LAW, _ = wave_generator(SET.drive)
 MEMBERS, UNITS = 32, 24
 UNITS_INSIDE = 20  # of 24: fewer have a probability of 0.4 % if 95 % are inside
 
@@ -42,6 +42,7 @@ def diagnosed(law: Any, drives: PossibleDrives, ramp: ActuatorRamp = RAMP) -> Ge
     return misalignment_from_current(record_of(ramp, law), SET, drives=drives)
 
 
+@pytest.mark.slow("diagnose")
 def test_the_interval_covers_drawn_drives_and_that_of_noise_alone_does_not(drives: PossibleDrives) -> None:
     found = list(units(SET, RAMP, UNITS, drives=drives))
     inside = np.array([unit.inside for unit in found]).sum(axis=0)
@@ -51,6 +52,7 @@ def test_the_interval_covers_drawn_drives_and_that_of_noise_alone_does_not(drive
     assert np.median([abs(unit.error[0]) for unit in found]) < 0.5e-6
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("combine", ["single", "max"])
 def test_how_the_lobes_share_follows_from_the_orders(combine: str, drives: PossibleDrives) -> None:
     law = LAW.replace(combine=combine, housing_eccentricity=14e-6, housing_direction=0.5)
@@ -61,6 +63,7 @@ def test_how_the_lobes_share_follows_from_the_orders(combine: str, drives: Possi
     assert not found.contains((1.2 * law.eccentricity[0], law.eccentricity[1]))
 
 
+@pytest.mark.slow("diagnose")
 def test_the_place_of_the_generator_on_its_shaft_is_reported_with_its_interval(drives: PossibleDrives) -> None:
     law = displaced(LAW.replace(combine="max"), (12e-6, 5e-6), 4e-6)
     found = diagnosed(law, drives)
@@ -74,6 +77,7 @@ def test_the_place_of_the_generator_on_its_shaft_is_reported_with_its_interval(d
     assert "c_x" not in lone.words()
 
 
+@pytest.mark.slow("diagnose")
 def test_a_tilt_is_told_as_the_eccentricity_that_it_is_equivalent_to(drives: PossibleDrives) -> None:
     law = tilted(LAW, (10e-6, -20e-6))
     assert_allclose(law.eccentricity, (10e-6, -20e-6), rtol=1e-4)
@@ -92,6 +96,7 @@ def test_a_tilt_is_told_as_the_eccentricity_that_it_is_equivalent_to(drives: Pos
     assert "e2 and alpha alone change no harmonic and are not identifiable from this record" in words
 
 
+@pytest.mark.slow("diagnose")
 def test_the_generators_own_misalignment_changes_no_order(drives: PossibleDrives) -> None:
     law = LAW.replace(generator_eccentricity=30e-6, generator_tilt_x=5e-3)
     found = diagnosed(law, drives)
@@ -100,6 +105,7 @@ def test_the_generators_own_misalignment_changes_no_order(drives: PossibleDrives
     assert not found.detected
 
 
+@pytest.mark.slow("diagnose")
 def test_a_drive_outside_of_the_set_is_reported(drives: PossibleDrives) -> None:
     heavy = RAMP.drive.replace({"load.moment_slope": 0.64})
     ramp = ActuatorRamp.of(heavy, RAMP.stroke, RAMP.duration)
@@ -108,11 +114,13 @@ def test_a_drive_outside_of_the_set_is_reported(drives: PossibleDrives) -> None:
     assert diagnosed(LAW.replace(housing_eccentricity=14e-6), drives).contradictions == ()
 
 
+@pytest.mark.slow("diagnose")
 def test_orders_that_no_misalignment_has_are_reported(drives: PossibleDrives) -> None:
     law = sw.kinematic_error.Fourier(order=[2.0, 3.0], amplitude=[2e-4, 2e-4], phase=[0.0, 1.0])
     assert any("do not have the ratios of a misalignment" in doubt for doubt in diagnosed(law, drives).contradictions)
 
 
+@pytest.mark.slow("diagnose")
 def test_an_unloaded_slow_run_is_insensitive_and_a_loaded_one_is_not() -> None:
     """Section 7.9 of the physics: about 1.2 mA without load, 240 mA with 20 N.m."""
     currents = {}

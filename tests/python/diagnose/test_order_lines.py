@@ -120,6 +120,7 @@ def test_a_steady_run_has_one_part_and_the_amplitude_of_a_sine() -> None:
     assert none.amplitude < 1e-8
 
 
+@pytest.mark.slow("diagnose")
 def test_the_bound_of_an_amplitude_is_reached_and_reported() -> None:
     random = np.random.default_rng(0)
     time = np.arange(0.0, 30.0, 5e-3)
@@ -133,6 +134,7 @@ def test_the_bound_of_an_amplitude_is_reached_and_reported() -> None:
     assert np.mean([line.sigma for line in found]) == pytest.approx(bound, rel=0.05)
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("colour", ["white", "pink"])
 def test_healthy_units_raise_alarms_at_the_stated_rate(colour: str) -> None:
     alarms, runs = false_alarms(colour, 0.01, 8, 250)
@@ -140,6 +142,7 @@ def test_healthy_units_raise_alarms_at_the_stated_rate(colour: str) -> None:
     assert low <= alarms <= high
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("colour", ["white", "pink"])
 def test_motion_to_and_fro_under_a_load_that_varies_raises_alarms_at_the_stated_rate(colour: str) -> None:
     """All four parts of each order are tested together, F with eight amplitudes; the colour is that over time."""

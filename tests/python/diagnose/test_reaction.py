@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.testing import assert_allclose
-from strainwave.diagnose.actuator_ramp import ActuatorRamp, geometry
+from strainwave.diagnose.actuator_ramp import ActuatorRamp, wave_generator
 from strainwave.diagnose.inversion import displaced, harmonics
 from strainwave.diagnose.reaction import CurrentPerError, current_per_error, parts_over_load
 from strainwave.orders.order_spectrum import order_amplitudes
@@ -41,9 +41,10 @@ def test_the_signature_of_a_held_input_is_that_of_the_closed_form(load: float, p
     assert_allclose(inertial, 1.0, rtol=0.1)  # at order 1 a part of 0.08 mA is separated from 32 mA
 
 
+@pytest.mark.slow("diagnose")
 def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(parts: CurrentPerError) -> None:
     """64.7 mA by J Omega^2 k / (k - J Omega^2) / (N K_t), 82 mA by n T / K_t; a loop multiplies both, and they are phasors."""
-    law, _ = geometry(RAMP.drive)
+    law, _ = wave_generator(RAMP.drive)
     error = float(np.abs(harmonics(displaced(law.replace(combine="max"), (E1, 0.0)))[1]))
     motor: Any = RAMP.drive.motor
     gear: Any = RAMP.drive.gear
@@ -63,8 +64,9 @@ def test_two_thirds_of_order_2_of_the_tilt_actuator_are_not_from_the_reaction(pa
     assert "Taken for reaction alone" in parts.words(2.0, error)
 
 
+@pytest.mark.slow("diagnose")
 def test_two_loads_determine_the_error_though_the_output_inertia_is_not_known(parts: CurrentPerError) -> None:
-    law, _ = geometry(RAMP.drive)
+    law, _ = wave_generator(RAMP.drive)
     error = harmonics(displaced(law, (E1, 0.0)))[1]
     heavier = RAMP.drive.replace({"load.inertia": 0.7})
     ramp = ActuatorRamp.of(heavier, RAMP.stroke, RAMP.duration).without_noise()

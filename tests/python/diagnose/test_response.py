@@ -33,6 +33,7 @@ def to_and_fro() -> sw.Recording:
     return noisy(run, NOISE, 0)
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("load_torque", [0.0, 20.0])
 def test_the_error_that_a_recording_shows_is_that_of_the_plan(load_torque: float) -> None:
     drive = signature_drive()  # with friction of the input, which one direction does not separate from the load
@@ -62,6 +63,7 @@ def test_the_signature_of_section_7_9_without_load_is_insensitive(load_torque: f
     assert two.needed > two.expected if not load_torque else two.needed < 0.05 * two.expected
 
 
+@pytest.mark.slow("diagnose")
 def test_without_a_whole_drive_the_response_is_that_of_virtual_work() -> None:
     found = diagnosis(to_and_fro(), sw.GearSet.read("csg-25-100"))
     assert found.response.startswith("by virtual work")
@@ -84,6 +86,7 @@ def test_one_direction_without_a_whole_drive_has_no_response() -> None:
     assert np.isnan(found.orders[0].error)
 
 
+@pytest.mark.slow("diagnose")
 @pytest.mark.parametrize("share", [0.75, 1.25])
 def test_an_unloaded_run_is_insensitive_though_its_friction_is_not_that_of_the_file(share: float) -> None:
     drive = signature_drive()

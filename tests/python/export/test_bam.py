@@ -40,12 +40,14 @@ laws = st.one_of(
 )
 
 
+@pytest.mark.slow("export")
 @given(law=laws, speed=st.floats(0.05, 2.0))
 def test_the_friction_is_that_of_the_gear_at_the_output(law, speed):
     at_input = float(law.steady(RATIO * speed))
     assert friction_by_bam(written(law), speed) == pytest.approx(RATIO * at_input, rel=1e-6)
 
 
+@pytest.mark.slow("export")
 @given(law=laws)
 def test_what_was_written_is_read_back(law, tmp_path_factory):
     path = tmp_path_factory.mktemp("bam") / "mine.json"

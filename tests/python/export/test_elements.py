@@ -38,6 +38,7 @@ def friction_share(gear: sw.Gear) -> float:
     return loss.rms_share
 
 
+@pytest.mark.slow("export")
 @given(spring=springs, slip=slips, clearance=st.floats(0.0, 1e-4))
 def test_springs_and_maxwell_elements_are_exact(spring, slip, clearance):
     law = stiffness.Backlash(law=spring, clearance=clearance) if clearance > 1e-6 else spring
@@ -77,6 +78,7 @@ def area(law, twist: float) -> float:
     return abs(float(np.trapezoid(torque[6000:], path[6000:])))
 
 
+@pytest.mark.slow("export")
 @given(coulomb=st.floats(0.01, 0.1), viscous=st.floats(0.0, 1e-3), ratio=st.sampled_from([30.0, 100.0, 160.0]))
 def test_dry_and_viscous_friction_of_all_places_add_at_the_input(coulomb, viscous, ratio):
     law = sw.friction.Coulomb(coulomb=coulomb, viscous=viscous)

@@ -63,6 +63,7 @@ def driven(model, data, steps):
     return np.array(angles)
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("name", DRIVES)
 def test_error_is_of_first_order_in_the_timestep(name):
     drive = sw.GearSet.read(name).drive
@@ -143,6 +144,7 @@ def test_an_unstable_timestep_is_refused_with_the_longest():
     assert 0.9 * longest < stated <= longest
 
 
+@pytest.mark.slow("export")
 def test_another_version_of_mujoco_is_refused_in_one_line(tmp_path):
     """The library is compiled against headers of a version that is not the installed one."""
     include, _ = export.installed_mujoco()

@@ -93,6 +93,7 @@ def single(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Loaded]:
     return programs(tmp_path_factory.mktemp("float"), "float", FLOAT_SHARES)
 
 
+@pytest.mark.whole_path("export")
 @pytest.mark.parametrize("name", DRIVES)
 def test_a_run_with_the_firmware_has_the_bits_of_the_simulation(name: str, doubled: dict[str, Loaded]) -> None:
     firmware, simulated = doubled[name], sw.simulate(DRIVES[name], COMMAND, sample=PERIOD)
@@ -130,6 +131,7 @@ FLOAT_SHARES = {
 CLOSED_LOOP_ERROR = 1e-7  # rad of the output, between the runs under both
 
 
+@pytest.mark.whole_path("export")
 @pytest.mark.parametrize("name", FLOAT_SHARES)
 def test_single_precision_is_as_accurate_as_stated(name: str, doubled: dict[str, Loaded], single: dict[str, Loaded]) -> None:
     chosen, exact, rounded = DRIVES[name], doubled[name], single[name]
@@ -200,6 +202,7 @@ def compile_strictly(command: Sequence[str], folder: Path, source: str, *options
     subprocess.run([*command, *options, *STRICT, "-c", source], cwd=folder, check=True)
 
 
+@pytest.mark.slow("export")
 def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: Path) -> None:
     """No heap, no exception, no initialisation; all numbers are constants, and no variable outlives a step."""
     firmware = [written(each, tmp_path, "float", name=f"c{number}") for number, each in enumerate(every_controller())]
@@ -228,6 +231,7 @@ def test_the_header_is_in_c(tmp_path: Path) -> None:
     assert "    float motor_torque;  /* N.m; for the motor, within [low, high] */\n" in header
 
 
+@pytest.mark.whole_path("export")
 def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(doubled: dict[str, Loaded]) -> None:
     chosen = DRIVES["model"]
     firmware, simulated = doubled["model"], sw.simulate(chosen, COMMAND, sample=PERIOD)

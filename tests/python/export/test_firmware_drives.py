@@ -53,6 +53,7 @@ def motion(period: float) -> dict[str, Array]:
     return inputs
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("name", NAMES)
 def test_firmware_moves_as_simulation(name: str, programs: dict[str, Loaded]) -> None:
     program, period = programs[name], PERIODS[name]
@@ -71,11 +72,13 @@ def test_firmware_moves_as_simulation(name: str, programs: dict[str, Loaded]) ->
         assert difference.max() <= share * np.abs(run[output]).max(), output
 
 
+@pytest.mark.slow("export")
 def test_headers_of_drives_compile_in_clang(programs: dict[str, Loaded]) -> None:
     folder = next(iter(programs.values())).firmware.header.parent
     subprocess.run([*checker("clang++"), *FLAGS.split(), *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)
 
 
+@pytest.mark.slow("export")
 def test_a_state_goes_on_where_a_copy_was_made(programs: dict[str, Loaded]) -> None:
     """The state in C is all that a drive remembers."""
     program, inputs = (

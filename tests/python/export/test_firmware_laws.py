@@ -107,6 +107,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Loaded]:
     return {name: Loaded(each, shared) for name, each in firmware.items()}
 
 
+@pytest.mark.whole_path("export")
 @pytest.mark.parametrize(("family", "name"), LAWS)
 def test_firmware_of_a_law_has_its_bits(family: str, name: str, programs: dict[str, Loaded]) -> None:
     found = COMPARED[family](programs[name], law_of(family, name))
@@ -115,6 +116,7 @@ def test_firmware_of_a_law_has_its_bits(family: str, name: str, programs: dict[s
         assert np.array_equal(firmware, expected)
 
 
+@pytest.mark.slow("export")
 def test_headers_of_laws_stand_side_by_side_in_clang(programs: dict[str, Loaded]) -> None:
     folder = next(iter(programs.values())).firmware.header.parent
     subprocess.run([*checker("clang++"), *FLAGS.split(), *NO_LIBRARY, "all.cpp"], cwd=folder, check=True)

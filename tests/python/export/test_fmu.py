@@ -82,6 +82,7 @@ def driven(block, outputs, first, last):
     return np.array(rows)
 
 
+@pytest.mark.whole_path("export")
 @pytest.mark.parametrize("version", DRIVES)
 def test_block_moves_as_simulation(version):
     """Chained runs count their time as the block does; the instants of one long run are rounded differently."""
@@ -142,6 +143,7 @@ def solved(version, folder):
     model.freeInstance()
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("version", DRIVES)
 def test_directional_derivatives_are_those_of_differences(version, tmp_path):
     """At a state in motion, by states and inputs together, in random directions."""
@@ -175,6 +177,7 @@ def test_directional_derivatives_are_those_of_differences(version, tmp_path):
             assert found == pytest.approx(expected, rel=1e-4, abs=1e-8 * np.abs(expected).max())
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("version", DRIVES)
 def test_solver_of_a_tool_comes_closer_with_its_tolerance(version, tmp_path):
     drive, path = drive_of(version), tmp_path / "block.fmu"
@@ -264,6 +267,7 @@ def test_instances_leave_no_memory_behind(tmp_path):
     assert resident() - before < 200 * size / 2  # an instance that is not freed takes more than its state
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("version", DRIVES)
 @pytest.mark.parametrize("content", [content_of, exchanged], ids=["co-simulation", "model exchange"])
 def test_description_is_valid(content, version, tmp_path):
@@ -357,6 +361,7 @@ def test_wrong_values_are_refused_with_a_message(values, message, capfd):
     assert re.search(message, output.out + output.err)
 
 
+@pytest.mark.slow("export")
 def test_source_fmu_compiles_by_a_plain_command(tmp_path):
     drive = drive_of(3)
     content = sw.export.fmu(drive, version=3, platforms=(), name="block").files["block.fmu"]

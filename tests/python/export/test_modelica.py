@@ -48,6 +48,7 @@ def library_of(found):
     return next(content for name, content in found.files.items() if "/Library/" in name)
 
 
+@pytest.mark.slow("export")
 def test_error_falls_with_the_period():
     coarse, fine = exported().losses
     assert coarse.size > 0.05
@@ -55,6 +56,7 @@ def test_error_falls_with_the_period():
     assert fine.largest < 0.6 * coarse.largest  # of first order
 
 
+@pytest.mark.slow("export")
 def test_header_is_c_and_sources_compile_by_the_command_of_the_remark(tmp_path):
     prefix = "StrainWaveDrive/Resources/"
     for name, content in exported().files.items():

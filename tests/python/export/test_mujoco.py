@@ -83,6 +83,7 @@ def error_of_mujoco(drive: sw.Drive, amplitude: float, timestep: float) -> float
 DC = sw.motor.DC(resistance=0.5, inductance=1e-3, torque_constant=0.1, back_emf=0.1, inertia=5e-5)
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize(("motor", "amplitude"), [(CURRENT, 3.0), (DC, 6.0)])
 @pytest.mark.parametrize("friction", [sw.friction.Coulomb(coulomb=0.046, viscous=3.5e-4), LUGRE])
 def test_a_run_converges_to_the_simulation_as_the_timestep_falls(motor, amplitude, friction):

@@ -70,6 +70,7 @@ class Joints:
         return torque
 
 
+@pytest.mark.slow("export")
 def test_it_moves_as_the_simulation(exported):
     assert {loss.quantity for loss in exported.losses} == {"torque", "load_torque", "twist", "input_speed", "current"}
     for loss in exported.losses:
@@ -77,6 +78,7 @@ def test_it_moves_as_the_simulation(exported):
         assert loss.largest_share < 1e-6, loss.quantity  # Newton hands angles on in single precision
 
 
+@pytest.mark.slow("export")
 def test_thousands_of_gears_move_as_one(package):
     many, one = Joints(package, COUNT), Joints(package, 1)
     torque, alone = many.swing(20), one.swing(20)
@@ -106,6 +108,7 @@ def test_a_masked_gear_begins_anew_at_its_joint(package):
     assert abs(torque[1]) > 1.0  # it was moved by a radian in one step
 
 
+@pytest.mark.slow("export")
 def test_a_builder_makes_actuators_of_joints(package):
     import newton
 
@@ -145,6 +148,7 @@ def test_numbers_that_no_gear_has_are_refused(package, numbers, message):
     assert joints.swing(20)[0] == Joints(package, 1).swing(20)[0]
 
 
+@pytest.mark.slow("export")
 def test_its_source_is_one_text_and_has_code_for_gpus(monkeypatch):
     if not nvrtc.is_installed():
         pytest.skip("the package nvidia-cuda-nvrtc is not installed")

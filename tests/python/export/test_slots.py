@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,6 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from strainwave.commands.export import slot as command
 from strainwave.export import Exported, ExportLoss
 from strainwave.export.slots import MAX_OVER_COMPENSATED_SHARE, SLOTS
 from strainwave.files.entries import Entry, Quantity
@@ -102,6 +100,7 @@ def has_friction_at_every_angle(law: Any) -> bool:
     return not refuses_angles(law) and bool(np.any(law.steady(np.full(257, 1.0), np.arange(257.0))))
 
 
+@pytest.mark.slow("export")
 @settings(max_examples=sample(10, 30), deadline=None)
 @given(law=strategies.models("friction", "steady").filter(has_friction_at_every_angle), count=st.integers(2, 20))
 def test_a_table_is_the_friction_at_its_points(law: Any, count: int) -> None:
@@ -122,6 +121,7 @@ def test_a_denser_table_loses_less() -> None:
     assert dense == pytest.approx(coarse / 4.0, rel=0.2)  # lines through a smooth curve
 
 
+@pytest.mark.slow("export")
 def test_scales_are_those_of_the_gear_of_little_friction() -> None:
     """All friction of a drawn gear is that of the stated one times one factor, so both scales are a factor."""
     stated = sw.GearSet.of(with_torque_constant(PLAIN), name="joint", source="measured")
@@ -134,6 +134,7 @@ def test_scales_are_those_of_the_gear_of_little_friction() -> None:
     assert loss(found).rms == pytest.approx((1.0 - factors[4]) * friction, rel=1e-6)
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("name", ["csg-20-100", "space-pointing-joint", "position-drive-full-friction"])
 def test_a_scale_over_compensates_few_gears(name: str) -> None:
     found = sw.export.slot(name, "viscous-coulomb-scale", members=40)
@@ -214,6 +215,7 @@ def test_a_torque_offset_follows_a_motion_that_is_given_and_the_rating_of_the_se
     assert len(found.table["time"]) == 2001
 
 
+@pytest.mark.slow("export")
 def test_what_is_assumed_is_remarked() -> None:
     for name in OF_FRICTION:
         assert any("friction is assumed" in remark for remark in sw.export.slot("csg-20-100", name).remarks)
@@ -272,6 +274,7 @@ def test_side_and_sign_are_the_first_remarks(side: str) -> None:
     assert second.startswith("sign: ")
 
 
+@pytest.mark.slow("export")
 @pytest.mark.parametrize("name", SLOTS)
 def test_the_command_writes_a_slot(name: str, tmp_path: Path) -> None:
     needs = {"torque-offset": {"rated_torque": 0.9}, "anticogging-map": {"load": 20.0}}.get(name, {})
@@ -306,14 +309,6 @@ def test_a_loss_relative_to_friction_names_it(tmp_path: Path) -> None:
         (first, *_) = json.loads((tmp_path / name / "export.json").read_text())["losses"]
         assert first["relative_to"] == "friction"
         assert first["largest_share"] == pytest.approx(first["largest"] / first["size"])
-
-
-def test_the_command_has_the_defaults_of_the_function() -> None:
-    options, known = signature(command).parameters, signature(sw.export.slot).parameters
-    assert options.keys() - known.keys() == {"gear", "out"}
-    assert known.keys() - options.keys() == {"drive", "motion"}
-    for name in (options.keys() & known.keys()) - {"name"}:
-        assert options[name].default == known[name].default, name
 
 
 def test_the_command_names_its_options(tmp_path: Path) -> None:

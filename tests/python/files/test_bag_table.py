@@ -124,6 +124,7 @@ def test_chunks_that_do_not_keep_what_they_claim(tmp_path: Path, packing: str, s
     refused(tmp_path / "run.mcap", reason)
 
 
+@pytest.mark.slow("files")
 def test_many_chunks_that_expand_each_to_what_it_claims(tmp_path: Path) -> None:
     (tmp_path / "run.mcap").write_bytes(mcap(*([chunk(ZEROS, b"zstd", PACKED["zstd"])] * 300)))
     with pytest.raises(ValueError, match=r"its records expands|a packed chunk expands"):

@@ -95,6 +95,7 @@ def whole_or_refused(folder: Path, name: str) -> None:
         assert same_bits(read, whole())
 
 
+@pytest.mark.slow("files")
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=200)
 @given(name=damaged, place=st.floats(0.0, 1.0, exclude_max=True), bit=st.integers(0, 7))
 def test_a_flipped_bit_changes_no_number_in_silence(name: str, place: float, bit: int, written: Path) -> None:
@@ -228,6 +229,7 @@ def start(folder: Path) -> subprocess.Popen[bytes]:
     return subprocess.Popen([sys.executable, "-c", RUN, str(folder)], cwd=ROOT, stderr=subprocess.PIPE)
 
 
+@pytest.mark.slow("files")
 def test_a_run_that_is_killed_at_any_moment_is_finished_to_the_same_bits(tmp_path: Path, written: Path) -> None:
     """Killed after some of its calls that reach the disk, each time from where the last one was."""
     code = """
@@ -254,6 +256,7 @@ for name in ("fsync", "replace"):
     assert contents(tmp_path) == contents(written)
 
 
+@pytest.mark.slow("files")
 def test_the_time_of_a_kill_does_not_matter(tmp_path: Path, written: Path) -> None:
     """By the clock, as it happens."""
     process = start(tmp_path)
@@ -288,6 +291,7 @@ def test_a_run_whose_disk_is_full_names_the_file_and_is_finished_to_the_same_bit
     assert contents(folder) == contents(written)
 
 
+@pytest.mark.slow("files")
 def test_a_folder_that_another_process_writes_to_is_refused(tmp_path: Path) -> None:
     with claiming(tmp_path):
         process = start(tmp_path)

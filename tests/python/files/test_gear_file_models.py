@@ -73,6 +73,7 @@ MAY_BE_LEFT_OUT = {
 }
 
 
+@pytest.mark.slow("files")
 @each(("keys", "model", "part"), MODELS)
 def test_no_parameter_of_any_model_may_be_left_out_but_those_of_faults(
     folder: Path, keys: tuple[str, ...], model: Any, part: dict[str, Any]
@@ -94,6 +95,7 @@ def test_no_parameter_of_any_model_may_be_left_out_but_those_of_faults(
             load("my.toml")
 
 
+@pytest.mark.whole_path("files")
 @each(("keys", "model", "part"), MODELS)
 def test_every_model_is_written_and_read_in_every_table(
     folder: Path, keys: tuple[str, ...], model: Any, part: dict[str, Any]

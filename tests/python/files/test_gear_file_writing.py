@@ -67,6 +67,7 @@ def gear_sets(draw: st.DrawFn) -> GearSet:
     )
 
 
+@pytest.mark.slow("files")
 @untimed
 @given(gear_sets())
 def test_a_set_written_and_read_is_equal_bit_for_bit(tmp_path: Path, gear_set: GearSet) -> None:
@@ -77,6 +78,7 @@ def test_a_set_written_and_read_is_equal_bit_for_bit(tmp_path: Path, gear_set: G
     assert repr(again.ratings) == repr(gear_set.ratings)
 
 
+@pytest.mark.slow("files")
 @untimed
 @given(gear_sets())
 def test_every_number_is_written_with_unit_and_source(tmp_path: Path, gear_set: GearSet) -> None:
@@ -107,6 +109,7 @@ def entries_of(content: Any, path: str = "") -> Iterator[tuple[str, dict[str, An
             yield from entries_of(inner, f"{path}.{key}".removeprefix("."))
 
 
+@pytest.mark.slow("files")
 @untimed
 @given(drives)
 def test_a_drive_that_was_saved_is_loaded_and_so_is_its_gear(tmp_path: Path, drive: sw.Drive) -> None:

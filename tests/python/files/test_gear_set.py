@@ -112,6 +112,7 @@ def test_a_file_may_leave_out_numbers_of_faults_and_keeps_those_that_it_has(name
     assert (getattr(again.motor, short), again.sources[number]) == (0.3, Entry("measured"))
 
 
+@pytest.mark.slow("files")
 @settings(max_examples=sample(6, 20))  # each of them has a hundred numbers
 @given(drives)
 def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none(drive: sw.Drive) -> None:

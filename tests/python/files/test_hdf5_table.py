@@ -83,6 +83,7 @@ def test_groups_and_references_that_contain_themselves(path: Path) -> None:
     assert {each.partition(" ")[0] for each in open_hdf5(path).left_out} == {"g.again", "g.up", "r"}
 
 
+@pytest.mark.slow("files")
 @pytest.mark.parametrize("is_alone", [False, True])
 def test_references_that_multiply(path: Path, is_alone: bool) -> None:
     with h5py.File(path, "a") as file:

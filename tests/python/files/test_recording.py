@@ -146,6 +146,7 @@ def test_with_column_adds_or_replaces() -> None:
     assert (replaced.names, replaced.unit("torque")) == (RUN.names, "N.cm")
 
 
+@pytest.mark.slow("files")
 @given(recordings())
 def test_equal_means_the_same_in_every_respect(recording: Recording) -> None:
     name = recording.names[-1]
@@ -423,6 +424,7 @@ def test_the_title_of_a_plot_is_that_of_the_recording_or_names_its_columns() -> 
     assert " ".join(title.split()) == "Column 0, column 1, column 2 and 3 more columns over time"
 
 
+@pytest.mark.slow("files")
 @untimed
 @given(st.integers(20_001, 200_003), st.data())
 def test_a_long_plot_keeps_single_peaks_and_both_ends(samples: int, data: st.DataObject) -> None:

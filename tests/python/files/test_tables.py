@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
-from strainwave.files.tables import open_table
+from strainwave.files.tables import FORMATS, LISTED, open_table
 
 from tests.python.files.test_recording import EMPTY, RUN, exactly, untimed
 from tests.support.work import calls
@@ -248,6 +248,7 @@ def test_any_text_is_read_as_the_csv_module_does_or_refused(tmp_path: Path, data
     assert numbers == expected_numbers(text, delimiter)
 
 
+@pytest.mark.slow("files")
 @settings(untimed, max_examples=25)
 @given(st.data())
 def test_where_a_block_of_the_reader_ends_changes_nothing(tmp_path: Path, data: st.DataObject) -> None:
@@ -384,14 +385,18 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
         Recording.read(path)
 
 
-KNOWN = ".csv, .txt, .tsv, .log, .parquet, .dat, .mat, .h5, .hdf5, .npy, .npz, .json, .jsonl, .mf4, .mdf, .bag, .mcap or .db3"
-
-
-def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
+def test_an_unknown_suffix_is_refused_with_those_of_all_formats(tmp_path: Path) -> None:
     path = tmp_path / "run.doc"
+    *others, last = [suffix for each in LISTED for suffix in each.suffixes]
+    assert {".csv", ".parquet", ".dat", ".mat"} < {*others, last}
     for read in (Recording.read, Recording.header):
-        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".doc" is not known; use {KNOWN}')):
+        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".doc" is not known; use {", ".join(others)} or {last}')):
             read(path)
+
+
+def test_no_suffix_belongs_to_two_formats() -> None:
+    assert len(FORMATS) == sum(len(each.suffixes) for each in LISTED)
+    assert all(suffix == suffix.lower() and suffix.startswith(".") for suffix in FORMATS)
 
 
 def test_other_files_that_people_have_are_refused_with_what_to_do(tmp_path: Path) -> None:
@@ -483,6 +488,7 @@ def test_truncated_parquet_is_refused(tmp_path: Path) -> None:
             Recording.from_parquet(path)
 
 
+@pytest.mark.slow("files")
 def test_a_flipped_bit_in_the_data_is_refused_or_harmless(tmp_path: Path) -> None:
     """Without checksums nearly every flip in byte-stream-split data reads back as other numbers."""
     path = tmp_path / "run.parquet"

@@ -81,6 +81,7 @@ def test_a_device_stays_a_device(kind: str, tmp_path: Path) -> None:
     assert stat.S_ISCHR(null.stat().st_mode)
 
 
+@pytest.mark.slow("files")
 @pytest.mark.parametrize("stdout", ["pipe", "file"])
 def test_standard_output_is_written_to_as_it_stands(stdout: str, tmp_path: Path) -> None:
     code = "print('before', flush=True)\nsw.Recording({'x': [1.0]}, {'x': 'm'}).to_csv('/dev/stdout')\nprint('after')"
@@ -184,6 +185,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 """
 
 
+@pytest.mark.slow("files")
 @pytest.mark.parametrize("method", ["to_csv", "to_parquet"])
 def test_a_disk_that_is_full_leaves_what_stood_there_and_no_draft(method: str, tmp_path: Path) -> None:
     (tmp_path / "run").write_text("old")
@@ -332,6 +334,7 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.slow("files")
 def test_a_claimed_folder_is_refused_to_others(tmp_path: Path) -> None:
     again = f"with claiming(Path({str(tmp_path)!r})): print('claimed')"
     with claiming(tmp_path):

@@ -14,6 +14,7 @@ from tests.evidence import arms
 FAST = {"rtde.csv": 20.0, "hand.mat": 20.0, "headerless_all.csv": 40.0}  # `python -m tests.evidence.arms` tries all
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("sort", [sort for sort in arms.SORTS if sort.name in FAST], ids=lambda sort: sort.name)
 def test_the_error_held_out_is_no_worse_than_that_of_least_squares(tmp_path: Path, sort: arms.Sort) -> None:
     ours, simple, with_model = arms.compared(sort, tmp_path, FAST[sort.name])
@@ -36,6 +37,7 @@ def test_names_of_files_tell_the_speeds_of_currents_without_anything_beside_them
     assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
 
 
+@pytest.mark.slow("identification")
 def test_currents_at_constant_speeds_of_a_joint_tell_friction_at_the_motor(tmp_path: Path) -> None:
     """Ten files without time: joint-side speed and the current of the motor, counted where each was measured."""
     joint, light = arms.Joint(loss=0.0), arms.Links(masses=(0.0, 0.0))

@@ -29,11 +29,13 @@ def seed(tmp_path_factory: pytest.TempPathFactory) -> Seed:
     return folder, assumptions.made(folder, 3)
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("case", [*filter(is_fast, assumptions.wrong())], ids=lambda case: f"{case.kind}, {case.name}")
 def test_a_wrong_assumption_fails_a_check(seed: Seed, case: assumptions.Case) -> None:
     assert assumptions.verdict(case, *seed).failed
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("case", [*filter(is_fast, assumptions.right())], ids=lambda case: case.name)
 def test_a_right_assumption_fails_none(seed: Seed, case: assumptions.Case) -> None:
     found = assumptions.verdict(case, *seed)

@@ -113,6 +113,7 @@ REFUSED: dict[str, tuple[Make, str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_used_is_refused_with_reason_and_remedy(tmp_path: Path, name: str) -> None:
     make, reason = REFUSED[name]
@@ -142,6 +143,7 @@ SAID: dict[str, tuple[Make, str]] = {
 }
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("name", SAID)
 def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: str) -> None:
     make, told = SAID[name]
@@ -151,6 +153,7 @@ def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: st
     assert number.value == pytest.approx(TRUTH["inertia"], abs=max(4.0 * number.sigma, 0.02 * TRUTH["inertia"]))
 
 
+@pytest.mark.slow("identification")
 def test_milliamperes_called_amperes_fail_a_check(tmp_path: Path) -> None:
     found = identify(START, [log(current=1e3 * CURRENT)(tmp_path)])
     (check,) = found.failed
@@ -233,6 +236,7 @@ def both(folder: Path) -> Identified:
     return identify(START, files)
 
 
+@pytest.mark.slow("identification")
 def test_a_file_given_twice_counts_once(tmp_path: Path) -> None:
     found = both(tmp_path)
     assert found.files[1].same_as == found.files[0].name
@@ -281,6 +285,7 @@ def test_a_folder_stands_for_the_measurements_in_it(tmp_path: Path) -> None:
     assert [each.name for each in found.files] == ["table.csv"]
 
 
+@pytest.mark.slow("identification")
 def test_one_bad_file_does_not_stop_the_command_and_only_bad_files_do(tmp_path: Path) -> None:
     good, bad = table(tmp_path / "good.csv"), text("photo.csv", b"\x89PNG\r\n\x1a\n")(tmp_path)
     done = strainwave("identify", "hfuc-20-80", good, bad, "--out", "out", folder=tmp_path)
@@ -293,6 +298,7 @@ def test_one_bad_file_does_not_stop_the_command_and_only_bad_files_do(tmp_path: 
     assert not (tmp_path / "out2").exists()
 
 
+@pytest.mark.slow("identification")
 def test_names_with_control_characters_are_escaped_on_the_terminal_and_in_the_report(tmp_path: Path) -> None:
     path = tmp_path / "a\x1b[31mb.csv"
     rows = np.column_stack([LOG.time, ANGLE, CURRENT])

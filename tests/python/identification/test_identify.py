@@ -58,12 +58,14 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
     return identify(measured_motor(), files)
 
 
+@pytest.mark.slow("identification")
 def test_each_file_is_told_what_it_is_and_none_stops_the_others(found: Identified) -> None:
     kinds = [each.recognised.kind if each.recognised is not None else "" for each in found.files]
     assert kinds == ["friction", "friction", "", "log", "log", "log"]
     assert [bool(each.refused) for each in found.files] == [False, False, True, False, False, False]
 
 
+@pytest.mark.slow("identification")
 def test_files_of_one_name_are_told_by_their_folders(found: Identified) -> None:
     names = [each.name for each in found.files]
     assert names[0] == "rough.csv"
@@ -71,6 +73,7 @@ def test_files_of_one_name_are_told_by_their_folders(found: Identified) -> None:
     assert len(set(names)) == len(names)
 
 
+@pytest.mark.slow("identification")
 def test_the_file_that_tells_a_number_best_gives_it_and_the_law(found: Identified) -> None:
     number = next(each for each in found.parameters if each.estimate.path == "gear.friction_input.coulomb")
     assert "fine.csv" in number.mean_of
@@ -88,6 +91,7 @@ def test_a_mean_replaces_only_what_one_of_its_files_has_told(file: str, coulomb:
     assert with_means(known, [mean]).gear.friction_input.coulomb == coulomb
 
 
+@pytest.mark.slow("identification")
 def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(found: Identified) -> None:
     assert found.files[5].same_as == found.files[3].name
     inertia = [each for each in found.parameters if each.estimate.path == "load.inertia"]
@@ -105,6 +109,7 @@ def test_nothing_at_all_is_refused_with_the_reasons(tmp_path: Path) -> None:
         identify("hfuc-20-80", [])
 
 
+@pytest.mark.slow("identification")
 def test_links_in_a_folder_are_named_and_not_read(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     table(tmp_path / "elsewhere.csv", 0.07, 2e-4, 2)
@@ -119,6 +124,7 @@ def test_links_in_a_folder_are_named_and_not_read(tmp_path: Path) -> None:
     assert [(each.name, bool(each.refused)) for each in named.files] == [("link.csv", False), ("own.csv", False)]
 
 
+@pytest.mark.slow("identification")
 def test_friction_that_vanished_in_a_file_is_not_the_start_of_the_next_one(tmp_path: Path) -> None:
     """A hand or another joint drives the first one; the friction of the second one is no multiple of what was left of that."""
     paths = [tmp_path / "driven.csv", tmp_path / "usual.csv"]
@@ -210,6 +216,7 @@ def voltage_log(path: Path, sign: float = 1.0) -> Path:
     return path
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path, sign: float) -> None:
     found = identify(measured_motor(), [voltage_log(tmp_path / "log.csv", sign)])
@@ -220,6 +227,7 @@ def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path,
     assert CONSTANT**2 / 0.4 > 50.0 * 3e-4  # of the voltage what the motor induces is by far the most
 
 
+@pytest.mark.slow("identification")
 def test_numbers_by_a_voltage_are_as_uncertain_as_the_resistance(tmp_path: Path) -> None:
     start, path = measured_motor(), voltage_log(tmp_path / "log.csv")
     own = start.sources["motor.resistance"]
@@ -232,6 +240,7 @@ def test_numbers_by_a_voltage_are_as_uncertain_as_the_resistance(tmp_path: Path)
         assert np.sqrt(other.sigma**2 - one.sigma**2) == pytest.approx(0.1 * one.value)
 
 
+@pytest.mark.slow("identification")
 def test_a_torque_that_was_measured_is_as_sure_as_itself_whatever_the_torque_constant(tmp_path: Path) -> None:
     run = record(TRUTH, 0.05, 3)
     kept = run.select([name for name in run.names if name != "current"])
@@ -255,6 +264,7 @@ def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Pat
         identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
 
 
+@pytest.mark.slow("identification")
 def test_shares_of_regressors_are_found_beside_friction(tmp_path: Path) -> None:
     alone, shares = record(TRUTH, 0.02, 6), {"Y1": 0.6, "Y2": -1.4}
     time = alone.time
@@ -275,6 +285,7 @@ def test_shares_of_regressors_are_found_beside_friction(tmp_path: Path) -> None:
     assert not any("columns not used" in each for each in found.remarks)
 
 
+@pytest.mark.slow("identification")
 def test_a_load_is_as_uncertain_as_the_rotor_beside_it(tmp_path: Path) -> None:
     file = log(tmp_path / "log.csv", 7)
     known = measured_motor()

@@ -34,6 +34,7 @@ def _said(joint: str, path: Path) -> FileMapping:
     return FileMapping(joint=joint)
 
 
+@pytest.mark.slow("identification")
 def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Path, log: Path) -> None:
     """So do files that determine no joint."""
     assert joints_of(log) == ("1", "2")

@@ -61,6 +61,7 @@ def change(found: sw.Prediction, name: str) -> PartChange:
     return next(each for each in found_changes if each.name == name)
 
 
+@pytest.mark.slow("identification")
 def test_an_unchanged_joint_is_unchanged(folder: Path) -> None:
     found = predicted(folder, "same.csv")
     assert not found.contradicts
@@ -70,6 +71,7 @@ def test_an_unchanged_joint_is_unchanged(folder: Path) -> None:
     assert {each.name for each in found.changes} >= {"dry friction", "viscous friction", "zero", "gravity of the load"}
 
 
+@pytest.mark.slow("identification")
 def test_friction_scaled_by_1_3_is_reported_as_that_and_contradicts(folder: Path) -> None:
     found = predicted(folder, "worn.csv")
     dry = change(found, "dry friction")
@@ -80,6 +82,7 @@ def test_friction_scaled_by_1_3_is_reported_as_that_and_contradicts(folder: Path
     assert found.error_with_changes < 0.4 * found.error
 
 
+@pytest.mark.slow("identification")
 def test_viscous_friction_scaled_by_1_5_is_found_within_what_the_result_allows(folder: Path) -> None:
     found = predicted(folder, "thick.csv")
     viscous = change(found, "viscous friction")
@@ -89,6 +92,7 @@ def test_viscous_friction_scaled_by_1_5_is_found_within_what_the_result_allows(f
     assert viscous.value == pytest.approx(1.5, abs=0.1)
 
 
+@pytest.mark.slow("identification")
 def test_another_torque_constant_is_told_from_another_joint(folder: Path) -> None:
     record(folder / "scaled.csv", JOINT, 12, turned=1.15)
     found = predicted(folder, "scaled.csv")
@@ -98,6 +102,7 @@ def test_another_torque_constant_is_told_from_another_joint(folder: Path) -> Non
     assert predicted(folder, "worn.csv").common_scale is None
 
 
+@pytest.mark.slow("identification")
 def test_temperature_is_a_cause_if_it_was_recorded(folder: Path) -> None:
     seen = Recorder(rate=250.0, seed=5)(run((JOINT,) * 3, fourier(30.0, (1,), 12)))
     speed = np.gradient(seen["q"][1], seen["time"])
@@ -142,6 +147,7 @@ def test_the_uncertainty_of_the_saved_numbers_is_part_of_that_of_a_change() -> N
     assert sigmas[1] == pytest.approx(0.1, rel=0.1)
 
 
+@pytest.mark.whole_path("identification")
 def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_contradicts(folder: Path) -> None:
     options = ("--joint", "1", "--constant", "torque_constant=0.12", "--constant", "ratio=100")
     same = strainwave("predict", "gear.toml", "same.csv", *options, "--out", "same", folder=folder)
@@ -162,6 +168,7 @@ def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_cont
     assert ">nan" not in page
 
 
+@pytest.mark.slow("identification")
 def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
     arguments = ("predict", "csg-20-100", "same.csv", "--joint", "1", "--out", "none")
     refused(folder, arguments, "has no [load], without which no torque along a motion is predicted")
@@ -171,6 +178,7 @@ def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
         sw.predict("csg-20-100", {"torsion": loop})
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.skipif(not RIG.is_dir(), reason=f"the independent joint was not found: {RIG} (set STRAINWAVE_RIG)")
 @pytest.mark.parametrize("seed", range(3, 3 + sample(1, 2)))
 def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
@@ -195,6 +203,7 @@ def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
     assert change(heavy, "inertia of the load").value == pytest.approx(1.6 / 0.85, rel=0.03)
 
 
+@pytest.mark.slow("identification")
 def test_an_angle_counted_the_other_way_is_named_and_nothing_changed(folder: Path) -> None:
     record(folder / "turned.csv", JOINT, 12, way=-1.0)
     found = predicted(folder, "turned.csv")
@@ -224,6 +233,7 @@ def test_a_table_is_judged_by_the_error_on_tables_not_by_that_on_torsion_loops()
     assert alone.allowed == pytest.approx(0.5 * alone.varies)  # the loop does not count
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("samples", [-2.0, 1.0, 4.5])
 def test_a_delay_of_the_current_is_a_change_of_its_own_and_none_of_friction(folder: Path, samples: float) -> None:
     record_shifted(folder / "late.csv", delay=samples / 250.0)
@@ -234,6 +244,7 @@ def test_a_delay_of_the_current_is_a_change_of_its_own_and_none_of_friction(fold
     assert all(abs(each.value - 1.0) < 3.0 * each.sigma for each in found.changes if each.unit == "1")
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("angle", [-0.1, 0.5, 2.5])
 def test_an_angle_counted_from_another_zero_is_no_change_of_zero_or_gravity(folder: Path, angle: float) -> None:
     record_shifted(folder / "turned.csv", angle=angle)
@@ -244,6 +255,7 @@ def test_an_angle_counted_from_another_zero_is_no_change_of_zero_or_gravity(fold
     assert f"zero of the angle is {'−' if angle < 0.0 else ''}" in verdict_sentence(found)
 
 
+@pytest.mark.slow("identification")
 def test_wear_a_delay_and_two_zeros_are_separated(folder: Path) -> None:
     record_shifted(folder / "all.csv", angle=0.4, current=0.1, delay=8e-3, joint=WORN)
     found = predicted(folder, "all.csv")
@@ -253,6 +265,7 @@ def test_wear_a_delay_and_two_zeros_are_separated(folder: Path) -> None:
     assert {each.name for each in found.changed if abs(each.value - truth[each.name]) > allowed[each.name]} == set()
 
 
+@pytest.mark.slow("identification")
 def test_a_sure_but_small_change_states_the_limit_that_it_is_below(folder: Path) -> None:
     record_shifted(folder / "drifted.csv", current=0.022)
     found = predicted(folder, "drifted.csv")
@@ -262,6 +275,7 @@ def test_a_sure_but_small_change_states_the_limit_that_it_is_below(folder: Path)
     assert "(no significant change: below 3 % of what the current varies)" in predict_summary([found])
 
 
+@pytest.mark.slow("identification")
 def test_changes_that_leave_the_error_explain_nothing(folder: Path) -> None:
     """The currents of another motion: scales fit a little of them, and one below zero is no torque constant."""
     motions = [Recorder(rate=250.0, seed=seed)(run((JOINT,) * 3, fourier(30.0, (1,), seed))) for seed in (12, 31)]

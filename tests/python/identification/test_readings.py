@@ -47,6 +47,7 @@ def with_options(path: Path, options: str) -> Identified:
     return identify("csg-20-100", files, mapping=said)
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("names", [("position", "velocity", "torque"), ("q", "dq", "tau")])
 def test_revolutions_without_a_unit_are_read_as_the_gravity_shows(tmp_path: Path, names: tuple[str, str, str]) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=TURN, names=names)
@@ -58,6 +59,7 @@ def test_revolutions_without_a_unit_are_read_as_the_gravity_shows(tmp_path: Path
     assert "rad, rad/s at the output: " in found.files[0].remarks[0]
 
 
+@pytest.mark.slow("identification")
 def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
     found = identify("csg-20-100", [path])
@@ -66,6 +68,7 @@ def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
     assert found.files[0].recognised.units["output_angle"] == "rad"
 
 
+@pytest.mark.slow("identification")
 def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("position", "velocity", "torque"))
     with pytest.raises(ValueError, match="the fit does not decide between readings; select one by ") as asked:
@@ -81,6 +84,7 @@ def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp
     assert not with_options(path, options["rad, rad/s at the output"]).files[0].refused
 
 
+@pytest.mark.slow("identification")
 def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path) -> None:
     """An upright joint: in revolutions or radians it leaves as little, and the side is in the names."""
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
@@ -92,6 +96,7 @@ def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path
     assert inertia == pytest.approx(INERTIA, rel=0.02)
 
 
+@pytest.mark.slow("identification")
 def test_an_upright_joint_of_a_robot_is_in_radians(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("q", "dq", "tau"))
     (file,) = identify("csg-20-100", [path]).files
@@ -106,6 +111,7 @@ def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> 
     assert "(rev, rev/s at the output: " not in str(asked.value)
 
 
+@pytest.mark.slow("identification")
 def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_path: Path) -> None:
     """Friction that plain least squares does not have hides most of what a small gravity shows of the unit."""
     path = log_of_joint(tmp_path, gravity=6.0, unit=TURN, names=("q", "dq", "tau"))
@@ -122,6 +128,7 @@ def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_pat
     assert values(with_options(path, option))["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
 
 
+@pytest.mark.slow("identification")
 def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
@@ -135,6 +142,7 @@ def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> 
     assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
 
 
+@pytest.mark.slow("identification")
 def test_each_file_may_have_a_ratio_of_its_own(tmp_path: Path) -> None:
     ratios = {"one": 256.857, "other": 267.429}
     for name in ratios:

@@ -328,6 +328,7 @@ def test_a_shipped_kernel_needs_no_compiler(
         assert find_kernel(KERNEL) is None
 
 
+@pytest.mark.slow("native")
 def test_two_processes_at_once_compile_once(fake: Fake, tmp_path: Path) -> None:
     """The compiler waits until both have asked for the kernel."""
     fake(f"echo compiled >> {tmp_path}/log; while [ ! -e {tmp_path}/go ]; do sleep 0.01; done")

@@ -13,6 +13,7 @@ from strainwave.native.compilers import NoCompilerError
 from tests.python.command import strainwave
 
 
+@pytest.mark.whole_path("native")
 def test_the_jobs_asked_for_are_loaded_and_compared() -> None:
     drive = sw.load("two-inertia-gear")
     found = sw.compile(drive, ["simulate_adaptively"])
@@ -63,6 +64,7 @@ def test_without_a_compiler_it_is_an_error_with_what_to_do(monkeypatch: pytest.M
         sw.compile(sw.load("two-inertia-gear"), ["simulate"])
 
 
+@pytest.mark.slow("native")
 def test_the_command_prints_a_line_for_each_job(tmp_path: Path) -> None:
     result = strainwave("compile", "two-inertia-gear", "--job", "simulate_adaptively", folder=tmp_path)
     assert result.returncode == 0

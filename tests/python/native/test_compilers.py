@@ -189,7 +189,8 @@ def ended(folder: Path) -> bool:
 
 
 def test_ctrl_c_ends_the_compiler_and_all_that_it_started(fake: Fake, tmp_path: Path) -> None:
-    fake(f"sleep 60 > {os.devnull} 2>&1 & echo $! > {tmp_path}/child; kill -INT $PPID; wait")
+    started = "sleep 0.5"  # else the signal may come while Python has not returned the process yet
+    fake(f"sleep 60 > {os.devnull} 2>&1 & echo $! > {tmp_path}/child; {started}; kill -INT $PPID; wait")
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):

@@ -96,12 +96,14 @@ def ensemble(backend: Any, **changed: Any) -> sw.Ensemble:
     return sw.simulate_many(DRIVE, STEP, parameters, sample=1e-3, backend=backend, **changed)
 
 
+@pytest.mark.slow("native")
 @pytest.mark.parametrize("initial", [None, {"input_speed": np.linspace(0.0, 3.0, 7)}])
 def test_a_device_gives_the_numbers_of_the_processor_in_several_launches(initial: Any) -> None:
     assert ensemble("gpu", initial=initial) == ensemble("cpu", initial=initial)
     assert Processor.launches > 1
 
 
+@pytest.mark.slow("native")
 def test_single_precision_follows_to_its_digits() -> None:
     single, double = ensemble("gpu-float"), ensemble("cpu")
     for name, values in double.columns.items():

@@ -81,6 +81,7 @@ def results(drive: sw.Drive) -> dict[str, list[Array]]:
     }
 
 
+@pytest.mark.slow("native")
 @pytest.mark.parametrize("drive", [DRIVE, NESTED], ids=["reference", "nested"])
 def test_a_kernel_gives_the_bits_of_the_general_drive(drive: sw.Drive) -> None:
     general = results(drive)
@@ -220,6 +221,7 @@ def test_a_process_that_began_before_an_update_of_the_package_uses_no_kernel(mon
     assert _core.loaded_jobs(DRIVE) == []
 
 
+@pytest.mark.slow("native")
 def test_an_ensemble_goes_on_by_its_kernel_if_that_is_forgotten_meanwhile() -> None:
     kernels.load_or_raise(DRIVE, "simulate_many")
     steps, members = 8000, 1000  # so many that progress is reported

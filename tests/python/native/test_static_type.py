@@ -52,6 +52,7 @@ def compiles(drives: list[Any], folder: Path) -> tuple[int, str]:
     return compilation(checker("g++"), folder, {"types.cpp": HEADERS + uses})
 
 
+@pytest.mark.slow("native")
 def test_every_law_at_every_place_has_a_type_that_compiles(tmp_path: Path) -> None:
     winding = made(sw.motor.DC, inductance=1e-3)
     drives = list(with_part(sw.Drive, sw.Drive(gear=sw.Gear(input_inertia=1e-5), motor=winding)))
@@ -61,6 +62,7 @@ def test_every_law_at_every_place_has_a_type_that_compiles(tmp_path: Path) -> No
     assert compiles(drives, tmp_path) == (0, "")
 
 
+@pytest.mark.slow("native")
 def test_drives_of_any_laws_have_types_that_compile(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

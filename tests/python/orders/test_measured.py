@@ -25,6 +25,7 @@ def driven() -> sw.Recording:
     return sw.Recording({"time": run.time, **columns}, UNITS)
 
 
+@pytest.mark.slow("orders")
 def test_the_error_of_a_simulated_drive_is_that_of_its_gear(driven: sw.Recording) -> None:
     found = orders_found(driven, "driven")
     assert found.transmission is not None
@@ -43,6 +44,7 @@ def test_orders_of_two_encoders_are_looked_for_as_far_as_is_said(driven: sw.Reco
     assert found.ripple.highest == 3.0
 
 
+@pytest.mark.slow("orders")
 def test_the_same_drive_is_seen_in_its_current(driven: sw.Recording) -> None:
     joint = driven.select(["time", "output_angle", "current"])
     blind = orders_found(joint, "blind")

@@ -70,6 +70,7 @@ def test_at_constant_speed_it_is_said_that_order_and_time_cannot_be_told_apart(p
     assert any("too constant" in each for each in told.remarks)
 
 
+@pytest.mark.slow("orders")
 @pytest.mark.parametrize("motion", ["to and fro", "constant"])
 @pytest.mark.parametrize("coloured", [False, True])
 def test_noise_alone_makes_no_more_lines_than_allowed(motion: str, coloured: bool) -> None:
@@ -77,6 +78,7 @@ def test_noise_alone_makes_no_more_lines_than_allowed(motion: str, coloured: boo
     assert seen <= 5  # of 24 at 5 %: more would happen in half a per cent of all trials
 
 
+@pytest.mark.slow("orders")
 def test_amplitudes_scatter_by_as_much_as_is_stated() -> None:
     off = []
     for seed in range(30):
@@ -233,6 +235,7 @@ def test_a_single_line_of_no_usual_gear_gives_no_ratio() -> None:
     assert any("no ratio is concluded" in each for each in result.remarks)
 
 
+@pytest.mark.slow("orders")
 def test_orders_of_the_motor_determine_which_spline_is_fixed() -> None:
     """Cogging of a motor with 7 pole pairs and 12 slots, as in recordings of commercial joints, without wave orders."""
     for ratio in (100, 101):

@@ -41,6 +41,7 @@ def turned(angle: float) -> float:
     return float((angle + np.pi) % tau - np.pi)
 
 
+@pytest.mark.slow("orders")
 @settings(deadline=None, max_examples=sample(4, 10))
 @given(
     ratio=st.sampled_from([-50.0, 51.0, -80.0, 101.0, -160.0]),
@@ -104,6 +105,7 @@ def test_a_shaft_that_turns_one_way_tells_no_lost_motion_but_orders_of_mesh_and_
     assert list(found.law.order) == pytest.approx([2.0, mesh])
 
 
+@pytest.mark.slow("orders")
 def test_noise_alone_makes_an_order_significant_no_more_often_than_allowed() -> None:
     seen = 0
     for seed in range(24):
@@ -134,6 +136,7 @@ def test_a_given_ratio_of_the_other_sign_says_that_an_encoder_counts_the_other_w
     assert any("counts the other way round" in each for each in found.remarks)
 
 
+@pytest.mark.slow("orders")
 def test_of_a_long_record_the_beginning_is_used_and_that_is_said() -> None:
     time = np.arange(0.0, 400.0, 0.001)
     theta = 60.0 * np.sin(0.9 * time)

@@ -26,6 +26,7 @@ def files(found: sw.Compensated) -> dict[str, str]:
     return compensate_files(found)
 
 
+@pytest.mark.slow("report")
 def test_the_page_needs_nothing_else_and_has_every_controller(found: sw.Compensated, files: dict[str, str]) -> None:
     root = Page(files["report.html"]).root
     assert not [each for each in root.walk() if each.tag in ("script", "link", "img")]

@@ -8,10 +8,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from strainwave.demo import position_drive, torsion_rig
-from strainwave.drawing.style import DARK, LIGHT
+from strainwave.drawing import marks
+from strainwave.drawing.style import DARK, FIGURE_WIDTH, LIGHT
 from strainwave.identification.identify import Identified
-from strainwave.report.experiment import SimulatedExperiment
+from strainwave.report import figures
 from strainwave.report.identify import identify_report
 from strainwave.report.identify_figures import file_figure, overview
 
@@ -42,10 +44,20 @@ def apart(one: Box, other: Box) -> bool:
 
 
 def drawings(found: Identified) -> list[Node]:
-    long_names = SimulatedExperiment("long names", ((LONG, swing(50)), (HOSTILE, swing(60))), response="output_angle")
-    return Page(identify_report(found, experiments=[long_names])).root.find("svg")
+    """Return the drawings of a report, and one of curves with long names."""
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        for name, run in ((LONG, swing(50)), (HOSTILE, swing(60))):
+            marks.curve(axes, run.time, run["output_angle"], label=name)
+        marks.label_axes(axes, "output angle", "rad", "time", "s")
+        marks.legend(figure, axes)
+
+    long_names = figures.inline(draw, (FIGURE_WIDTH, 3.9), "long", "curves with long names")
+    return [svg for page in (identify_report(found), long_names) for svg in Page(page).root.find("svg")]
 
 
+@pytest.mark.slow("report")
 def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: Identified) -> None:
     for svg in drawings(each):
         _, _, width, height = (float(number) for number in svg.attributes["viewbox"].split())
@@ -58,6 +70,7 @@ def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: Identified) -
             assert apart(one, other), f"{name}; {other_name}"
 
 
+@pytest.mark.whole_path("report")
 def test_every_curve_has_its_name_in_the_legend(each: Identified) -> None:
     for svg in section(identify_report(each), "measured").find("svg"):
         assert {"measured", "model"} <= {text.text for text in svg.find("text")}
@@ -87,6 +100,7 @@ def test_residuals_are_drawn_over_their_samples(from_torsion: Identified) -> Non
     assert np.corrcoef(upright, residual[sample])[0, 1] == pytest.approx(-1.0, abs=1e-4)
 
 
+@pytest.mark.slow("report")
 @pytest.mark.parametrize("scheme", [LIGHT, DARK])
 def test_every_colour_can_be_told_from_the_paper(scheme: dict[str, str], from_friction: Identified) -> None:
     """Contrast by WCAG 2.2: 4.5 for text, 3 for graphics; the rules of the grid are meant to be faint."""
@@ -106,6 +120,7 @@ def luminance(colour: str) -> float:
     return float(linear @ (0.2126, 0.7152, 0.0722))
 
 
+@pytest.mark.slow("report")
 def test_no_colour_is_fixed_so_that_figures_follow_the_scheme(html: str) -> None:
     figures_of_page = Page(html).root.find("svg")
     assert figures_of_page

@@ -24,15 +24,13 @@ from strainwave.identification.results.combined_parameter import combine
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Look, Picture
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import gear_numbers
-from strainwave.report import figures, identify_figures
-from strainwave.report.experiment import Figure, SimulatedExperiment
+from strainwave.report import identify_figures
 from strainwave.report.identify import identify_report
 from strainwave.report.identify_files import failed_lines, identify_files
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 
-from tests.python.report.measured import HOSTILE, swing
-from tests.python.report.reading import Node, Page, section
+from tests.python.report.reading import Page, section
 from tests.support.samples import sample
 
 START = GearSet.read("hfuc-20-80")
@@ -81,6 +79,7 @@ def text_of(html: str) -> str:
     return Page(html).root.text
 
 
+@pytest.mark.slow("report")
 def test_the_verdict_comes_first_then_files_measured_against_predicted_then_parameters(page: str) -> None:
     text = text_of(page)
     order = (
@@ -93,6 +92,7 @@ def test_the_verdict_comes_first_then_files_measured_against_predicted_then_para
     assert places == sorted(places)
 
 
+@pytest.mark.slow("report")
 def test_a_failed_check_stands_first_with_what_to_do_and_marks_its_file(found: Identified) -> None:
     check = Check(
         "input speed", "warm.csv", 2e3, 1.6e3, "rad/s", True, "its input would turn too fast", "see whether units are right"
@@ -194,38 +194,7 @@ def test_every_file_that_was_fitted_has_a_drawing_of_its_own(page: str, found: I
     assert {link.attributes["href"][1:] for link in root.find("a")} <= set(names)
 
 
-def test_experiments_show_every_run_and_every_figure_beside_the_published_one(found: Identified) -> None:
-    error = Figure("largest error", "rad", (0.0123, 0.0456), published=0.0042)
-    runs = (("_gear", swing(50)), (HOSTILE, swing(60)))
-    experiment = SimulatedExperiment("sine", runs, (error,), remark="amplitude assumed", source="Table 4")
-    page = section(identify_report(found, experiments=[experiment]), "experiments")
-    assert [cell.text for cell in page.find("tr")[1].children if isinstance(cell, Node)] == [
-        "largest error", "0.0123", "0.0456", "0.0042", "rad",
-    ]  # fmt: skip
-    assert "they are not reproduced" in page.text
-    assert "amplitude assumed" in page.text
-    labels = [text.text for text in page.find("text")]
-    assert {"command", "_gear", " ".join(HOSTILE.split())} <= set(labels)
-
-
-def test_an_open_loop_experiment_draws_the_command_by_itself() -> None:
-    columns = {"time": [0.0, 1.0], "command": [0.0, 5.0], "output_angle": [0.0, 0.1]}
-    run = Recording(columns, {"time": "s", "command": "V", "output_angle": "rad"})
-    drawn = Page(figures.experiment(SimulatedExperiment("step", (("gear", run),)), "e")).root
-    labels = [text.text for text in drawn.find("text")]
-    assert "command [V]" in labels
-    assert not any("response" in label for label in labels)
-
-
-def test_an_experiment_refuses_what_it_cannot_show() -> None:
-    with pytest.raises(ValueError, match=r'^experiment "e" has no run$'):
-        SimulatedExperiment("e", ())
-    with pytest.raises(ValueError, match=r'^experiment "e": run "a" has no column "torque"$'):
-        SimulatedExperiment("e", (("a", swing(9)),), response="torque")
-    with pytest.raises(ValueError, match=r'^experiment "e": rms has 2 values for 1 runs$'):
-        SimulatedExperiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
-
-
+@pytest.mark.whole_path("report")
 def test_a_page_needs_nothing_else_and_is_the_same_each_time(page: str, found: Identified) -> None:
     assert identify_report(found, Provenance("2026-03-02", "strainwave identify", {"warm.csv": "ab12"})) == page
     for each in Page(page).root.walk():
@@ -274,6 +243,7 @@ def test_numbers_are_called_what_their_law_calls_them() -> None:
 values = st.floats(1e-6, 1e6)
 
 
+@pytest.mark.slow("report")
 @given(first=values, second=values, sigma=st.floats(1e-9, 1e3), same=st.booleans())
 @settings(max_examples=sample(5, 15), deadline=None)
 def test_files_hold_every_number_to_the_last_digit(first: float, second: float, sigma: float, same: bool) -> None:
@@ -343,6 +313,7 @@ def test_numbers_of_the_gear_come_before_the_loads_of_runs() -> None:
     assert order == [(COULOMB, "a.csv"), (first, "a.csv"), (second, "a.csv"), (first, "b.csv"), (second, "b.csv")]
 
 
+@pytest.mark.slow("report")
 def test_checks_with_one_remedy_name_it_once(found: Identified) -> None:
     failed = [
         Check("agreement of files", name, 9.0, 3.0, "1", True, "they differ", "compare them") for name in ("a, b", "a, c")

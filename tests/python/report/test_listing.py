@@ -55,6 +55,7 @@ def test_every_number_is_shown_with_its_unit_and_source(name: str) -> None:
     assert shown["gear.damping"][2] == "N.m.s/rad"
 
 
+@pytest.mark.slow("report")
 @settings(max_examples=sample(5, 15))
 @given(drives)
 def test_any_drive_can_be_shown(drive: sw.Drive) -> None:

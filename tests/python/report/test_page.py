@@ -8,17 +8,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from strainwave.drawing import marks
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.identification.identify import Identified
 from strainwave.report import figures
-from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.identify import identify_report
-from strainwave.report.page import write
 from strainwave.report.provenance import Provenance
 
 from tests.python.report.measured import HOSTILE, swing
 from tests.python.report.reading import Node, Page, points
 
 
+@pytest.mark.whole_path("report")
 def test_the_page_is_well_formed_and_no_name_stands_twice(html: str) -> None:
     names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
     assert len(names) == len(set(names))
@@ -27,12 +29,14 @@ def test_the_page_is_well_formed_and_no_name_stands_twice(html: str) -> None:
     assert set(references) <= set(names)
 
 
+@pytest.mark.whole_path("report")
 def test_the_page_refers_to_nothing_outside_itself(html: str) -> None:
     assert not re.search(r"https?:|//\w|@import|<link|<img|<iframe|<script", html)
     for reference in re.findall(r"(?:href|src)=\"([^\"]*)|url\(([^)]*)", html):
         assert "".join(reference).startswith(("#", "data:"))
 
 
+@pytest.mark.slow("report")
 def test_markup_in_names_is_shown_and_not_obeyed(from_friction: Identified) -> None:
     html = identify_report(from_friction, Provenance(command=HOSTILE, files={HOSTILE: "0" * 64}))
     name = from_friction.files[0].name
@@ -45,6 +49,7 @@ def test_markup_in_names_is_shown_and_not_obeyed(from_friction: Identified) -> N
     assert any(name in svg.attributes["aria-label"] for svg in page.find("svg"))
 
 
+@pytest.mark.slow("report")
 def test_the_same_result_gives_the_same_bytes_and_the_date_is_the_one_given(from_friction: Identified) -> None:
     provenance = Provenance("2026-01-01", "strainwave identify", {})
     assert identify_report(from_friction, provenance) == identify_report(from_friction, provenance)
@@ -52,6 +57,7 @@ def test_the_same_result_gives_the_same_bytes_and_the_date_is_the_one_given(from
     assert not re.search(r"20\d\d-\d\d-\d\d", identify_report(from_friction))
 
 
+@pytest.mark.slow("report")
 def test_the_preferences_of_a_machine_do_not_change_the_report(from_friction: Identified) -> None:
     import matplotlib as mpl
 
@@ -61,6 +67,7 @@ def test_the_preferences_of_a_machine_do_not_change_the_report(from_friction: Id
         assert mpl.rcParams["font.size"] == 20.0
 
 
+@pytest.mark.slow("report")
 def test_drawing_leaves_no_figure_open(from_friction: Identified) -> None:
     identify_report(from_friction)
     assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
@@ -70,7 +77,11 @@ def test_a_long_record_stays_small_and_keeps_its_peak() -> None:
     run = swing(400_000)
     noisy = run["output_angle"] + 1e-3 * np.random.default_rng(1).normal(size=len(run))
     noisy[123_456] = 0.4
-    svg = figures.experiment(SimulatedExperiment("long", (("gear", run.with_column("output_angle", noisy, "rad")),)), "long")
+
+    def draw(figure: Figure) -> None:
+        marks.curve(figure.subplots(), run.time, noisy, color=LIGHT["model"])
+
+    svg = figures.inline(draw, (FIGURE_WIDTH, 3.9), "long", "a long record")
     assert len(svg) < 80_000
     lines = [points(path) for path in Page(svg).root.find("path") if "--model" in path.attributes.get("style", "")]
     response = next(line for line in lines if len(line) > 100)
@@ -86,17 +97,10 @@ def test_provenance_holds_the_digest_of_each_file(tmp_path: Path) -> None:
     assert provenance.files == {"loop.csv": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"}
 
 
-def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path: Path) -> None:
-    write("old", tmp_path / "report.html")
-    with pytest.raises(UnicodeEncodeError):
-        write("\ud800", tmp_path / "report.html")
-    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
-    assert (tmp_path / "report.html").read_text() == "old"
-
-
 # Narrow pages
 
 
+@pytest.mark.whole_path("report")
 def test_a_cell_of_a_table_says_its_column_where_the_table_is_taken_apart(html: str) -> None:
     tables = [table for table in Page(html).root.find("table") if "rows" in table.attributes.get("class", "").split()]
     assert tables
@@ -108,6 +112,7 @@ def test_a_cell_of_a_table_says_its_column_where_the_table_is_taken_apart(html: 
                 assert cell.attributes.get("data-label", column) == column
 
 
+@pytest.mark.whole_path("report")
 def test_a_figure_is_as_wide_as_its_box(html: str) -> None:
     style = Page(html).root.find("style")[0]
     rules = re.findall(r"([^{}]*)\{([^{}]*)\}", "".join(child for child in style.children if isinstance(child, str)))

@@ -77,6 +77,7 @@ def html(found: Evaluation) -> str:
     return rig_report(found, Provenance("2026-01-01 12:00 UTC", "strainwave rig analyse test", {"steps.csv": "0a1b"}))
 
 
+@pytest.mark.slow("report")
 def test_the_page_is_whole_safe_and_the_same_each_time(found: Evaluation, html: str) -> None:
     root = Page(html).root
     assert not root.find("script")
@@ -88,6 +89,7 @@ def test_the_page_is_whole_safe_and_the_same_each_time(found: Evaluation, html: 
     assert len(identifiers) == len(set(identifiers))
 
 
+@pytest.mark.slow("report")
 def test_the_table_has_the_rows_of_document_t(html: str) -> None:
     first = section(html, "table").find("tbody")[0]
     for row, expected in zip(first.find("tr"), ((4.51, 0.31, 4.85, 0.30, 50.5), (4.36, 0.29, 3.59, 0.33, 51.9)), strict=True):
@@ -97,12 +99,14 @@ def test_the_table_has_the_rows_of_document_t(html: str) -> None:
         assert printed(cells[5]) == pytest.approx(0.6 * expected[4], rel=0.005)  # arcmin at the output of a gear 1:100
 
 
+@pytest.mark.slow("report")
 def test_document_t_s_own_rows_are_said_not_to_close_as_secants(html: str) -> None:
     """The gaps are those of physics section 8: +1.90, -7.61 and -2.82 degrees."""
     text = section(html, "table").text
     assert all(gap in text for gap in ("+1.90°", "−7.61°", "−2.82°", "0.292", "0.286"))
 
 
+@pytest.mark.slow("report")
 def test_each_loop_has_its_widths_by_every_definition(html: str, found: Evaluation) -> None:
     loops = section(html, "loops")
     widths = loops.find("table", **{"class": "rows widths"})
@@ -116,16 +120,19 @@ def test_each_loop_has_its_widths_by_every_definition(html: str, found: Evaluati
     assert len(loops.find("svg")) == 2 * len(found.analyses)
 
 
+@pytest.mark.slow("report")
 def test_the_legend_has_the_regimes_first_and_the_regression_in_ink(html: str) -> None:
     local = section(html, "loops").find("svg")[1]
     words = [text for node in local.find("text") if (text := node.text.strip()) in (*COLOURS, "regression over the regime")]
     assert words == [*COLOURS, "regression over the regime"]
 
 
+@pytest.mark.slow("report")
 def test_the_definitions_of_widths_are_as_wide_as_a_narrow_screen(html: str) -> None:
     assert "(min-width: 48.01rem) { .widths td:nth-child(2) { width: 45%; } }" in html
 
 
+@pytest.mark.slow("report")
 def test_budget_photographs_steps_and_rig_are_in_the_page(html: str, angles: Angles) -> None:
     assert "friction of the pulleys, share of the torque" in section(html, "uncertainty").text
     photographs = section(html, "photographs").text
@@ -137,6 +144,7 @@ def test_budget_photographs_steps_and_rig_are_in_the_page(html: str, angles: Ang
     assert "Tested by" in html
 
 
+@pytest.mark.slow("report")
 def test_what_could_not_be_told_comes_first(found: Evaluation, html: str) -> None:
     said = unknown(found)
     assert any("One specimen" in each for each in said)
@@ -162,6 +170,7 @@ def test_a_photograph_that_is_left_out_is_told_once() -> None:
     assert [each for each in unknown(found) if ".png" in each] == [f"Step 2 is left out: {fault}.", "b.png: blurred."]
 
 
+@pytest.mark.slow("report")
 def test_the_setting_says_what_was_tested(found: Evaluation) -> None:
     said = setting(found)
     assert said["Specimen"] == "Gear <T>"
@@ -184,6 +193,7 @@ def test_a_number_is_rounded_to_its_interval() -> None:
 # ---- Files in its folder ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow("report")
 def test_results_are_json_with_every_number(found: Evaluation) -> None:
     read = json.loads(results_json(results(found, "today")))
     assert [loop["label"] for loop in read["loops"]] == list(found.labels)
@@ -193,12 +203,14 @@ def test_results_are_json_with_every_number(found: Evaluation) -> None:
     assert plain({"not": float("nan"), "endless": float("inf")}) == {"not": None, "endless": None}
 
 
+@pytest.mark.slow("report")
 def test_loops_are_written_as_a_twin_reads_them(found: Evaluation) -> None:
     files = loop_files(found.measured)
     assert set(files) == {f"{name}.{ending}" for name in loop_names(found.loops) for ending in ("csv", "parquet")}
     assert files["loop-0deg.csv"].splitlines()[1] == b'"input_angle [rad]","input_torque [N.m]"'
 
 
+@pytest.mark.slow("report")
 def test_names_of_files_hold_nothing_that_a_path_must_not() -> None:
     loops = [replace(loop_at(0), unit=unit) for unit in ("../A", "B 1", "B 1")]
     assert loop_names(loops) == ["loop-A-0deg", "loop-B-1-0deg-1", "loop-B-1-0deg-2"]

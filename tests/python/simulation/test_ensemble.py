@@ -177,6 +177,7 @@ def script(code: str, **variables: str) -> subprocess.Popen[str]:
 general_digest = cache(partial(digest, by_kernel=False))
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.parametrize("instruction_set", FLAGS)
 def test_a_kernel_of_each_instruction_set_gives_the_bits_of_the_general_drive(instruction_set: str) -> None:
     if missing := FLAGS[instruction_set] - machine_flags():
@@ -362,6 +363,7 @@ def heard(monkeypatch: pytest.MonkeyPatch) -> tuple[list[int], list[int]]:
     return totals, done
 
 
+@pytest.mark.slow("simulation")
 def test_progress_counts_the_steps_of_all_members(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     totals, done = heard(monkeypatch)
     parameters = {"load.inertia": np.linspace(0.4, 0.6, 1200)}
@@ -415,6 +417,7 @@ def stopped_half_way(folder: Path, how: signal.Signals) -> int:
     return process.returncode
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_a_run_to_files_that_is_stopped_half_way_leaves_what_was_done(how: signal.Signals, tmp_path: Path) -> None:
     assert stopped_half_way(tmp_path / "runs", how) in (-how, 128 + how)
@@ -496,6 +499,7 @@ def most_memory() -> int:
     return int(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)  # macOS counts in bytes
 
 
+@pytest.mark.slow("simulation")
 def test_memory_does_not_grow_with_the_members() -> None:
     """In memory, the members that are more here would take 115 MB."""
     told, wrong = script(MEMORY).communicate(timeout=60)

@@ -189,6 +189,7 @@ def on_bristles(stiffness: float) -> sw.Drive:
 TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 def test_a_shaft_that_rests_on_stiff_bristles_and_slides_off_is_followed_by_the_rosenbrock_method() -> None:
     """A voltage that rises from nothing: with its order, in steps with which the exponential method loses the shaft."""
@@ -282,12 +283,14 @@ def chattering(tmp_path_factory: pytest.TempPathFactory) -> list[list[float]]:
     return [[float(number) for number in line] for line in told("chattering", tmp_path_factory.mktemp("chattering"))]
 
 
+@pytest.mark.slow("simulation")
 def test_a_drive_without_chattering_is_never_time_stepped(chattering: list[list[float]]) -> None:
     for events, arrivals, *_ in chattering[:4]:
         assert 1 <= events < MOST_EVENTS
         assert arrivals == 0
 
 
+@pytest.mark.slow("simulation")
 def test_what_chattering_leaves_of_a_step_is_one_of_second_order(chattering: list[list[float]]) -> None:
     """Events that change nothing, without end where the input stands beyond a wall: as many as may be, and a right end."""
     exact, chatters = np.array(chattering[3][3:]), np.array(chattering[4:8])  # all but the current, which is no state here
@@ -297,17 +300,20 @@ def test_what_chattering_leaves_of_a_step_is_one_of_second_order(chattering: lis
     np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 2.0, atol=0.1)
 
 
+@pytest.mark.slow("simulation")
 def test_members_that_chatter_are_what_they_are_alone_and_disturb_no_other(chattering: list[list[float]]) -> None:
     """Eight, of which six chatter from different moments on; the program tells how many numbers differ."""
     assert chattering[8] == [0.0]
 
 
+@pytest.mark.slow("simulation")
 def test_no_adaptive_step_goes_on_after_an_event(chattering: list[list[float]]) -> None:
     """Of a drive that sticks and slips, and of four hundred that had all but settled when the inputs jumped."""
     assert chattering[9][0] == 0.0
     assert chattering[11] == [0.0]
 
 
+@pytest.mark.slow("simulation")
 def test_adaptive_steps_that_chatter_keep_the_tolerance_with_an_event_each(chattering: list[list[float]]) -> None:
     """Each look for an event that comes at once is one; sixteen before the first step, then one before each."""
     (_, calm_events, _, _, *exact), (_, events, accepted, rejected, *found) = chattering[9:11]

@@ -380,6 +380,7 @@ for attempt in (lambda: step(1.0, 1e4).recording(1e-4, "rad"), lambda: pulse_tra
 """
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
 def test_more_samples_or_pulses_than_memory_holds_are_told_in_a_line() -> None:
     """In a process of its own: one that has run other tests has freed as much as pulses take."""

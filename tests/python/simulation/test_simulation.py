@@ -340,6 +340,7 @@ def test_after_an_hour_of_rotation_a_run_is_as_accurate_as_at_first(
     assert later["input_angle"] - first["input_angle"] == pytest.approx(sense * 2.0 * math.pi * HOUR, rel=1e-14)
 
 
+@pytest.mark.whole_path("simulation")
 def test_an_hour_of_steps_loses_no_angle_speed_or_twist() -> None:
     """Started from rest by a constant voltage: the speed approaches w, and the angle lags by what the inertia has taken."""
     resistance, km, viscous, input_inertia, output_inertia, ratio = 1.0, 0.05, 1e-4, 5e-3, 0.5, 100.0

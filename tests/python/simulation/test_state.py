@@ -29,6 +29,7 @@ def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) 
     assert all(name.startswith(tuple(f"{part}." for part in _core.shape(drive))) for name in rest if "." in name)
 
 
+@pytest.mark.slow("simulation")
 @settings(max_examples=sample(6, 20))
 @given(drives)
 def test_every_number_can_be_replaced_and_nothing_else_changes(drive: sw.Drive) -> None:

@@ -154,6 +154,7 @@ def test_a_gear_that_locks_itself_slips_as_far_as_the_closed_form_where_its_torq
 
 
 # Each is a drive that is compared: those drawn before it of its hundred are set aside, after runs of up to 5 s.
+@pytest.mark.slow("simulation")
 @pytest.mark.parametrize("first", [10, 104, 201, 310, 401])
 def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> None:
     """By a drive or three from each; `python -m tests.evidence.tolerance` takes two hundred, and says what is left out."""
@@ -169,6 +170,7 @@ def test_a_motor_counts_as_limited_only_where_it_is(motor: Any, voltage: float, 
     assert at_limit(drive, run) == limited
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.parametrize("first", [10, 15])
 def test_what_fixed_steps_of_random_drives_approach_is_what_adaptive_ones_give(first: int) -> None:
     """Another way to the same; where a controller at its limit switches the error is that of when it does, within a step."""
@@ -206,6 +208,7 @@ def test_an_input_that_varies_within_a_step_is_followed() -> None:
     assert difference(sw.simulate_adaptively(SMOOTH, command(0.1), rtol=1e-7, load_torque=load), exact) < 1e-6
 
 
+@pytest.mark.slow("simulation")
 @pytest.mark.parametrize(
     ("period", "width", "duration"),
     [(0.3, 0.05, 0.4), (0.1 * 3, 0.05, 0.4), (0.3 - 1e-15, 0.05, 0.4), (0.7, 0.1, 0.8), (0.09, 0.01, 0.1), (0.02, 1e-14, 0.1)],

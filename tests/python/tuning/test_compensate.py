@@ -27,12 +27,14 @@ def known() -> sw.Compensated:
     return sw.compensate(KNOWN, members=MEMBERS, travel=0.03)
 
 
+@pytest.mark.whole_path("tuning")
 def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated) -> None:
     assert known.gain > 0.4
     assert set(known.chosen.candidate.effects) >= {"torsion"}
     assert known.chosen.upper("tracking error") < known.baseline.median("tracking error")
 
 
+@pytest.mark.slow("tuning")
 def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: Path) -> None:
     known.saved.save(tmp_path / "drive.toml")
     drive = sw.load(tmp_path / "drive.toml")
@@ -45,6 +47,7 @@ def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: 
     assert np.sqrt(np.mean(error**2)) == pytest.approx(known.chosen.nominal["tracking error"], rel=0.05)
 
 
+@pytest.mark.slow("tuning")
 def test_an_error_of_unknown_phase_is_not_fed_forward() -> None:
     """It adds to the error as often as it takes away."""
     found = sw.compensate(STATED, goal="speed", members=MEMBERS, seed=3)
@@ -55,6 +58,7 @@ def test_an_error_of_unknown_phase_is_not_fed_forward() -> None:
     assert any("kinematic error is assumed" in remark and "both encoders" in remark for remark in found.remarks)
 
 
+@pytest.mark.slow("tuning")
 def test_a_motion_that_creeps_may_have_its_friction_by_the_measured_motion() -> None:
     """A loop at 100 Hz sticks in friction that falls with the speed; friction along the command does not help it, this does."""
     joint = sw.GearSet.read("space-pointing-joint")
@@ -82,6 +86,7 @@ def test_friction_is_by_the_measured_motion_only_where_it_creeps() -> None:
         assert "friction" in each.effects
 
 
+@pytest.mark.slow("tuning")
 def test_a_gear_without_effects_needs_none() -> None:
     gear = sw.Gear(kinematics=STATED.gear.kinematics, stiffness=sw.stiffness.Linear(k=1e7), input_inertia=4e-5)
     drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=5e-5), load=sw.loads.Inertia(inertia=1.0))
@@ -90,6 +95,7 @@ def test_a_gear_without_effects_needs_none() -> None:
     assert [remark for remark in found.remarks if "the gear has no friction" in remark]
 
 
+@pytest.mark.slow("tuning")
 def test_a_delay_beyond_the_motion_is_stated() -> None:
     plant = Plant.read(KNOWN, 5e-3, 5e-3)
     goal = goal_of("position", plant, travel=0.02, speed=0.1)
@@ -109,7 +115,11 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
         ({"period": 0.0}, "period"),
         ({"delay": -1e-3}, "delay"),
         ({"delay": 2e-3}, r"delay = 0\.002 s exceeds the period of 0\.001 s; take a longer period or a shorter delay"),
-        ({"speed": 40.0, "travel": 8.0}, r"motor is at its limit; the motor takes at most \S+ A: take a lower speed or travel"),
+        pytest.param(
+            {"speed": 40.0, "travel": 8.0},
+            r"motor is at its limit; the motor takes at most \S+ A: take a lower speed or travel",
+            marks=pytest.mark.slow("tuning"),
+        ),
         ({"travel": -1.0}, "travel"),
         ({"speed": 0.0}, "speed"),
         ({"members": 1}, "members"),
@@ -137,6 +147,7 @@ def test_a_gear_alone_is_refused() -> None:
         sw.compensate("csg-20-100")
 
 
+@pytest.mark.slow("tuning")
 @pytest.mark.parametrize("name", ["tilt-actuator", "two-inertia-gear"])
 def test_drives_of_the_catalogue_run_on_gears_drawn_from_them(name: str) -> None:
     """Of one the pressure angle stands in two parts, which must agree; the other has no friction from which a limit follows."""
@@ -145,6 +156,7 @@ def test_drives_of_the_catalogue_run_on_gears_drawn_from_them(name: str) -> None
     assert found.baseline.upper("tracking error") < 2e-3
 
 
+@pytest.mark.slow("tuning")
 def test_the_gain_is_that_on_gears_by_which_nothing_was_chosen(known: sw.Compensated) -> None:
     """It is chosen on the gears of the seed, and its gain is that on those of the next seed."""
     chosen = next(each for each in known.tried if each.candidate is known.chosen.candidate)
@@ -185,6 +197,7 @@ def test_a_motor_without_inertia_is_remarked() -> None:
         assert any("the inertia of the motor is 0" in each for each in remarks) == stated
 
 
+@pytest.mark.slow("tuning")
 def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
     """Without a model the input stands where a rigid gear would have it: half of the angle is lost to a gear as stiff."""
     found = sw.compensate(KNOWN, goal="torque", torque=20.0, members=3)
@@ -198,6 +211,7 @@ def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
     assert any("against which the torque goes from 0 to 20 N·m" in remark for remark in found.remarks)
 
 
+@pytest.mark.slow("tuning")
 def test_the_chosen_setting_keeps_its_margins(known: sw.Compensated) -> None:
     assert known.margins == sw.loop_margins(known.drive)
     assert known.margins.modulus >= 0.5

@@ -78,6 +78,7 @@ def test_a_gear_whose_friction_falls_with_temperature_is_judged_cold_and_warm() 
     assert not depends_on_temperature(sw.Drive(gear=plain, load=load))
 
 
+@pytest.mark.slow("tuning")
 def test_a_gear_that_heats_up_is_cold_and_warm_from_the_begin() -> None:
     """In a motion of seconds it hardly warms up: its figures are those of a gear that keeps the temperature around it."""
     joint = sw.GearSet.read("space-pointing-joint")

@@ -139,6 +139,7 @@ int main(void) {
 """
 
 
+@pytest.mark.slow("tuning")
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
     """Within what the solver leaves open: its step size adapts in Python, and not in C."""

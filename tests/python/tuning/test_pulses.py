@@ -118,6 +118,7 @@ def test_a_move_starts_where_another_ended() -> None:
     assert abs(rest["output_angle"][0]) == pytest.approx(abs(first.angles[-1] + second.angles[-1]), abs=1e-12)
 
 
+@pytest.mark.slow("tuning")
 def test_a_hundred_frictions_are_reached_to_the_jump_of_the_load() -> None:
     """Document P's load jumps by 2 (F_s - F_c) / K = 93 urad where it breaks away."""
     plan = sw.plan_pulses("position-drive", 1e-3)

@@ -12,6 +12,7 @@ import numpy as np
 
 from strainwave import Drive, Gear, arguments
 from strainwave.export import cplusplus
+from strainwave.export.exported import Form
 from strainwave.export.firmware import source
 from strainwave.export.firmware.step import Member, step
 from strainwave.export.names import checked_name
@@ -148,3 +149,6 @@ def _elements(members: Iterable[Member]) -> Iterable[str]:
     """Yield the names of the numbers of some members."""
     for each in members:
         yield from (f"{each.name}[{i}]" for i in range(len(each.start))) if each.is_array else [each.name]
+
+
+FIRMWARE = Form(firmware, "a microcontroller", "one C++ header and an interface in C", "firmware.md")

@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from strainwave import Drive, _core, arguments
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.fmu.comparison import difference_to_simulation
 from strainwave.export.fmu.description import Description, build_description, model_description, terminals
 from strainwave.export.fmu.source import sources
@@ -249,3 +249,6 @@ Communication steps are cut into internal steps of at most {about.step!r} s.</p>
 {lines}</table>
 </body></html>
 """
+
+
+FMU = Form(fmu, "Simulink, Dymola, OpenModelica", "an FMU 2.0 or 3.0, or its sources", "fmu.md")

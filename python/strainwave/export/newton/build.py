@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, loads, meter
-from strainwave.export.exported import Exported
+from strainwave.export.exported import Exported, Form
 from strainwave.export.internal_step import internal_step
 from strainwave.export.newton import source
 from strainwave.files.gear_set import GearSet
@@ -243,3 +243,8 @@ Numbers that `PARAMETERS` lists can differ from gear to gear: `builder.add_actua
 **{{"gear.damping": 20.0}})`, or `drive.set({{"gear.damping": values}})` between episodes. `state.drive_state.outputs` has a row
 for each name in `OUTPUTS`.
 """
+
+
+NEWTON = Form(
+    newton, "Newton: thousands of joints, CPU or GPU", "a Python package that needs Newton and Warp only", "newton.md", PACKAGE
+)

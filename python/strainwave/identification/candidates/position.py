@@ -8,17 +8,15 @@ as s3 (E-P9).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.friction import PositionDependent
 from strainwave.identification.experiments.experiment import sensible
-from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.estimate import Estimate
 
@@ -49,29 +47,6 @@ class PositionFit(ComparedByFields):
     angle: Array
     friction: Array
     integrated: PositionDependent | None
-
-
-@dataclass(frozen=True)
-class TableReading:
-    """One way to read a table of friction over speed together with a law over the angle.
-
-    Attributes:
-        name: total friction, or its viscous part, of speeds of the motor or of the output
-        coulomb: its torque at speed 0 [N.m]: of the viscous part, that on top of Coulomb's
-        viscous: its rise with the speed of the motor [N.m.s/rad]
-        total: friction of the drive with it at each speed of the table [N.m], where the law's average is least
-        contradicts: contradictions to the law, in words; empty if it fits
-        part: True if the table is the viscous part, which comes on top of Coulomb's
-        remark: meaning of the offset of a viscous part, in words; empty if there is none
-    """
-
-    name: str
-    coulomb: Estimate
-    viscous: Estimate
-    total: Array
-    contradicts: tuple[str, ...]
-    part: bool
-    remark: str
 
 
 def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
@@ -182,72 +157,3 @@ def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Arra
     inside = (angle > start) & (angle < end)
     ends = np.interp([start, end], angle, level)
     return np.concatenate([[start], angle[inside], [end]]), np.concatenate([ends[:1], level[inside], ends[1:]])
-
-
-def readings(table: FrictionTable, law: PositionDependent, reduction: float | None = None) -> tuple[TableReading, ...]:
-    """Return the readings of a table of friction over speed with a law over the angle, as document P's Table 2.
-
-    By its title it is viscous friction: the part b v + B, which is added to Coulomb's. By its columns it is the whole friction.
-    Both are fitted by a line, each with its contradictions to the law (E-P6, E-P7, E-P11). Nothing is averaged.
-
-    Args:
-        table: friction over speed
-        law: friction over the angle; its `constant` and `viscous` are compared
-        reduction: speed of the motor over that of the output; if given, a third reading takes the speeds of the table, read as
-            its viscous part, for those of the output
-
-    >>> import numpy as np
-    >>> speed, torque = np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165])
-    >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, viscous=0.0004, domain_start=0.0,
-    ...                         domain_end=240.82)
-    >>> total, part, at_output = readings(FrictionTable(speed, torque), law, reduction=100.0)
-    >>> print(total.contradicts[0])
-    its 0.012 N·m in all at 0.1 rad/s are less than the 0.0492 N·m that the law has at every angle
-    >>> print(part.contradicts[0])
-    its slope of 0.0308 N·m·s/rad is 77.1 times the law's 0.0004
-    >>> print(at_output.contradicts[0])
-    its slope of 0.000308 N·m·s/rad is 0.771 times the law's 0.0004
-    """
-    speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
-    jacobian = np.stack([np.ones_like(speed), speed], axis=1)
-    found = np.linalg.lstsq(jacobian, torque, rcond=None)[0]
-    covariance, freedom = covariance_of(jacobian, (torque - jacobian @ found)[np.newaxis])
-    sigma = np.sqrt(np.diag(covariance))
-    offset, slope = (
-        Estimate(name, unit, 0.0, float(value), float(off), False, freedom)
-        for name, unit, value, off in zip(("coulomb", "viscous"), ("N.m", "N.m.s/rad"), found, sigma, strict=True)
-    )
-    least = float(
-        np.min(law.replace(outside="clamp").steady(1e-300, angle=np.linspace(law.domain_start, law.domain_end, 4097)))
-    )
-    slowest = int(np.argmin(speed))
-    of_level: tuple[str, ...] = ()
-    if torque[slowest] < least - CONTRADICTION_SIGMA * sigma[0]:
-        of_level = (
-            f"its {torque[slowest]:.3g} N·m in all at {speed[slowest]:.3g} rad/s are less than the {least:.3g} N·m that the "
-            "law has at every angle",
-        )
-    remark = ""
-    if offset.value > CONTRADICTION_SIGMA * offset.sigma:
-        remark = (
-            f"its offset of {offset.value:.3g} N·m is no viscous friction: one that reverses is Coulomb friction, and adds to "
-            f"the law's {law.constant:.3g} N·m"
-        )
-    found_readings = (
-        TableReading("total friction", offset, slope, torque, (*of_level, *_against_slope(slope, law)), False, ""),
-        TableReading("its viscous part", offset, slope, least + torque, _against_slope(slope, law), True, remark),
-    )
-    if reduction is None:
-        return found_readings
-    share = 1.0 / arguments.number("reduction", reduction, "1", low=0.0)
-    at_motor = replace(slope, value=share * slope.value, sigma=share * slope.sigma)
-    name = "its viscous part, over speeds of the output"
-    return (*found_readings, TableReading(name, offset, at_motor, least + torque, _against_slope(at_motor, law), True, remark))
-
-
-def _against_slope(slope: Estimate, law: PositionDependent) -> tuple[str, ...]:
-    """Return the contradiction of a slope to the law, in words; empty if it fits."""
-    if abs(slope.value - law.viscous) <= CONTRADICTION_SIGMA * slope.sigma:
-        return ()
-    times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "contradicts"
-    return (f"its slope of {slope.value:.3g} N·m·s/rad {times} the law's {law.viscous:g}",)

@@ -10,7 +10,7 @@ from itertools import compress
 import numpy as np
 
 from strainwave.files.labels import ColumnSource, places_of
-from strainwave.files.tables import OpenTable
+from strainwave.files.table_format import OpenTable
 from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column

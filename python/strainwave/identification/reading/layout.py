@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.labels import ColumnSource
-from strainwave.files.tables import OpenTable
+from strainwave.files.table_format import OpenTable
 from strainwave.identification.reading.names import QUANTITY_OF, meaning, words_of
 from strainwave.identification.reading.slopes import MIN_CORRELATION, PARTS, correlation
 from strainwave.messages import listed

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
-from strainwave.files.tables import OpenTable
+from strainwave.files.table_format import OpenTable
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
 from strainwave.identification.reading.channels import ALIASES, CHANNELS

@@ -16,7 +16,8 @@ from strainwave.files.array_table import ArrayTable, Grid, grid_table
 from strainwave.files.folder import FolderFiles, files_below
 from strainwave.files.labels import ColumnSource, Label, places_of
 from strainwave.files.recording import Recording
-from strainwave.files.tables import FORMATS, OpenTable, is_table_of_numbers, open_table
+from strainwave.files.table_format import OpenTable
+from strainwave.files.tables import FORMATS, is_table_of_numbers, open_table
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
 from strainwave.files.labels import ColumnSource, Content, Label
-from strainwave.files.tables import OpenTable
+from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import meaning, words_of
 

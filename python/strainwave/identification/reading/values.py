@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.labels import ColumnSource
-from strainwave.files.tables import OpenTable
+from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, counts
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column

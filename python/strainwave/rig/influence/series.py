@@ -214,6 +214,16 @@ def series_of(loops: Sequence[str]) -> Series:
 
     Raises:
         ValueError: a text is not of this form, a file cannot be read, or a loop lacks a factor that another has
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> loop = sw.rig.cycle_to(sw.load("csg-25-100"), 87.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     columns = {"twist": loop.angle, "torque": loop.torque}
+    ...     sw.Recording(columns, {"twist": "rad", "torque": "N.m"}).to_csv(f"{folder}/cold.csv")
+    ...     found = sw.rig.series_of([f"{folder}/cold.csv,temperature=5 degC"])
+    >>> found.factors["temperature"].tolist(), list(found.quantities)[:3]
+    ([278.15], ['area', 'width', 'stiffness'])
     """
     paths, conditions = zip(*[_with_condition(each) for each in loops], strict=True)
     names = list(dict.fromkeys(name for each in conditions for name in each))

@@ -51,6 +51,7 @@ def found(noise: float, delay: float = LATE, seconds: float = 8.0) -> ElasticCan
     return fit_elastic(recording, MotionLog.of(recording, drive), drive, "load.gravity_torque", LAW)
 
 
+@pytest.mark.slow("identification")
 def test_spring_hysteresis_inertia_and_delay_are_found_as_surely_as_is_said() -> None:
     told = found(1e-5)
     assert told.name == "linear spring, 1 Maxwell element"
@@ -67,6 +68,7 @@ def test_a_twist_that_noise_hides_is_not_told() -> None:
         found(0.1)
 
 
+@pytest.mark.slow("identification")
 def test_no_delay_between_encoders_is_longer_than_five_samples() -> None:
     fitted = found(1e-5, delay=0.03, seconds=4.0).fit  # 15 samples
     assert not any(each.path == "output_angle_delay" for each in fitted.estimates)

@@ -48,6 +48,7 @@ def test_a_fall_at_low_speed_is_found_where_there_is_one(law: type[sw.friction.L
         assert abs(estimate.value - value) < 4.0 * estimate.sigma
 
 
+@pytest.mark.slow("identification")
 def test_no_fall_is_made_up_from_noise() -> None:
     truth = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=2e-4)
     speed = np.geomspace(0.1, 300.0, 40)
@@ -96,6 +97,7 @@ def test_magnitudes_over_speeds_of_both_signs_are_understood() -> None:
     assert FrictionTable.of(recording).torque == pytest.approx([-0.2, -0.1, 0.1, 0.2])
 
 
+@pytest.mark.slow("identification")
 def test_a_law_chosen_by_a_hair_makes_its_numbers_no_surer_than_the_laws_beside_it() -> None:
     truth = sw.friction.Stribeck(coulomb=0.0380, breakaway=0.0433, stribeck_speed=2.6, viscous=4.5e-4)
     speed = np.pi / 30.0 * np.array([5, 10, 20, 30, 50, 100, 200, 400, 800, 1200, 1800, 2500, 3000.0])
@@ -146,6 +148,7 @@ TRUTHS = {
 }
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("name", TRUTHS)
 def test_the_law_that_the_torque_follows_is_ranked_first(name: str) -> None:
     """What is more than the truth, as asymmetry, is not taken from noise alone."""
@@ -156,6 +159,7 @@ def test_the_law_that_the_torque_follows_is_ranked_first(name: str) -> None:
     assert first == 3 * [name]
 
 
+@pytest.mark.slow("identification")
 def test_a_curved_law_leaves_bristles_out_and_an_asymmetric_one_holds_them() -> None:
     for name, kind in (
         ("curved viscous", sw.friction.CurvedViscous),
@@ -199,6 +203,7 @@ def test_a_table_over_the_temperature_tells_how_friction_falls() -> None:
         assert fall[name].sigma < 0.1 * truth
 
 
+@pytest.mark.slow("identification")
 def test_a_table_under_load_tells_how_friction_grows_with_it() -> None:
     """In both directions, and where one of them has more friction, too."""
     mixed = sw.friction.MixedLubrication(coulomb=0.03, breakaway=0.05, stribeck_speed=3.0, viscous=2e-4, load_sensitivity=2.0)
@@ -239,6 +244,7 @@ def test_what_no_order_describes_is_told_by_a_map() -> None:
     assert best.coulomb == pytest.approx(level[:12].mean(), rel=0.01)
 
 
+@pytest.mark.slow("identification")
 def test_rows_that_lie_far_off_are_named_and_left_out() -> None:
     truth = TRUTHS["with a fall at low speed"].steady(BOTH_WAYS)
     torque = truth + 5e-4 * np.random.default_rng(7).normal(size=len(truth))
@@ -252,6 +258,7 @@ def test_rows_that_lie_far_off_are_named_and_left_out() -> None:
         assert abs(estimate.value - value) < 3.0 * estimate.sigma
 
 
+@pytest.mark.slow("identification")
 def test_nothing_is_left_out_of_noise() -> None:
     truth = TRUTHS["curved viscous"].steady(BOTH_WAYS)
     for seed in range(3):
@@ -259,6 +266,7 @@ def test_nothing_is_left_out_of_noise() -> None:
         assert fit_friction(FrictionTable(BOTH_WAYS, torque), sw.Gear())[0].fit.training.all()
 
 
+@pytest.mark.slow("identification")
 def test_a_torque_without_any_noise_is_told_by_the_simplest_law() -> None:
     best = fit_friction(FrictionTable(BOTH_WAYS, 0.05 * np.sign(BOTH_WAYS)), sw.Gear())[0]
     assert (best.name, best.coulomb, best.viscous) == (

@@ -122,6 +122,7 @@ def test_slopes_agree_with_differences() -> None:
         assert np.sqrt(np.mean((slope - apart) ** 2)) < 1e-3 * np.sqrt(np.mean(apart**2))
 
 
+@pytest.mark.slow("identification")
 def test_intervals_hold_the_truth_and_the_loss_is_found() -> None:
     truth, distances = TRUTH | {"loss": 0.05}, []
     for seed in range(4):
@@ -133,6 +134,7 @@ def test_intervals_hold_the_truth_and_the_loss_is_found() -> None:
     assert 0.5 < np.sqrt(np.mean(np.square(distances))) < 1.6
 
 
+@pytest.mark.slow("identification")
 def test_a_delay_is_found_and_does_not_bias_friction() -> None:
     best = fit_motion([MotionLog.of(record(TRUTH, 0.05, 1, delay=6e-3, zero=0.2), drive())], drive())[0]
     values = {each.path: each for each in best.fit.estimates}
@@ -142,6 +144,7 @@ def test_a_delay_is_found_and_does_not_bias_friction() -> None:
         assert abs(values[NAMES[name]].value - TRUTH[name]) < 4.0 * values[NAMES[name]].sigma
 
 
+@pytest.mark.slow("identification")
 def test_no_delay_is_longer_than_five_samples() -> None:
     """An effort that another motion made, as that of a hand, fits best with a delay that no clock makes."""
     log = MotionLog.of(record(TRUTH, 0.05, 1, delay=0.4), drive())
@@ -150,6 +153,7 @@ def test_no_delay_is_longer_than_five_samples() -> None:
     assert all(abs(delay) < MAX_DELAY_SAMPLES / RATE for delay in delays)
 
 
+@pytest.mark.slow("identification")
 def test_the_error_held_out_is_that_of_all_samples_in_the_full_band() -> None:
     """A wave of 40 Hz lies above the pass band of the fit, and begins in the last third of the motion."""
     usual = record(TRUTH, 0.02, 1)
@@ -203,6 +207,7 @@ def test_ripple_that_grows_with_the_speed_has_no_outliers() -> None:
     assert np.mean(spoilt(values)) < 0.01
 
 
+@pytest.mark.slow("identification")
 def test_an_inertia_that_a_person_gave_stays_where_a_slow_motion_hardly_shows_it() -> None:
     angle, slow = 0.5 * np.sin(0.3 * TIME), 0.15 * np.cos(0.3 * TIME)
     friction = (0.05 + 3e-4 * np.abs(RATIO * slow)) * np.sign(RATIO * slow)
@@ -237,6 +242,7 @@ def ringing(truth: dict[str, float], stiffness: float, seed: int) -> sw.Recordin
     return sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
 
 
+@pytest.mark.slow("identification")
 def test_a_load_that_rings_on_its_spring_moves_no_friction() -> None:
     truth = TRUTH | {"inertia": 1.6}
     stiff = drive().replace(gear=drive().gear.replace(stiffness=sw.stiffness.Linear(k=1.2e4)))

@@ -1,4 +1,4 @@
-"""Document P's procedure recovers parameters assumed in its form; both readings of its Table 2 say what they contradict."""
+"""Document P's procedure recovers parameters assumed in its form."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.identification.candidates.position import fit_position, readings
-from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.candidates.position import fit_position
 
 Array = NDArray[np.float64]
 
 S1, S2, S3 = 1.5738e-6, -3.7901e-4, 0.0720  # printed
-TABLE_2 = FrictionTable(np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165]))
 
 
 def truth(seed: int, viscous: float = 0.0) -> tuple[Array, sw.friction.PositionDependent]:
@@ -103,33 +101,6 @@ def test_too_little_is_refused(turns: float, samples: int, message: str) -> None
     angle = np.linspace(0.0, turns * 2.0 * np.pi, samples)
     with pytest.raises(ValueError, match=message):
         fit_position(run(angle, 0.07 + 0.0 * angle))
-
-
-def test_the_readings_of_table_2_have_its_line_and_say_what_they_exclude() -> None:
-    """Numbers of errata E-P6 and E-P7."""
-    _, law = truth(0, viscous=4e-4)
-    total, part, at_output = readings(TABLE_2, law.replace(cosine=[], sine=[]), reduction=100.0)
-    for reading in (total, part):
-        assert (reading.coulomb.value, reading.viscous.value) == pytest.approx((0.012554434963, 0.030840444789), rel=1e-9)
-    assert (
-        total.contradicts[0] == "its 0.012 N·m in all at 0.1 rad/s are less than the 0.0492 N·m that the law has at every angle"
-    )
-    assert "77.1 times the law's 0.0004" in total.contradicts[1]
-    assert part.total == pytest.approx(0.0491812523669 + TABLE_2.torque, rel=1e-5)
-    assert len(part.contradicts) == 1, "nothing contradicts the Coulomb level"
-    assert "77.1 times" in part.contradicts[0]
-    assert "adds to the law's 0.072 N·m" in part.remark
-    assert at_output.viscous.value == pytest.approx(0.000308404448, rel=1e-9)
-    assert at_output.coulomb.value == part.coulomb.value
-    assert "0.771 times" in at_output.contradicts[0]
-
-
-def test_a_table_that_agrees_with_the_law_contradicts_nothing() -> None:
-    _, law = truth(0, viscous=4e-4)
-    speed = np.array([1.0, 10.0, 50.0, 100.0])
-    noise = 1e-5 * np.random.default_rng(1).normal(size=4)
-    total, _ = readings(FrictionTable(speed, 0.072 + 4e-4 * speed + noise), law.replace(cosine=[], sine=[]))
-    assert total.contradicts == ()
 
 
 if __name__ == "__main__":

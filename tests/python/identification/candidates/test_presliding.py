@@ -78,14 +78,17 @@ def calibrated(off: list[Array]) -> None:
     assert np.all((scatter > 0.7) & (scatter < 1.4)), scatter
 
 
+@pytest.mark.slow("identification")
 def test_a_bristle_is_found_as_well_as_is_said() -> None:
     calibrated([bristle_off(seed) for seed in range(30)])
 
 
+@pytest.mark.slow("identification")
 def test_maxwell_elements_are_found_as_well_as_is_said() -> None:
     calibrated([elements_off(seed) for seed in range(30)])
 
 
+@pytest.mark.slow("identification")
 def test_the_model_that_made_a_loop_is_ranked_first() -> None:
     random = np.random.default_rng(5)
     angle = path(4e-3)

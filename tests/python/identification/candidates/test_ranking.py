@@ -43,6 +43,7 @@ def stiffness(found: TorsionCandidate) -> Any:
     return found.fit.gear.stiffness
 
 
+@pytest.mark.slow("identification")
 def test_the_law_that_made_a_loop_is_found_among_all() -> None:
     law = sw.hysteresis.Regimes(
         positive_unloading=4e4,
@@ -65,6 +66,7 @@ def test_the_law_that_made_a_loop_is_found_among_all() -> None:
     assert all(each.cost > 0.0 for each in ranked)
 
 
+@pytest.mark.slow("identification")
 def test_the_simplest_of_equals_comes_first() -> None:
     gear = sw.Gear(stiffness=sw.stiffness.Linear(k=2e4), hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[8e3], breakaway=[1.2]))
     ranked = rank_loop(measured(gear, along(0, 1, -1, 1, -1)), sw.Gear())

@@ -158,6 +158,7 @@ def test_what_is_found_over_the_speed_lies_as_near_as_is_said(name: str) -> None
     calibrated([over_speed_off(name, seed) for seed in range(TRUTHS)])
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("name", BESIDE)
 def test_what_is_found_beside_the_speed_lies_as_near_as_is_said(name: str) -> None:
     calibrated([beside_speed_off(name, seed) for seed in range(TRUTHS)])

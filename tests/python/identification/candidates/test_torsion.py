@@ -145,6 +145,7 @@ def test_friction_that_was_measured_is_taken_out_of_a_loop_from_the_input() -> N
     assert best.fit.gear.stiffness.k1 == pytest.approx(1e4, rel=0.02)
 
 
+@pytest.mark.slow("identification")
 def test_of_friction_that_was_not_measured_and_hysteresis_one_alone_is_fitted() -> None:
     start = INPUT.replace(friction_input=INPUT.friction_input.replace(coulomb=0.012, breakaway=0.02))
     loop = TorsionLoop.of(at_the_input(noise=1e-4), start)
@@ -205,6 +206,7 @@ def test_a_loop_that_cannot_be_one_is_refused() -> None:
         TorsionLoop(measured.twist[::-1].copy(), measured.torque[::-1].copy())
 
 
+@pytest.mark.slow("identification")
 def test_a_loop_from_the_input_tells_the_spring_wherever_its_samples_lie() -> None:
     """From the first loading on, with bristles that bend; it turns between samples, and its angle counts from anywhere."""
     ratio, step, law = 80.0, 4e-6, sw.friction.Stribeck(coulomb=0.05, breakaway=0.08, stribeck_speed=3.0, viscous=2e-4)

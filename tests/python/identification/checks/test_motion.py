@@ -28,10 +28,12 @@ def with_channel(recording: sw.Recording, name: str, values: np.ndarray) -> sw.R
     return recording.with_column(name, values, recording.unit(name))
 
 
+@pytest.mark.slow("identification")
 def test_a_right_log_fails_no_check() -> None:
     assert failed(record(TRUTH, NOISE)) == {}
 
 
+@pytest.mark.slow("identification")
 def test_revolutions_read_as_radians_show_in_the_sine_of_gravity() -> None:
     """Inertia and friction absorb a factor of the angle; gravity 10 N.m would come out as six times as much."""
     right = record(TRUTH, NOISE)
@@ -39,12 +41,14 @@ def test_revolutions_read_as_radians_show_in_the_sine_of_gravity() -> None:
     assert "times what it leaves if the angle is in rev, not in rad" in message
 
 
+@pytest.mark.slow("identification")
 def test_the_angle_of_the_joint_named_as_that_of_the_motor_shows_likewise() -> None:
     right = record(TRUTH, NOISE)
     message = failed(with_channel(right, "input_angle", -right["input_angle"] / 80.0))["angle in the sine of gravity"]
     assert "if it is that of the output" in message
 
 
+@pytest.mark.slow("identification")
 def test_a_wrong_ratio_of_the_start_set_shows_in_a_log_of_one_encoder() -> None:
     message = failed(record(TRUTH, NOISE), "csg-20-100")["ratio by gravity"]
     assert message.startswith("gravity goes with the sine of the motor's angle over about ")
@@ -52,6 +56,7 @@ def test_a_wrong_ratio_of_the_start_set_shows_in_a_log_of_one_encoder() -> None:
     assert found == pytest.approx(80.0, rel=0.03)
 
 
+@pytest.mark.slow("identification")
 def test_a_log_without_gravity_shows_no_ratio() -> None:
     assert (
         not {"ratio by gravity", "angle in the sine of gravity"}
@@ -59,6 +64,7 @@ def test_a_log_without_gravity_shows_no_ratio() -> None:
     )
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize(("gravity", "checked"), [(0.0, False), (10.0, True)])
 def test_the_angle_is_compared_with_gravity_only_where_there_is_gravity(gravity: float, checked: bool) -> None:
     """An upright axis in degrees was said to have a gravity that does not go with the sine of its angle."""
@@ -69,17 +75,20 @@ def test_the_angle_is_compared_with_gravity_only_where_there_is_gravity(gravity:
     assert all("no other unit or side" in check.message for check in of_angle)
 
 
+@pytest.mark.slow("identification")
 def test_milliseconds_read_as_seconds_make_a_pendulum_that_no_joint_is() -> None:
     right = record(TRUTH, NOISE)
     assert "gravity against inertia" in failed(with_channel(right, "time", 1e3 * right["time"]))
 
 
+@pytest.mark.slow("identification")
 def test_friction_that_drives_the_joint_is_not_clamped_without_a_word() -> None:
     """Plain least squares has it negative: a fit would end at zero."""
     message = failed(record(TRUTH | {"coulomb": -0.05, "viscous": 0.0}, NOISE))["estimates at bounds"]
     assert "a negative Coulomb friction of -0.0" in message
 
 
+@pytest.mark.slow("identification")
 def test_a_load_that_changes_on_the_way_shows_in_the_halves() -> None:
     light, heavy = record(TRUTH, NOISE), record(TRUTH | {"gravity": 14.0}, NOISE)
     half = len(light) // 2

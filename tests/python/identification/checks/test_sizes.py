@@ -64,6 +64,7 @@ def test_millinewton_metres_called_newton_metres_are_named() -> None:
     assert check.value == pytest.approx(1e3, rel=0.3)
 
 
+@pytest.mark.slow("identification")
 def test_a_log_of_a_moving_drive_is_no_table() -> None:
     time = np.linspace(0.0, 10.0, 500)
     speed = 100.0 * np.sin(2.0 * np.pi * time) + 120.0 * np.sin(1.3 * time) + 1.7

@@ -68,6 +68,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_is_named_and_nothing_identified(mistake: str) -> None:
     recording, changes, cause = MISTAKES[mistake]
@@ -100,6 +101,7 @@ def test_noise_explains_itself() -> None:
     assert left(np.ones((1, 9)), np.ones((1, 9)))[0] == 0.0
 
 
+@pytest.mark.slow("identification")
 def test_a_kept_parameter_that_the_run_contradicts_is_named() -> None:
     """A load a third too heavy; everything else is well known."""
     wrong = drive(GEAR.replace(stiffness=sw.stiffness.Linear(k=1e4)), inertia=0.4)

@@ -40,6 +40,7 @@ def test_terms_of_the_energy_make_up_the_torque_of_an_arm(joint: str, named: boo
     assert columns @ shares_of(columns, torque) == pytest.approx(torque, abs=1e-6)
 
 
+@pytest.mark.slow("identification")
 def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> None:
     joint = arms.Joint()
     done = arms.run((joint,) * 3, arms.fourier(40.0, (0, 1, 2), seed=3))
@@ -62,6 +63,7 @@ def test_joints_without_numbers_are_in_alphabetical_order() -> None:
     assert in_order(["shoulder", "elbow"]) == ["elbow", "shoulder"]
 
 
+@pytest.mark.slow("identification")
 def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:
     done = arms.run((arms.Joint(),) * 3, arms.fourier(12.0, (1,), seed=4))
     arms.mat(tmp_path / "arm.mat", arms.Recorder(rate=250.0)(done))
@@ -69,6 +71,7 @@ def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:
     assert not any("move too" in remark for remark in found.files[0].remarks)
 
 
+@pytest.mark.slow("identification")
 def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Path) -> None:
     done = arms.run((arms.Joint(),) * 3, arms.fourier(12.0, (1, 2), seed=5))
     arms.headerless(tmp_path / "arm.csv", arms.Recorder(rate=200.0, step=1e-4)(done))
@@ -82,6 +85,7 @@ def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Pat
     assert of_all.in_band < 0.5 * of_one.in_band
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("seed", [1, 2])
 def test_twenty_seconds_of_an_arm_are_predicted_better_than_with_a_model_of_it(seed: int, tmp_path: Path) -> None:
     joint = arms.Joint(ripple={2.0: 0.006, 4.0: 0.002})

@@ -44,6 +44,7 @@ START = TRUTH.replace(
 )
 
 
+@pytest.mark.slow("identification")
 def test_two_encoders_tell_friction_stiffness_and_kinematic_error() -> None:
     start = drive(START)
     log = DriveLog.of(recording(["input_angle", "output_angle"], noise=1e-3), start)
@@ -64,6 +65,7 @@ def modulated(law: object) -> sw.Gear:
     return TRUTH.replace(friction_input=thermal)
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("start", [START.friction_input, sw.friction.Viscous(viscous=2e-4)])
 def test_friction_within_other_laws_comes_back(start: object) -> None:
     recorded = recording(["input_angle"], gear=modulated(TRUTH.friction_input))

@@ -160,6 +160,7 @@ def test_breakaway_at_the_input_needs_a_loop_at_the_input() -> None:
     assert {step.settings["held"] for step in plan.steps} == {"output"}
 
 
+@pytest.mark.slow("identification")
 def test_expected_sigmas_of_loops_are_the_scatter_of_fits_to_simulated_loops() -> None:
     paths = ["stiffness.k1", "stiffness.k2", "stiffness.t1", "hysteresis.stiffness[0]", "hysteresis.breakaway[0]"]
     known = {"stiffness.k3": 1e-3, "stiffness.t2": 1e-6}
@@ -212,6 +213,7 @@ def test_spreads_and_ratings_of_a_set_count() -> None:
     assert max(speeds(fast)) == pytest.approx(3500.0 * np.pi / 30.0)
 
 
+@pytest.mark.slow("identification")
 def test_a_run_that_breaks_a_limit_is_not_planned() -> None:
     drive = sw.load("position-drive")
     told: dict[str, Any] = {

@@ -150,6 +150,7 @@ def test_known_torque_of_other_bodies_acts_at_the_output() -> None:
     assert predicted[0, later] == pytest.approx(log.measured[0, later], abs=2e-5)
 
 
+@pytest.mark.slow("identification")
 def test_the_whole_gear_is_told_by_two_encoders_and_the_current() -> None:
     """Eight numbers from noisy logs, started thirty percent off: right within what the fit says of itself."""
     off_by = np.array([_deviations(seed) for seed in range(3)])

@@ -49,6 +49,7 @@ def check(best: FrictionCandidate, quadrants: tuple[str, ...]) -> None:
         assert abs(found[path][0] - value) < 3.5 * found[path][1] < 0.1 * value, path
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_dynamometer_that_measures_action_or_reaction_gives_the_loss_of_all_quadrants(sign: float) -> None:
     table = dynamometer(np.linspace(-40.0, 40.0, 9))
@@ -66,6 +67,7 @@ def test_power_that_flows_one_way_determines_one_quadrant_and_no_other(sign: flo
     assert "the loss rests on the ratio" in with_load(table, RATIO)[1][-1]
 
 
+@pytest.mark.slow("identification")
 def test_driving_and_back_driving_have_losses_of_their_own_where_they_differ() -> None:
     best = fitted(dynamometer(np.linspace(-40.0, 40.0, 9), loss={1.0: 0.3, -1.0: 0.15, 0.0: 0.0}))
     assert "driving and back-driving" in best.name
@@ -74,6 +76,7 @@ def test_driving_and_back_driving_have_losses_of_their_own_where_they_differ() -
         assert abs(found[f"friction_mesh.{name}"][0] - loss) < 3.5 * found[f"friction_mesh.{name}"][1] < 0.05
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize(("shaft", "scale"), [("input", 1.0 / RATIO), ("output", 1.0)])
 def test_a_load_is_counted_at_the_shaft_where_its_loss_is_possible(shaft: str, scale: float) -> None:
     table = dynamometer(np.linspace(-40.0, 40.0, 9))
@@ -102,6 +105,7 @@ def test_a_gear_gets_the_loss_of_its_mesh_and_no_source_for_what_no_load_measure
     assert identified == ["driving_reverse"]
 
 
+@pytest.mark.slow("identification")
 def test_losses_of_quadrants_that_follow_one_are_all_identified() -> None:
     table, _ = with_load(dynamometer(np.linspace(-40.0, 40.0, 9)), RATIO)
     file = Recognised(Path("dyno.csv"), "friction", {}, {}, "input", (), (), {}, table)

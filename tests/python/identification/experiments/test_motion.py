@@ -32,6 +32,7 @@ def test_the_filter_is_that_of_butterworth_forward_and_backward(cutoff: float) -
     assert motion.filtered(series[0]) == pytest.approx(expected[0], abs=1e-8)
 
 
+@pytest.mark.slow("identification")
 @settings(max_examples=30, deadline=None)
 @given(delay=st.floats(-0.05, 0.05), frequency=st.floats(0.5, 10.0))
 def test_a_delayed_sine_is_a_sine_and_changes_with_the_delay_as_it_does(delay: float, frequency: float) -> None:

@@ -69,6 +69,7 @@ def test_without_gravity_the_levels_are_means() -> None:
     assert levels.sigma == pytest.approx(1e-3 / np.sqrt(300), rel=0.3)
 
 
+@pytest.mark.slow("identification")
 def test_an_arm_at_constant_speeds_gives_friction_and_gravity(tmp_path: Path) -> None:
     units = {"time": "s", "joint_position": "rad", "joint_torque": "N.m"}
     for number, (time, angle, torque, _) in enumerate(sweeps()):

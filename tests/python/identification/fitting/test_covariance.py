@@ -110,6 +110,7 @@ def test_samples_hang_together_as_long_as_their_autoregression_says() -> None:
     assert np.median(white) == 1.0
 
 
+@pytest.mark.slow("identification")
 def test_a_long_record_that_drifts_does_not_drown_a_short_table() -> None:
     """3000 samples that hang together by hundreds tell as little as a dozen: the table tells more."""
     from scipy.signal import lfilter
@@ -141,6 +142,7 @@ def spoilt(seed: int, share: float = 0.02) -> sw.Recording:
     return sw.Recording({"speed": SPEED, "torque": LAW.steady(SPEED) + noise}, {"speed": "rad/s", "torque": "N.m"})
 
 
+@pytest.mark.slow("identification")
 def test_soft_loss_is_all_but_as_sure_as_without_outliers_and_knows_it() -> None:
     truth = np.array([LAW.coulomb, LAW.viscous])
     found = [sw.fit(START, spoilt(seed), FREE, loss="soft_l1") for seed in range(50)]
@@ -154,6 +156,7 @@ def test_soft_loss_is_all_but_as_sure_as_without_outliers_and_knows_it() -> None
     assert np.all(np.sqrt(np.mean((strict - truth) ** 2, axis=0)) > 5.0 * np.std(clean, axis=0) * [1.0, 0.5])
 
 
+@pytest.mark.slow("identification")
 def test_soft_loss_without_outliers_is_nearly_as_good_as_squares() -> None:
     pairs = [
         [sw.fit(START, spoilt(seed, 0.0), FREE, loss=loss).estimates[0] for loss in ("linear", "soft_l1")] for seed in range(40)

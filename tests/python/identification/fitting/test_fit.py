@@ -64,6 +64,7 @@ def test_least_squares_agrees_with_the_linear_algebra_of_the_same_problem() -> N
     assert [e.value for e in found.estimates] == pytest.approx(exact, rel=1e-8)
 
 
+@pytest.mark.slow("identification")
 def test_one_sigma_covers_two_thirds_and_three_sigma_nearly_all() -> None:
     distances = []
     for seed in range(200):
@@ -142,6 +143,7 @@ def actuator_log() -> sw.Recording:
 ACTUATOR_NOISE = {"input_angle": 1e-5, "output_angle": 1e-6, "torque": 5e-3}  # rad, rad, N.m
 
 
+@pytest.mark.slow("identification")
 def test_jerks_as_short_as_two_usual_steps_tell_spring_and_load_of_a_drive_with_fast_stages() -> None:
     truth = {"gear.stiffness.k": 2e4, "load.inertia": 0.6}
     found = sw.fit(actuator(**{path: 1.1 * value for path, value in truth.items()}), actuator_log(), list(truth))
@@ -152,6 +154,7 @@ def test_jerks_as_short_as_two_usual_steps_tell_spring_and_load_of_a_drive_with_
         assert high - low < 0.05 * truth[estimate.path]
 
 
+@pytest.mark.slow("identification")
 def test_a_drive_that_turns_out_faster_than_its_start_is_followed() -> None:
     """The soft mesh of the start allows steps of 0.1 ms, those of the truth must be a quarter as long."""
     found = sw.fit(actuator(**{"gear.structure.mesh_stiffness": 8e6}), actuator_log(), ["gear.structure.mesh_stiffness"])
@@ -298,6 +301,7 @@ def few(seed: int) -> sw.Recording:
     return sw.Recording({"speed": speed, "torque": LAW.steady(speed) + noise}, {"speed": "rad/s", "torque": "N.m"})
 
 
+@pytest.mark.slow("identification")
 def test_the_intervals_of_few_samples_hold_the_truth_as_often_as_they_say() -> None:
     """Five samples, three degrees of freedom: three normal standard deviations would hold it in 94 %, not in 99.7 %."""
     held = {0.6826894921370859: 0, 0.95: 0, 0.9973: 0}
@@ -315,6 +319,7 @@ def test_the_intervals_of_few_samples_hold_the_truth_as_often_as_they_say() -> N
     )
 
 
+@pytest.mark.slow("identification")
 def test_noise_that_grows_with_the_torque_widens_what_it_spoils() -> None:
     """A pump's noise at high speed: the viscous coefficient is as unsure as it scatters."""
     speed = np.geomspace(1.0, 300.0, 40)

@@ -42,6 +42,7 @@ def off(found: sw.Fit) -> float:
     return max(abs(each.value - truth) / each.sigma for each, truth in zip(found.estimates, TRUTH, strict=False))
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize(("volts", "seed"), [(0.16, 3), (0.2, 3), (0.2, 7)])
 def test_a_fit_that_ended_at_the_wrong_minimum_is_led_to_the_truth(volts: float, seed: int) -> None:
     found = fitted(volts, seed, (1.95e4, 0.375), "input_angle", "output_angle")
@@ -53,6 +54,7 @@ def test_a_fit_that_ended_at_the_wrong_minimum_is_led_to_the_truth(volts: float,
     assert told.ends[0].values["gear.stiffness.k"] == pytest.approx(TRUTH[0], rel=0.1)
 
 
+@pytest.mark.slow("identification")
 def test_another_minimum_that_explains_as_much_is_named() -> None:
     told = minima(fitted(0.2, 3, (1.95e4, 0.375), "input_speed", "current"))
     (rival,) = told.rivals
@@ -60,6 +62,7 @@ def test_another_minimum_that_explains_as_much_is_named() -> None:
     assert "the data do not separate the two" in str(told)
 
 
+@pytest.mark.slow("identification")
 def test_a_drive_that_moves_has_one_minimum() -> None:
     found = fitted(6.0, 3, (1.95e4, 0.375), "input_speed", "output_angle")
     told = minima(found)

@@ -94,6 +94,7 @@ def test_what_each_record_has_for_itself_is_in_its_own_model() -> None:
         _ = found.predicted
 
 
+@pytest.mark.slow("identification")
 def test_two_loads_tell_the_inertia_of_the_motor_from_that_of_the_load() -> None:
     logs = {"light": log(0.2, 1), "heavy": log(1.0, 2)}
     free = ["gear.friction_input.coulomb", "motor.inertia", "load.inertia"]

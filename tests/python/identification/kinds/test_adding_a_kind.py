@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -13,44 +13,19 @@ import strainwave as sw
 from strainwave.identification import kinds
 from strainwave.identification.identify import identify
 from strainwave.identification.kinds import Listed
-from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.rank import rank, table_of
-from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import Recognised, recognise
-from strainwave.identification.reading.roles import ColumnRoles
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.reading.recognise import recognise
 from strainwave.report.identify import identify_report
 
-
-class Weighing(Kind):
-    """Angle and torque of a pendulum at rest: its gravity."""
-
-    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
-        return {"hold_angle", "hold_torque"} <= {column.name for column in columns}
-
-    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-        found = {column.channel.quantity: column for column in columns}
-        return ColumnRoles(self.name, dict(found), "output", ("a pendulum was held at several angles",))
-
-    def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-        angle, torque = file.recording["angle"], file.recording["torque"]
-        gravity = float(np.sin(angle) @ torque / (np.sin(angle) @ np.sin(angle)))
-        estimate = FileEstimate("load.gravity_torque", "N.m", gravity, 0.01, "")
-        units = {"angle": "rad", "torque": "N.m", "modelled": "N.m"}
-        curves = sw.Recording({"angle": angle, "torque": torque, "modelled": gravity * np.sin(angle)}, units)
-        return FileResult(file.path.name, file, "a sine", (estimate,), pictures=(Picture(curves),)), known
-
-    def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
-        return (Ranked("a sine", 1, 0.01, np.nan, "N.m", 1.0),)
+PAGE = Path(__file__).resolve().parents[4] / "docs" / "contributing" / "add-a-kind-of-file.md"
 
 
 @pytest.fixture
 def added(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The line of the list, and the module of the class."""
+    """The line of the list, and the module of the class, which is that of the page for contributors."""
     module = ModuleType("strainwave.identification.kinds.weighing")
-    module.Weighing = Weighing  # type: ignore[attr-defined]
+    (code,) = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    exec(compile(code, str(PAGE), "exec"), vars(module))
     monkeypatch.setitem(sys.modules, module.__name__, module)
     monkeypatch.setitem(kinds.KINDS, "weighing", Listed("a pendulum held at rest", "weighing.Weighing"))
 

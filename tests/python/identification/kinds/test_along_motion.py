@@ -46,6 +46,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@pytest.mark.slow("identification")
 def test_one_direction_does_not_separate_coulomb_friction_from_the_zero_of_the_torque(folder: Path) -> None:
     options = [f"--constant={name}={value}" for name, value in MOTOR.items()]
     printed = strainwave("identify", START, "one_way.csv", *options, "--out=one", folder=folder).stdout
@@ -57,6 +58,7 @@ def test_one_direction_does_not_separate_coulomb_friction_from_the_zero_of_the_t
     assert f"not identified: {COULOMB} {coulomb:.3g} N.m, one_way.csv: {ONE_WAY}" in " ".join(printed.split())
 
 
+@pytest.mark.slow("identification")
 def test_both_directions_separate_them_and_their_log_gives_the_friction(folder: Path) -> None:
     found = sw.identify(START, [folder / "one_way.csv", folder / "both_ways.csv"], mapping=sw.FileMapping(constants=MOTOR))
     both = {each.path: each for each in found.files[1].estimates}
@@ -67,6 +69,7 @@ def test_both_directions_separate_them_and_their_log_gives_the_friction(folder: 
     assert found.gear_set.sources[COULOMB].source == "identified from both_ways.csv"
 
 
+@pytest.mark.slow("identification")
 def test_friction_that_noise_hides_is_not_written_as_identified() -> None:
     log = record(0.1, 0.0, 3)
     noise = 40.0 * np.random.default_rng(4).standard_normal(len(TIME))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 import strainwave as sw
 from strainwave.identification.identify import Identified, identify
 from strainwave.report.identify import identify_report
@@ -29,6 +30,7 @@ def identified(folder: Path, noise: float) -> Identified:
     return identify(start.replace(motor=TRUTH.motor, sources={**start.sources, **sources}), [folder / "log.csv"])
 
 
+@pytest.mark.slow("identification")
 def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) -> None:
     found = identified(tmp_path, 1e-5)
     told = {each.estimate.path: each.estimate for each in found.parameters}
@@ -45,6 +47,7 @@ def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) 
     assert "log.csv, between the shafts" in identify_report(found)
 
 
+@pytest.mark.slow("identification")
 def test_why_encoders_tell_no_stiffness_is_said(tmp_path: Path) -> None:
     found = identified(tmp_path, 0.03)
     assert any(each.startswith("stiffness and hysteresis are not determined: up to") for each in found.files[0].remarks)

@@ -155,6 +155,7 @@ def test_directions_that_break_away_apart_make_the_mean_less_sure(tmp_path: Path
     assert 0.01 < sigma < 0.014  # 0.072 one way and 0.048 the other: half of the difference is 0.012
 
 
+@pytest.mark.slow("identification")
 def test_records_of_one_speed_each_are_one_table(tmp_path: Path) -> None:
     found = identify(START, both_ways(tmp_path))
     assert [each.part_of for each in found.files[:-1]] == [found.files[-1].name] * (2 * len(SPEEDS))
@@ -166,6 +167,7 @@ def test_records_of_one_speed_each_are_one_table(tmp_path: Path) -> None:
         assert getattr(found.gear_set.gear.friction_input, name) == value
 
 
+@pytest.mark.slow("identification")
 def test_the_speed_may_stand_in_the_mapping_file(tmp_path: Path) -> None:
     files = both_ways(tmp_path, named=False, current=True)
     lines = [f'["{path.name}"]\nconstants.speed = "{float(path.stem[4:])} rad/s"' for path in files]
@@ -207,6 +209,7 @@ def test_a_record_one_way_at_one_speed_determines_friction_there_with_a_speed_co
     assert not found.failed
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("with_speed", [True, False])
 def test_a_record_one_way_at_one_speed_that_gravity_explains_is_a_log(tmp_path: Path, with_speed: bool) -> None:
     found = identify(START, [one_way(tmp_path / "log.csv", gravity=9.0, drift=0.0, with_speed=with_speed)])
@@ -215,6 +218,7 @@ def test_a_record_one_way_at_one_speed_that_gravity_explains_is_a_log(tmp_path: 
     assert found.files[0].held_out is not None
 
 
+@pytest.mark.slow("identification")
 def test_friction_over_the_angle_gives_waves_around_the_table(tmp_path: Path) -> None:
     files = [*both_ways(tmp_path), run(tmp_path / "turns.csv", 10.0, angle=True, count=3200)]
     found = identify(START, files)
@@ -244,6 +248,7 @@ def warm_up(path: Path, seed: int = 3) -> Path:
     return write(path, columns, {"time": "s", "input_speed": "rad/s", "temperature": "K", "input_torque": "N.m"})
 
 
+@pytest.mark.slow("identification")
 def test_a_warm_up_tells_how_friction_falls(tmp_path: Path) -> None:
     found = identify(START, [warm_up(tmp_path / "warm.csv")])
     value, sigma = told(found, "dry_fall")
@@ -273,6 +278,7 @@ def test_a_constant_torque_at_the_output_is_taken_off_a_table(tmp_path: Path) ->
     assert told(found, "coulomb")[0] == pytest.approx(COULOMB, rel=1e-6)
 
 
+@pytest.mark.slow("identification")
 def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> None:
     record(TRUTH, 0.05, 3).to_csv(tmp_path / "log.csv")
     motor = {"torque_constant": 0.08, "motor_inertia": 1e-4 - sw.load(START).input_inertia}
@@ -289,6 +295,7 @@ def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> No
     assert "given inertia of the load" in {check.name for check in wrong.failed}
 
 
+@pytest.mark.slow("identification")
 def test_a_recording_by_its_kind_determines_what_its_file_does(tmp_path: Path) -> None:
     path = table(tmp_path / "table.csv")
     alone = identify(START, [path]).gear_set.gear
@@ -296,6 +303,7 @@ def test_a_recording_by_its_kind_determines_what_its_file_does(tmp_path: Path) -
     assert identify(START, {"friction": sw.Recording.read(path)}).gear_set.gear == alone
 
 
+@pytest.mark.slow("identification")
 def test_records_with_an_angle_are_averaged_over_whole_turns(tmp_path: Path) -> None:
     """1.25 turns of a wave of the second order: over all of them the mean is off by the wave's last quarter."""
     files = []

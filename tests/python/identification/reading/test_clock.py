@@ -16,6 +16,7 @@ def same(count: int) -> NDArray[np.bool_]:
     return np.zeros(count, bool)
 
 
+@pytest.mark.slow("identification")
 @untimed
 @given(
     st.integers(50, 3000),

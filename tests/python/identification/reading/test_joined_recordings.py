@@ -24,6 +24,7 @@ def write(path: Path, rows: np.ndarray) -> Path:
     return path
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize(("epoch", "order"), [(0.0, (1, 0, 2)), (1.7e9, (2, 1, 0))])
 def test_parts_in_any_order_give_the_whole(tmp_path: Path, rows: np.ndarray, epoch: float, order: tuple[int, ...]) -> None:
     rows = rows + np.array([epoch, 0.0, 0.0, 0.0])

@@ -290,6 +290,7 @@ def test_coarse_steps_of_an_encoder_are_not_held_values(tmp_path: Path) -> None:
 # ---- Joints of several files
 
 
+@pytest.mark.slow("identification")
 def test_files_of_different_joints_are_not_one_gear(tmp_path: Path) -> None:
     for joint in (2, 7):
         written(tmp_path / f"q{joint}_run.csv", "t [s],position [rad],effort [Nm]\n", [TIME, ANGLE, joint * TORQUE])
@@ -312,6 +313,7 @@ def test_the_joint_in_the_name_of_a_file_goes_before_others_that_move(tmp_path: 
     assert (found.joint, set(found.neighbours)) == ("2", {"1"})
 
 
+@pytest.mark.slow("identification")
 def test_each_file_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from strainwave.commands.file_options import FileOptions
     from strainwave.identification.reading import source

@@ -39,12 +39,14 @@ def found(folder: Path) -> GearSet:
     return sw.identify(START, [folder / "joint.csv"], mapping=mapping(**STATED)).gear_set
 
 
+@pytest.mark.slow("identification")
 def test_it_has_a_name_of_its_own_and_names_the_set_it_started_from(found: GearSet) -> None:
     assert found.name == "gear of joint 1 of joint"
     assert found.maker == ""
     assert "starting from CSG-20-100 of Harmonic Drive" in found.note
 
 
+@pytest.mark.slow("identification")
 def test_it_contains_load_and_motor_with_their_sources(found: GearSet) -> None:
     assert found.load.gravity_torque == pytest.approx(38.14, rel=0.02)
     assert found.sources["load.inertia"].source == "identified from joint.csv"
@@ -55,6 +57,7 @@ def test_it_contains_load_and_motor_with_their_sources(found: GearSet) -> None:
     assert isinstance(found.drive, sw.Drive)
 
 
+@pytest.mark.slow("identification")
 def test_bristles_are_saved_as_fitted_not_as_identified(found: GearSet) -> None:
     law = found.gear.friction_input
     assert isinstance(law, sw.friction.LuGre)
@@ -64,6 +67,7 @@ def test_bristles_are_saved_as_fitted_not_as_identified(found: GearSet) -> None:
     assert source.uncertainty is None
 
 
+@pytest.mark.slow("identification")
 def test_the_covariance_has_the_standard_deviations_of_the_numbers(found: GearSet) -> None:
     assert found.covariance is not None
     assert {"gear.friction_input.coulomb", "load.inertia", "load.gravity_phase"} <= set(found.covariance.paths)
@@ -72,6 +76,7 @@ def test_the_covariance_has_the_standard_deviations_of_the_numbers(found: GearSe
     assert found.covariance.correlation("gear.friction_input.coulomb", "gear.friction_input.viscous") < -0.2
 
 
+@pytest.mark.slow("identification")
 def test_the_errors_on_its_file_are_those_of_the_drive_as_saved(found: GearSet) -> None:
     (own,) = found.validation
     assert (own.file, own.channel, own.unit) == ("joint.csv", "current", "A")
@@ -79,6 +84,7 @@ def test_the_errors_on_its_file_are_those_of_the_drive_as_saved(found: GearSet) 
     assert own.error == pytest.approx(own.held_out, rel=0.5)
 
 
+@pytest.mark.slow("identification")
 def test_it_is_read_back_equal_shown_and_simulated(found: GearSet, folder: Path) -> None:
     found.save(folder / "gear.toml")
     assert GearSet.read(folder / "gear.toml") == found
@@ -93,6 +99,7 @@ def test_it_is_read_back_equal_shown_and_simulated(found: GearSet, folder: Path)
     assert "output_angle" in result.stdout
 
 
+@pytest.mark.slow("identification")
 def test_a_later_identification_keeps_the_covariance_of_what_it_does_not_change(found: GearSet) -> None:
     speed = np.geomspace(2.0, 200.0, 12)
     torque = JOINT.coulomb + JOINT.viscous * speed + 1e-4 * np.cos(np.arange(12.0))
@@ -108,12 +115,14 @@ def test_a_later_identification_keeps_the_covariance_of_what_it_does_not_change(
     assert later.sources["gear.friction_input.coulomb"].source != found.sources["gear.friction_input.coulomb"].source
 
 
+@pytest.mark.slow("identification")
 def test_other_loads_of_other_logs_are_stated(folder: Path) -> None:
     found = sw.identify(START, [folder / "joint.csv", folder / "stretched.csv"], mapping=mapping(**STATED)).gear_set
     assert found.name == "gear of joint 1 of joint and 1 more"
     assert "other logs carry other loads: " in found.note
 
 
+@pytest.mark.slow("identification")
 def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> None:
     found = sw.identify(START, [folder / "joint.csv"], mapping=mapping(ratio=100.0)).gear_set
     lacking = "ithout the measured load, friction: the torque constant is not known, and these numbers are in A"
@@ -129,6 +138,7 @@ def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> 
     assert f"W{lacking}" in page
 
 
+@pytest.mark.slow("identification")
 def test_a_measured_torque_gives_a_motor_of_torque(folder: Path) -> None:
     recorded = Recorder(rate=250.0)(run((replace(JOINT),) * 3, fourier(30.0, (1,), 2)))
     columns = {"time": recorded["time"], "output_angle": recorded["q"][1], "joint_torque": recorded["motor_torque"][1]}

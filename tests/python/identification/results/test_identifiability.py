@@ -50,6 +50,7 @@ def test_spring_and_hysteresis_of_a_single_branch_are_determined_together() -> N
     assert stated(found)["gear.hysteresis.breakaway[0]"] == "kept"
 
 
+@pytest.mark.slow("identification")
 def test_the_hysteresis_of_a_loop_at_the_input_has_the_uncertainty_of_the_friction_too() -> None:
     start = GearSet.read("hfuc-20-80")
     law = sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4)

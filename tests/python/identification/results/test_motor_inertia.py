@@ -43,6 +43,7 @@ def of_file(found: Identified, place: int) -> dict[str, FileEstimate]:
     return {each.path: each for each in found.files[place].estimates}
 
 
+@pytest.mark.slow("identification")
 def test_two_encoders_separate_motor_and_load_and_the_gear_file_has_what_is_printed(folder: Path) -> None:
     found = identified(folder, "both.csv", "later.csv")
     both, later = of_file(found, 0), of_file(found, 1)
@@ -61,6 +62,7 @@ def test_two_encoders_separate_motor_and_load_and_the_gear_file_has_what_is_prin
     assert covariance.correlation("gear.hysteresis.stiffness[0]", "gear.hysteresis.breakaway[0]") > 0.1
 
 
+@pytest.mark.slow("identification")
 def test_one_encoder_determines_both_together(folder: Path) -> None:
     found = identified(folder, "later.csv")
     (load,) = (each.estimate for each in found.parameters if each.estimate.path == "load.inertia")
@@ -70,6 +72,7 @@ def test_one_encoder_determines_both_together(folder: Path) -> None:
     assert found.gear_set.motor.inertia == 0.0
 
 
+@pytest.mark.slow("identification")
 def test_a_load_that_is_given_leaves_the_motor(folder: Path) -> None:
     found = identified(folder, "later.csv", load_inertia=LOAD)
     motor = of_file(found, 0)["motor.inertia"]

@@ -33,6 +33,7 @@ def log_fit() -> sw.Fit:
     return sw.fit(start, log, ["load.inertia"], training=log.time < 1.5)
 
 
+@pytest.mark.slow("identification")
 def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_fit: sw.Fit) -> None:
     figure = log_fit.plot()
     assert figure.get_suptitle() == "Measured and predicted output angle and current"
@@ -51,6 +52,7 @@ def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_
         assert ends == pytest.approx([1.5, 2.0], abs=2e-3)
 
 
+@pytest.mark.slow("identification")
 def test_the_spectrum_of_a_residual_shows_what_the_model_lacks(log_fit: sw.Fit) -> None:
     _, current = log_fit.plot_residual_spectrum().axes
     assert (current.get_title(loc="left"), current.get_xlabel()) == ("amplitude of current [A]", "frequency [Hz]")
@@ -82,6 +84,7 @@ def test_a_table_and_one_of_several_records_are_drawn_by_name() -> None:
         found.plot_residual_spectrum()
 
 
+@pytest.mark.slow("identification")
 def test_an_identification_is_drawn_over_its_start_set() -> None:
     found = sw.identify("hfuc-25-100", {"friction": table(1.5)})
     figure = found.plot()

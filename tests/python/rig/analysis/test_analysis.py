@@ -59,6 +59,7 @@ def test_a_gear_far_from_its_catalogue_is_told() -> None:
     assert "50 % of the 2.5e+04 N.m/rad of the set, beyond the spread of units" in str(checks["K2"])
 
 
+@pytest.mark.slow("rig")
 def test_errors_of_the_torque_spread_a_figure_as_its_interval_says() -> None:
     """Torques of 0.1 N.m each: at most what is stated, and not much less, since a point between two readings errs less."""
     random, gear_set, plain = np.random.default_rng(4), sw.GearSet.read("csg-20-100"), of_set("csg-20-100", 52.0)
@@ -189,6 +190,7 @@ def test_a_rated_torque_is_positive() -> None:
         analyse(loop_of_table(), rated_torque=0.0)
 
 
+@pytest.mark.slow("rig")
 def test_many_points_take_no_more_than_their_share() -> None:
     """A loop logged at a high rate: 40 000 points, whose numbers are those of the corners."""
     found = analyse(loop_of_table(step=0.36 / 10_000))
@@ -204,6 +206,7 @@ def test_a_figure_of_zero_in_a_set_has_no_share() -> None:
     assert str(check).endswith(", the set has 0 rad")
 
 
+@pytest.mark.slow("rig")
 def test_of_a_log_of_millions_of_points_the_means_of_stretches_are_evaluated() -> None:
     """Noise of 1e-3 rad on every point: a stretch of ten and more has less by the root of their number."""
     plain = loop_of_table(step=0.36 / 300_000)

@@ -40,6 +40,7 @@ def noisy(seed: int, unloading: float = 2.0, **more: object) -> LoopAnalysis:
     return analyse(Loop(angle, torque, side="input", name="noisy", angle_sigma=2e-3, torque_scale=0.05, **more))  # type: ignore[arg-type]
 
 
+@pytest.mark.slow("rig")
 def test_loops_of_one_gear_seldom_differ() -> None:
     """Nine loops in groups of three, whose shared error of 5 % must not hide anything nor count."""
     shown = 0

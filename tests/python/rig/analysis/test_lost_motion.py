@@ -43,6 +43,7 @@ def test_each_row_of_document_ts_table_has_its_width(position: float) -> None:
     assert np.degrees(found.hysteresis.width.value) == pytest.approx(TABLE[position][4], abs=0.1)
 
 
+@pytest.mark.slow("rig")
 @settings(max_examples=12)
 @given(k=st.floats(1.0, 1e3), slip=st.floats(0.1, 10.0), beyond=st.floats(1.1, 10.0), share=st.floats(0.1, 2.0))
 def test_an_element_that_slips_beside_a_spring(k: float, slip: float, beyond: float, share: float) -> None:
@@ -129,6 +130,7 @@ def analysed_plain() -> LoopAnalysis:
     return analyse(loop_of_table(angle_sigma=1e-4, torque_sigma=1e-4))
 
 
+@pytest.mark.slow("rig")
 @settings(max_examples=8)
 @given(a=st.floats(1e-4, 1e4), b=st.floats(1e-4, 1e4))
 @example(a=1e-4, b=1e4)
@@ -167,6 +169,7 @@ def test_turned_by_half_a_turn_the_regimes_change_places(position: float) -> Non
     assert other.area.value == pytest.approx(one.area.value)
 
 
+@pytest.mark.slow("rig")
 @settings(max_examples=25, deadline=None)
 @given(step=st.sampled_from([0.06, 0.03, 0.01, 0.005]))
 def test_more_points_on_the_same_polygon_change_no_width_and_no_area(step: float) -> None:
@@ -180,6 +183,7 @@ def test_more_points_on_the_same_polygon_change_no_width_and_no_area(step: float
         assert one.secant.value == pytest.approx(other.secant.value, rel=1e-12)
 
 
+@pytest.mark.slow("rig")
 @settings(max_examples=8)
 @given(shift=st.floats(-10.0, 10.0), seed=st.integers(0, 100))
 def test_the_area_is_that_of_the_polygon(shift: float, seed: int) -> None:

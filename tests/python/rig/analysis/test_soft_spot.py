@@ -61,12 +61,14 @@ def test_document_ts_loops_have_none(position: float, step: float) -> None:
     assert all("no soft spot" in each for each in words(found))
 
 
+@pytest.mark.slow("rig")
 def test_loops_without_a_spot_show_one_in_less_than_one_of_twenty_regimes() -> None:
     trials = sample(40, 100)
     shown = sum(len(analyse(with_spot(1.0, 18, noise=0.01, seed=seed)).soft_spots) for seed in range(trials))
     assert shown <= 4 * trials * 0.05
 
 
+@pytest.mark.slow("rig")
 def test_a_spot_in_noise_is_found_or_left_undecided() -> None:
     found = [analyse(with_spot(4.0, 36, noise=0.004, seed=seed)) for seed in range(sample(10, 20))]
     hits = [any(spot.regime == "negative_loading" for spot in each.soft_spots) for each in found]

@@ -99,6 +99,7 @@ def test_a_knee_that_one_point_tells_is_found_beside_a_sharp_one_between_two_poi
     assert found.compliances[found.softest] == pytest.approx(1.0 / 4.85 + 3.0, rel=1e-9)
 
 
+@pytest.mark.slow("rig")
 def test_noise_alone_makes_no_knees() -> None:
     torque = np.linspace(0.0, 1.0, 15)
     random = np.random.default_rng(3)
@@ -134,6 +135,7 @@ def limits(trials: int) -> tuple[float, float]:
     return 0.95 - margin, min(0.95 + margin, 1.0)
 
 
+@pytest.mark.slow("rig")
 def test_intervals_of_a_plain_loop_hold_the_truth_in_95_of_100() -> None:
     """Loops of straight regimes; shared errors of 2.2 % among theirs."""
     random = np.random.default_rng(7)
@@ -152,6 +154,7 @@ def test_intervals_of_a_plain_loop_hold_the_truth_in_95_of_100() -> None:
     assert coverage(closures, 0.0) > low
 
 
+@pytest.mark.slow("rig")
 def test_intervals_of_document_ts_loop_hold_the_truth_in_95_of_100() -> None:
     """The softest stretch and its knees, of regimes that are not one line."""
     random = np.random.default_rng(8)
@@ -165,6 +168,7 @@ def test_intervals_of_document_ts_loop_hold_the_truth_in_95_of_100() -> None:
     assert coverage(knees, -0.321719) > low
 
 
+@pytest.mark.slow("rig")
 def test_scatter_stands_in_for_errors_that_are_not_stated() -> None:
     random = np.random.default_rng(9)
     angle, torque = quarters(2.0, 0.5, PEAK, 7)
@@ -214,6 +218,7 @@ def test_a_secant_errs_by_the_friction_of_the_pulleys_as_stated(polygon: tuple[n
         assert other.secant.shared / other.secant.value**2 == pytest.approx(error, rel=1e-3, abs=1e-10)
 
 
+@pytest.mark.slow("rig")
 def test_lines_of_unloading_do_not_lean_on_the_peak_that_was_reached_the_other_way() -> None:
     random = np.random.default_rng(10)
     angle, torque = quarters(2.0, 0.5, PEAK, 7)
@@ -227,6 +232,7 @@ def test_lines_of_unloading_do_not_lean_on_the_peak_that_was_reached_the_other_w
         assert coverage(results, 2.0) > limits(len(found))[0], definition
 
 
+@pytest.mark.slow("rig")
 def test_the_soft_stretch_is_found_wherever_the_points_lie_between_its_knees() -> None:
     """Knees at 0.03 and between 0.30 and 0.34 N.m, points every 0.03: some lie nearer to a knee than a stretch may be short."""
     random, stiff, soft = np.random.default_rng(0), 1.0 / 4.68, 1.0 / 0.31

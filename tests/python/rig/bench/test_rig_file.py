@@ -192,6 +192,7 @@ made = st.builds(
 )
 
 
+@pytest.mark.slow("rig")
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(rig=made)
 def test_what_is_written_is_read_back_bit_for_bit(tmp_path: Path, rig: Rig) -> None:

@@ -119,6 +119,7 @@ def assert_alike(one: list[Step], other: list[Step]) -> None:
 untimed = settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
+@pytest.mark.slow("rig")
 @untimed
 @given(record=records)
 def test_what_is_written_is_read_back(tmp_path: Path, record: list[tuple[tuple[object, ...], float, str]]) -> None:
@@ -127,6 +128,7 @@ def test_what_is_written_is_read_back(tmp_path: Path, record: list[tuple[tuple[o
     assert_alike(read_steps(tmp_path), steps)
 
 
+@pytest.mark.slow("rig")
 @untimed
 @given(record=records)
 def test_steps_added_one_by_one_are_the_record(tmp_path: Path, record: list[tuple[tuple[object, ...], float, str]]) -> None:

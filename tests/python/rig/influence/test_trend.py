@@ -136,6 +136,7 @@ def drawn(effect: float, runs: int, seed: int) -> list[tuple[float, float, bool]
     return found
 
 
+@pytest.mark.slow("rig")
 def test_without_an_effect_one_in_twenty_is_a_false_alarm() -> None:
     """Binomial: within four standard deviations of 5 %, for both tests; intervals hold the truth in 95 %."""
     runs = 400
@@ -152,6 +153,7 @@ def test_an_effect_of_five_deviations_is_seen_and_its_interval_holds_it() -> Non
     assert found[:, 2].mean() > 0.87
 
 
+@pytest.mark.slow("rig")
 def test_holm_keeps_the_alarms_of_a_whole_series() -> None:
     """Three quantities without an effect: one alarm or more in 5 % of the series, not in 14 %."""
     random = np.random.default_rng(3)

@@ -203,6 +203,7 @@ def tested(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow("rig")
 def test_photographs_and_masses_give_the_stiffness_of_the_gear(tested: Path) -> None:
     seen: list[str] = []
     test = read_test(tested, progress=seen.append)

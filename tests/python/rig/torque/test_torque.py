@@ -236,6 +236,7 @@ def random_rig(random: np.random.Generator, cord: Cord) -> Rig:
     )
 
 
+@pytest.mark.slow("rig")
 @pytest.mark.parametrize("cord", ["wound", "fixed point"])
 def test_the_torque_of_a_virtual_shaft_is_found_again(cord: Cord) -> None:
     """Equilibria of a gear behind pulleys, two cycles; the evaluation knows masses and angles only."""
@@ -252,6 +253,7 @@ def test_the_torque_of_a_virtual_shaft_is_found_again(cord: Cord) -> None:
         np.testing.assert_allclose(torque_of(steps, rig, truth.angle).shaft, truth.shaft, rtol=0.0, atol=1e-9)
 
 
+@pytest.mark.slow("rig")
 def test_the_stated_uncertainty_covers_width_and_stiffness() -> None:
     """Rigs as uncertain as the file says: deviations of the width at zero torque and of the soft stiffness, in their sigmas."""
     random = np.random.default_rng(11)

@@ -56,6 +56,7 @@ def measured(folder: Path) -> Loop:
 # Document T's Table 2
 
 
+@pytest.mark.slow("rig")
 def test_each_row_of_the_table_comes_back_through_its_photographs(tmp_path: Path) -> None:
     """Four stiffnesses and a width of each row: all within three of their stated standard deviations, 90 % in the intervals.
 
@@ -120,6 +121,7 @@ def identified(gear: sw.Gear, loop: Loop, random: np.random.Generator) -> Array:
     return np.asarray((numbers(found.gear) - numbers(gear)) / sigma)
 
 
+@pytest.mark.slow("rig")
 def test_random_gears_are_identified_from_their_loops() -> None:
     """40 gears, loops of 73 points with the scatter that photographs give the angle, and that masses give the torque.
 
@@ -138,6 +140,7 @@ def test_random_gears_are_identified_from_their_loops() -> None:
     assert 0.7 < np.std(distances) < 1.4
 
 
+@pytest.mark.whole_path("rig")
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_random_gear_is_identified_from_its_photographs(tmp_path: Path, seed: int) -> None:
     random = np.random.default_rng([5, seed])

@@ -172,6 +172,7 @@ def test_a_drive_that_is_loaded_slowly_comes_to_the_same_angles(error: float) ->
 # Geometry
 
 
+@pytest.mark.slow("rig")
 @pytest.mark.parametrize(
     "kinematics", [GEAR.kinematics, sw.kinematics.StrainWave(flexspline_teeth=50, circular_spline_teeth=52)]
 )
@@ -202,6 +203,7 @@ def test_a_cord_from_a_fixed_point_pulls_by_the_arm_that_is_left() -> None:
     assert np.ptp(found.angle) > 1.0
 
 
+@pytest.mark.slow("rig")
 def test_where_the_arm_grows_faster_than_the_gear_stiffens_the_disk_jumps() -> None:
     """0.05 N.m/rad against m g r cos(a): at +1.4 rad the negative weights have an arm of 0.17 r, which grows as they pull back.
 

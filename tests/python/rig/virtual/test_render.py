@@ -60,6 +60,7 @@ def test_8_bits_are_rounded_and_no_less_exact_otherwise() -> None:
         np.testing.assert_allclose(centroids(coarse, angle)[:, 1:], scene.centres(angle), rtol=0.0, atol=4.0 * 0.4e-3)
 
 
+@pytest.mark.slow("rig")
 def test_a_blurred_edge_has_the_profile_of_a_blurred_disc() -> None:
     """A disc under a Gaussian, at a distance from its centre, is a noncentral chi-square; over a pixel by Gauss-Legendre.
 

@@ -85,6 +85,7 @@ def test_the_cameras_errors_are_those_of_the_rig_where_no_scene_is_given(tmp_pat
     assert np.array_equal(picture(tmp_path / "step-001.png"), expected)
 
 
+@pytest.mark.slow("rig")
 def test_masses_keep_their_errors(tmp_path: Path) -> None:
     """The same pieces lie on either pair of pans: the true total of 0.35 kg is the same thrice, with the spread of 5 pieces."""
     totals = []
@@ -114,6 +115,7 @@ def test_an_unsettled_disk_is_photographed_where_it_is(tmp_path: Path) -> None:
     assert np.array_equal(test.angle, load_by_steps(GEAR, RIG, STEPS, wait=10.0, settling=5.0).seen)
 
 
+@pytest.mark.slow("rig")
 def test_what_goes_wrong_goes_wrong_there_alone(tmp_path: Path) -> None:
     right = run(tmp_path / "right")
     faults = {1: "blurred", 2: "over-exposed", 3: "marker missing", 4: "swapped", 6: "skipped"}

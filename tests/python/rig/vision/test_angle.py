@@ -132,6 +132,7 @@ def test_unlike_markers_are_followed_through_larger_steps(steps: list[tuple[floa
     np.testing.assert_allclose(follow(frames).angle, truth, atol=1e-12)
 
 
+@pytest.mark.slow("rig")
 def test_angles_scatter_as_their_sigma_says_and_have_no_bias() -> None:
     """As the issue asks, on 60 frames: 40 px in radius, 300 px apart, blur 1.2 px, noise 4/255, light that changes by 30 %.
 

@@ -116,6 +116,7 @@ def test_on_the_whole_edge_only_the_radius_has_a_bias_the_one_that_is_published(
     assert found.radius - 100.0 == pytest.approx(bias * 0.01, rel=1e-3)
 
 
+@pytest.mark.slow("rig")
 def test_sixty_noisy_points_on_sixty_degrees_lose_nearly_five_pixels_of_radius_by_kasas_fit_alone() -> None:
     """Physics section 8: -4.65 px at R = 100 px and sigma = 1 px, which is what some sixty points give."""
     random, (x, y) = np.random.default_rng(8), arc(60.0, 60)

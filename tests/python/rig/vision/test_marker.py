@@ -57,6 +57,7 @@ def test_the_blur_is_told(blur: float) -> None:
         assert marker.blur == pytest.approx(np.sqrt(blur**2 + 1.0 / 12.0), rel=0.03)
 
 
+@pytest.mark.slow("rig")
 def test_centres_scatter_as_their_sigma_says_and_as_little_as_pixels_allow() -> None:
     """Bound of Cramer and Rao: a px of edge tells (step / noise)^2 / (2 sqrt(pi) blur) of its place, half of it of x.
 

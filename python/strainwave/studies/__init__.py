@@ -1,1 +1,0 @@
-"""Studies: questions that a document raises, put to its models by experiments, and answered with numbers."""
