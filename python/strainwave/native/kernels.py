@@ -43,11 +43,10 @@ TYPICAL_STEPS = 10_000.0  # measured steps that count as much as the typical tim
 
 @dataclass
 class Work:
-    """Work of the general drive in this process: steps, their time [s], and steps asked for, done or not."""
+    """Work of the general drive in this process: steps and their time [s]."""
 
     steps: float = 0.0
     seconds: float = 0.0
-    asked: float = 0.0
     looked_up: bool = False
 
     def step_seconds(self, job: Job) -> float:
@@ -117,8 +116,7 @@ def prepare(drive: Drive, job: Job, steps: float) -> None:
     on, with one warning.
     """
     work = _work_of(drive, job)
-    work.asked += steps
-    seconds = work.asked * work.step_seconds(job)
+    seconds = work.seconds + steps * work.step_seconds(job)
     if seconds < LOOK_UP_SECONDS or job in _core.loaded_jobs(drive):
         return
     worth_it = _pays(job, seconds)
@@ -137,8 +135,9 @@ def _pays(job: Job, seconds: float) -> bool:
 
 
 @contextmanager
-def measured(drive: Drive, job: Job, steps: float) -> Iterator[None]:
-    """Measure the time of so many steps, which `prepare` estimates later ones by, unless a kernel takes them."""
+def prepared(drive: Drive, job: Job, steps: float, to_come: float = 0.0) -> Iterator[None]:
+    """Prepare a job of `steps` and those `to_come`, and measure the time of `steps`, unless a kernel takes them."""
+    prepare(drive, job, steps + to_come)
     begin, by_kernel = _clock(), job in _core.loaded_jobs(drive)
     yield
     if not by_kernel:
@@ -148,8 +147,9 @@ def measured(drive: Drive, job: Job, steps: float) -> Iterator[None]:
 
 
 def note(drive: Drive, job: Job, steps: float) -> None:
-    """Count steps that a job took beyond those of `prepare`."""
-    _work_of(drive, job).asked += steps
+    """Count steps that a job took and that were not measured."""
+    work = _work_of(drive, job)
+    work.seconds, work.steps = work.seconds + steps * work.step_seconds(job), work.steps + steps
 
 
 def forget_work() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
@@ -286,11 +286,9 @@ class _Plan(ComparedByFields):
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [each.channel for each in self.recorded.values()]
         outputs = np.empty((len(channels), last - first, len(self.time)))
-        measured: AbstractContextManager[None] = nullcontext()
-        if self.backend == "cpu":
-            kernels.prepare(self.drive, "simulate_many", self.members * self.steps)
-            measured = kernels.measured(self.drive, "simulate_many", (last - first) * self.steps)
-        with measured:
+        members, to_come = last - first, self.members - last
+        prepared = kernels.prepared(self.drive, "simulate_many", members * self.steps, to_come * self.steps)
+        with prepared if self.backend == "cpu" else nullcontext():
             sound, twists, fastest, on_bristles, refusals = RUN_MEMBERS[self.backend](
                 self.drive,
                 self.numbers,

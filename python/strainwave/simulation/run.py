@@ -188,16 +188,14 @@ def simulate(
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     taken = method or "exponential"
-    kernels.prepare(drive, "simulate", len(time_grid.instants))
-    outputs, first = course.beginning(state, excitation.first()), 1
-    with progressing(progress, len(time_grid.instants) - 1) as shown:
+    outputs, first, steps = course.beginning(state, excitation.first()), 1, len(time_grid.instants) - 1
+    with kernels.prepared(drive, "simulate", steps), progressing(progress, steps) as shown:
         for number, chunk in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
             laid_out, keep = excitation.over(chunk), chunk.samples[1:]
-            with kernels.measured(drive, "simulate", len(keep)):
-                state = _core.simulate(
-                    drive, state, chunk.instants, laid_out, keep, _core.Method[taken], course.channels, outputs, first, report
-                )
+            state = _core.simulate(
+                drive, state, chunk.instants, laid_out, keep, _core.Method[taken], course.channels, outputs, first, report
+            )
             first += int(np.count_nonzero(keep))
     check_meaning(course.time, recorded, outputs, remedy(time_grid.longest))
     if method != "rosenbrock":
@@ -414,9 +412,7 @@ def differentiate(
             return _core.differentiate(drive, beginning, time_grid.instants, inputs, kept, group, counter)
 
         groups = [list(numbers[first : first + _core.slopes]) for first in range(0, max(len(numbers), 1), _core.slopes)]
-        steps = len(groups) * len(kept)
-        kernels.prepare(drive, "differentiate", steps)
-        with kernels.measured(drive, "differentiate", steps):
+        with kernels.prepared(drive, "differentiate", len(groups) * len(kept)):
             runs = side_by_side([partial(run_by, group) for group in groups])
         outputs, slopes = runs[0][0], np.concatenate([by_numbers for _, by_numbers in runs])
     channels = [each.channel for each in recorded.values()]

@@ -149,14 +149,15 @@ def test_work_that_comes_in_many_pieces_is_long_work(asked: list[bool], step_sec
     pieces = 10
     for _ in range(pieces + 1):
         kernels.prepare(DRIVE, "differentiate", steps_of(WORTH_IT, step_seconds) / pieces)
+        kernels.note(DRIVE, "differentiate", steps_of(WORTH_IT, step_seconds) / pieces)
     assert asked == [False, True, True]
 
 
 def test_jobs_and_laws_are_counted_apart(asked: list[bool], step_seconds: float) -> None:
     steps = 0.6 * steps_of(WORTH_IT, step_seconds)
-    kernels.prepare(DRIVE, "simulate", steps)
-    kernels.prepare(DRIVE, "simulate_many", steps)
-    kernels.prepare(NESTED, "simulate", steps)
+    for drive, job in ((DRIVE, "simulate"), (DRIVE, "simulate_many"), (NESTED, "simulate")):
+        kernels.prepare(drive, job, steps)
+        kernels.note(drive, job, steps)
     assert asked == [False] * 3
 
 
@@ -164,14 +165,14 @@ def test_jobs_and_laws_are_counted_apart(asked: list[bool], step_seconds: float)
 def test_measured_steps_decide_what_a_kernel_saves(
     slowness: float, compiled: bool, asked: list[bool], step_seconds: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    measured = 100 * kernels.TYPICAL_STEPS
+    measured, ahead = kernels.TYPICAL_STEPS, 0.7 * steps_of(WORTH_IT, step_seconds)
     instants = iter([0.0, slowness * step_seconds * measured])
     monkeypatch.setattr(kernels, "_clock", lambda: next(instants))
-    with kernels.measured(DRIVE, "simulate", measured):
+    with kernels.prepared(DRIVE, "simulate", measured):
         pass
-    kernels.prepare(DRIVE, "simulate", 0.5 * steps_of(WORTH_IT, step_seconds))
-    assert asked == [compiled]
-    assert kernels.pays(DRIVE, "simulate", 0.5 * steps_of(WORTH_IT, step_seconds)) == compiled
+    kernels.prepare(DRIVE, "simulate", ahead)
+    assert asked == [False] + [True] * compiled
+    assert kernels.pays(DRIVE, "simulate", ahead) == compiled
 
 
 def test_a_job_whose_kernel_compiles_for_longer_needs_more_work(monkeypatch: pytest.MonkeyPatch, step_seconds: float) -> None:
