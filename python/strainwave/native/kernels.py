@@ -22,21 +22,22 @@ Job = Literal["simulate", "simulate_adaptively", "simulate_many", "differentiate
 JOBS: tuple[Job, ...] = get_args(Job)
 PUBLIC_JOBS = JOBS[:-1]  # inverse dynamics are of the rigid drives that `identify` makes
 LOOK_UP_SECONDS = 0.04  # of the general drive: from then on a kernel that was compiled before is worth its look-up of some ms
-SAVED_SHARE = 0.75  # of the general drive's time, at the least: a kernel takes a quarter to a sixth of it
-# Wall time of a compilation, and of a step of the general drive (with four derivatives, or at an instant of inverse dynamics).
+SAVED_SHARE = 0.75  # of the general drive's time, at the least: a kernel takes a quarter of it, one of members less
+# Time of a compilation, and of a step of the general drive (with four derivatives, or at an instant of inverse dynamics), as
+# measured with the drive of the benchmarks on an AMD EPYC, November 2026: processor time of g++ 12 and of one thread.
 COMPILE_SECONDS: dict[Job, float] = {
-    "simulate": 4.0,
-    "simulate_adaptively": 4.0,
-    "simulate_many": 6.0,
-    "differentiate": 9.0,
-    "inverse_dynamics": 1.5,
+    "simulate": 2.9,
+    "simulate_adaptively": 2.8,
+    "simulate_many": 4.4,
+    "differentiate": 3.4,
+    "inverse_dynamics": 1.1,
 }
 STEP_SECONDS: dict[Job, float] = {
-    "simulate": 2e-6,
-    "simulate_adaptively": 6e-6,
-    "simulate_many": 2e-6,
-    "differentiate": 6e-6,
-    "inverse_dynamics": 2e-6,
+    "simulate": 2.2e-6,
+    "simulate_adaptively": 8.1e-6,
+    "simulate_many": 2.0e-6,
+    "differentiate": 7.8e-6,
+    "inverse_dynamics": 2.1e-6,
 }
 TYPICAL_STEPS = 10_000.0  # measured steps that count as much as the typical time of a step
 
