@@ -57,13 +57,6 @@ void evaluate_together(const Signal& signal, const double* instants, Side side, 
 /// Lays out one signal; its values go to every `input_count`th number from `values` on, its rates likewise.
 void lay_out(const Signal& signal, const double* instants, std::size_t steps, double* values, double* rates) {
     if (steps == 0) return;
-    if (signal.start.size() == 1 && signal.slope[0] == 0.0 && signal.waves.empty()) {
-        for (std::size_t i = 0; i < 3 * steps * kernel::input_count; i += kernel::input_count) {
-            values[i] = 0.0 * signal.slope[0] + signal.level[0];  // the sign of 0 as elsewhere
-            rates[i] = signal.slope[0];
-        }
-        return;
-    }
     constexpr std::size_t chunk = 256;  // steps at a time, so that what is between stays in the nearest memory
     double t[2 * chunk + 1], value[2 * chunk + 1], rate[2 * chunk + 1];
     const auto put = [&](std::size_t place, std::size_t from) {

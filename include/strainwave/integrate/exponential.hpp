@@ -58,7 +58,7 @@ public:
     }
     constexpr Scalars forcing(const X& rate, const X& at) const {
         Scalars force = flattened<S>(rate);
-        Scalars y = flattened<S>(at);
+        const Scalars y = flattened<S>(at);
         for_each_index(force, [&](int i) { force[i] = force[i] + relaxation[i] * y[i]; });
         return force;
     }
@@ -107,14 +107,14 @@ constexpr typename System::State exponential_step(const System& system, const ty
     const auto& now = from.derivatives;
     const auto rate = [&](const Continuous& y, const auto& input) { return system.derivatives(x, y, input).rate; };
     const auto clamped = [&](const Continuous& y) { return system::clamped(system, y, now); };
-    Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y1, now), dt);
-    auto n1 = scheme.forcing(now.rate, y1);
-    auto y2 = clamped(scheme.halfway(y1, n1));
-    auto n2 = scheme.forcing(rate(y2, u.middle), y2);
-    auto y3 = clamped(scheme.halfway(y1, n2));
-    auto n3 = scheme.forcing(rate(y3, u.middle), y3);
-    auto y4 = clamped(scheme.onward(y2, n3, n1));
-    auto n4 = scheme.forcing(rate(y4, u.end), y4);
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y1, now), dt);
+    const auto n1 = scheme.forcing(now.rate, y1);
+    const auto y2 = clamped(scheme.halfway(y1, n1));
+    const auto n2 = scheme.forcing(rate(y2, u.middle), y2);
+    const auto y3 = clamped(scheme.halfway(y1, n2));
+    const auto n3 = scheme.forcing(rate(y3, u.middle), y3);
+    const auto y4 = clamped(scheme.onward(y2, n3, n1));
+    const auto n4 = scheme.forcing(rate(y4, u.end), y4);
     x.continuous = system::update_mode(system, clamped(scheme.complete(y1, n1, n2, n3, n4)), now);
     system::finish_step(system, x, dt);
     return x;
@@ -131,7 +131,7 @@ constexpr typename System::Evaluation foreseeing_step(const System& system, cons
     const Continuous& y1 = from.state.continuous;
     const auto& now = from.derivatives;
     const auto clamped = [&](const Continuous& y) { return system::clamped(system, y, now); };
-    Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y1, now), dt);
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y1, now), dt);
     const auto coasting = [&](const Continuous& y) { return scheme.forcing(system.coasting(now.rate, y), y); };
     const auto forcing = [&](const Continuous& y, const auto& input, const auto& foreseen) {
         return scheme.forcing(system.derivatives(x, y, input, foreseen).rate, y);
@@ -141,17 +141,17 @@ constexpr typename System::Evaluation foreseeing_step(const System& system, cons
         ahead.continuous = y;
         return ahead;
     };
-    auto n1 = scheme.forcing(now.rate, y1);
-    auto y2 = clamped(scheme.halfway(y1, n1));
-    auto in_middle = system.foreseen(at(y2), at(scheme.halfway(y1, coasting(y2))));
-    auto n2 = forcing(y2, u.middle, in_middle[0]);
-    auto y3 = clamped(scheme.halfway(y1, n2));
-    auto n3 = forcing(y3, u.middle, in_middle[1]);
-    auto y4 = clamped(scheme.onward(y2, n3, n1));
+    const auto n1 = scheme.forcing(now.rate, y1);
+    const auto y2 = clamped(scheme.halfway(y1, n1));
+    const auto in_middle = system.foreseen(at(y2), at(scheme.halfway(y1, coasting(y2))));
+    const auto n2 = forcing(y2, u.middle, in_middle[0]);
+    const auto y3 = clamped(scheme.halfway(y1, n2));
+    const auto n3 = forcing(y3, u.middle, in_middle[1]);
+    const auto y4 = clamped(scheme.onward(y2, n3, n1));
     auto end = at(scheme.complete(y1, n1, n2, n3, coasting(y4)));
     system::finish_step(system, end, dt);
-    auto at_end = system.foreseen(at(y4), end);
-    auto n4 = forcing(y4, u.end, at_end[0]);
+    const auto at_end = system.foreseen(at(y4), end);
+    const auto n4 = forcing(y4, u.end, at_end[0]);
     x.continuous = system::update_mode(system, clamped(scheme.complete(y1, n1, n2, n3, n4)), now);
     system::finish_step(system, x, dt);
     system.refresh(there, u.end, at_end[1]);
