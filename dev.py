@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -34,6 +35,17 @@ BIN = ROOT / ".venv" / "bin"
 PYTHON = BIN / "python"
 PINS = ROOT / ".ci" / "requirements.txt"
 TEST_TIMES = BUILD / "test-times.txt"
+# Builds by the tools of .venv, which stay there, are kept in BUILD. Any other, as by `pip wheel .`, has a folder of its own.
+KEPT = ("--no-build-isolation", "--config-setting", "build-dir=build/{wheel_tag}")
+# What a configured build uses by its path.
+USED = (
+    "CMAKE_HOME_DIRECTORY",
+    "CMAKE_COMMAND",
+    "CMAKE_MAKE_PROGRAM",
+    "CMAKE_CXX_COMPILER",
+    "Python_EXECUTABLE",
+    "nanobind_DIR",
+)
 MAX_SLOWEST = 20  # lines of a table of times
 
 
@@ -50,12 +62,25 @@ def main(arguments: Sequence[str]) -> int:
 
 def prepare(groups: Sequence[str] = (), extra: str = "") -> None:
     """Installs the package with dependency groups and an extra, unless that is done, and compiles what was edited."""
+    remove_stale_builds()
     stamp, state = STAMPS / "-".join(("package", *groups, extra)).strip("-"), digest(ROOT / "pyproject.toml", PINS) + modules()
-    if not (PYTHON.exists() and stamp.exists() and stamp.read_text() == state):
+    is_compiled = (BIN / "cmake").exists() and any(BUILD.glob("cp*/CMakeCache.txt"))
+    if not (is_compiled and stamp.exists() and stamp.read_text() == state):
         install(groups, extra)
         STAMPS.mkdir(parents=True, exist_ok=True)
         stamp.write_text(state)
     call(PYTHON, "-c", "import strainwave")
+
+
+def remove_stale_builds() -> None:
+    """Removes each build that can no longer run, because the clone or a tool of the build is elsewhere now."""
+    for cache in sorted(BUILD.glob("*/CMakeCache.txt")):
+        entries = dict(re.findall(r"^(\w+):\w+=(.*)$", cache.read_text(), re.MULTILINE))
+        lost = [path for name in USED if (path := entries.get(name, "")).startswith("/") and not Path(path).exists()]
+        if lost or entries["CMAKE_CACHEFILE_DIR"] != str(cache.parent):
+            say(f"removing {cache.parent.relative_to(ROOT)}: it was built with {[*lost, entries['CMAKE_CACHEFILE_DIR']][0]}")
+            shutil.rmtree(cache.parent)
+            shutil.rmtree(STAMPS, ignore_errors=True)
 
 
 def install_tools() -> tuple[str | Path, ...]:
@@ -74,7 +99,8 @@ def install(groups: Sequence[str], extra: str) -> None:
     say("installing strainwave and its dependencies; compiling takes some minutes the first time")
     anew = [] if STAMPS.exists() else ["--reinstall-package", "strainwave"]
     wanted = [word for group in groups for word in ("--group", group)]
-    call(*pip_install, "--no-build-isolation", *anew, "--editable", f".[{extra}]" if extra else ".", *wanted)
+    rebuilt_when_imported = ("--config-setting", "editable.rebuild=true")
+    call(*pip_install, *KEPT, *rebuilt_when_imported, *anew, "--editable", f".[{extra}]" if extra else ".", *wanted)
 
 
 def check_machine() -> None:
@@ -276,7 +302,7 @@ def wheel(options: Sequence[str]) -> int:
     dist, clean = ROOT / "dist", BUILD / "clean"
     shutil.rmtree(dist, ignore_errors=True)
     say("compiling the package")
-    call(uv(), "build", "--quiet", "--wheel", "--no-build-isolation", "--python", PYTHON, "--out-dir", dist, *options)
+    call(uv(), "build", "--quiet", "--wheel", *KEPT, "--python", PYTHON, "--out-dir", dist, *options)
     (made,) = dist.glob("*.whl")
     install_into(clean, made)
     complete(made, clean / "bin" / "python")

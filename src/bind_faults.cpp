@@ -23,7 +23,7 @@ struct FaultVerbs {
         c.type.attr("mode") = M::mode;
         c.type.attr("effect") = M::effect;
         c.type.attr("signal") = M::signal;
-        verb(c, "changes", {{"facts", python_type<Facts>(false).c_str()}}, SW_CHANGES,
+        verb(c, "changes", {{"facts", qualified(description_of<Facts>()).c_str()}}, SW_CHANGES,
              "Return the changes of the fault to a drive of these `facts`, in the same order at every severity: place, quantity, "
              "kind, value, law, direction, phase [rad] and order of each. `ValueError` if the drive lacks a fact that the fault "
              "needs.",

@@ -74,8 +74,7 @@ int Call::whole(const char* name) const {
 nb::object Call::optional(const char* name, const Description& description) const {
     const nb::object& value = given[place_of(name)];
     if (!value.is_valid()) return {};
-    const nb::handle type = description.python_type();
-    if (!nb::isinstance(value, type) || !nb::inst_ready(value)) refuse_type(name, "a " + qualified(type), value);
+    if (!description.is_made(value)) refuse_type(name, "a " + qualified(description), value);
     return value;
 }
 

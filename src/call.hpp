@@ -39,8 +39,9 @@ public:
     T part(const char* name) const {
         const nb::object& value = given[place_of(name)];
         if (!value.is_valid()) return {};
-        if (!is_made<T>(value)) refuse_type(name, "a " + python_type<T>(false), value);
-        return nb::cast<T>(value);
+        const Description& description = description_of<T>();
+        if (!description.is_made(value)) refuse_type(name, "a " + qualified(description), value);
+        return *nb::inst_ptr<T>(value);
     }
 
 private:

@@ -73,12 +73,15 @@ inline std::string text_of_problem(const Contradiction<double>& problem) {
     }
     return text;
 }
+inline std::string problem_of(const char* model, const std::string& problem) {
+    return problem.empty() ? problem : std::string(model) + ": " + problem;
+}
 template <class M>
 std::string own_problem_of(const M& model) {
     if constexpr (requires { model.problem(); })
-        if (const std::string problem = text_of_problem(model.problem()); !problem.empty())
-            return std::string(M::name) + ": " + problem;
-    return {};
+        return problem_of(M::name, text_of_problem(model.problem()));
+    else
+        return {};
 }
 
 }  // namespace strainwave::host

@@ -40,7 +40,7 @@ typename M::State end_of_path(const M& m, const Call& call, const char* name, co
 template <class M>
 void inverse_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.inverse(1.0); })
-        verb(c, "inverse", {{"spring", "float"}}, python_type<decltype(std::declval<const M&>().inverse(1.0))>(false),
+        verb(c, "inverse", {{"spring", "float"}}, qualified(description_of<decltype(std::declval<const M&>().inverse(1.0))>()),
              "Return the exact inverse of this hysteresis in parallel with a linear `spring` [N.m/rad]: twist over torque, history "
              "included.",
              [](const M& m, const Call& call) {
@@ -85,7 +85,7 @@ void own_verbs(const Bound<M>& c) {
                  }
                  return nb::make_tuple(first, second);
              });
-        verb(c, "leading", {}, python_type<kinematic_error::Fourier<double>>(false),
+        verb(c, "leading", {}, qualified(description_of<kinematic_error::Fourier<double>>()),
              "Return the harmonics to leading order, in closed form: a Fourier law.",
              [](const M& m, const Call&) { return m.leading(); });
         property(c, "eccentricity", "tuple[float, float]", "Vector m that the harmonics determine, x and y [m].",
@@ -187,9 +187,7 @@ void bind_model(nb::handle scope, const char* python_name, int law) {
 /// The law's name in C++ is its name in Python: LuGre of `strainwave::friction::LuGre<double>`.
 template <class M>
 const char* python_name() {
-    const std::string text = __PRETTY_FUNCTION__;
-    const std::size_t end = text.find("<double"), start = text.rfind("::", end) + 2;
-    return kept(text.substr(start, end - start));
+    return name_of_template(__PRETTY_FUNCTION__);
 }
 
 /// A family of models as a module of the package.

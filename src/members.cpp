@@ -1,8 +1,58 @@
 #include "members.hpp"
 
+#include <span>
 #include <unordered_map>
 
 namespace strainwave::host {
+
+void Description::add(const Field& field, const void* member, const MemberType* type) {
+    members.push_back({field, static_cast<const char*>(member) - static_cast<const char*>(defaults), type});
+}
+
+bool Description::is_made(nb::handle value) const {
+    return PyObject_TypeCheck(value.ptr(), reinterpret_cast<PyTypeObject*>(python_type().ptr())) && nb::inst_ready(value);
+}
+
+nb::object Description::cast(const void* model) const {
+    nb::object made = nb::inst_alloc(python_type());
+    copy(nb::inst_ptr<void>(made), model);
+    nb::inst_mark_ready(made);
+    return made;
+}
+
+nb::object Member::value(const void* model) const {
+    if (!type->part) return type->to_python(in(model));
+    const PartOf part = type->part(in(model));
+    return part.description->cast(part.model);
+}
+
+void Member::read(void* model, nb::handle value, const Reader& reader) const {
+    if (!type->part) return type->read(in(model), value, reader, field);
+    std::string names;
+    for (const Alternative& one : std::span(type->alternatives, type->alternative_count)) {
+        const Description& description = one.description();
+        if (description.is_made(value)) return one.assign(in(model), nb::inst_ptr<void>(value));
+        names += (names.empty() ? "" : ", ") + std::string(description.python_name);
+    }
+    reader.refuse_type(field, (type->chosen ? "one of " : "a ") + names, value);
+}
+
+std::string Member::python_type(bool argument) const {
+    if (!type->part) return type->python_type(argument);
+    std::string names;
+    for (const Alternative& one : std::span(type->alternatives, type->alternative_count))
+        names += (names.empty() ? "" : " | ") + qualified(one.description());
+    return names;
+}
+
+nb::object Member::options() const {
+    if (!type->part) return type->options();
+    if (!type->chosen) return nb::none();
+    nb::dict models;
+    for (const Alternative& one : std::span(type->alternatives, type->alternative_count))
+        models[one.description().name.c_str()] = one.description().python_type();
+    return models;
+}
 
 namespace {
 
@@ -19,7 +69,7 @@ void set_members(void* model, const nb::kwargs& values, const Description& descr
     nb::dict unknown(values);
     for (const Member& member : description.members) {
         if (!values.contains(member.field.name)) continue;
-        member.type->read(member.in(model), values[member.field.name], reader, member.field);
+        member.read(model, values[member.field.name], reader);
         nb::del(unknown[member.field.name]);
     }
     for (auto [key, value] : unknown)
@@ -73,7 +123,7 @@ const char* signature(const std::string& head, const std::string& result, bool m
     std::string text = "def " + head + (makes ? "(self" : "(self, changes: dict[str, typing.Any] = ..., /");
     if (!description.members.empty()) text += ", *";
     for (const Member& member : description.members)
-        text += std::string(", ") + member.field.name + ": " + member.type->python_type(true) +
+        text += std::string(", ") + member.field.name + ": " + member.python_type(true) +
                 (makes && member.field.required ? "" : " = ...");
     return kept(text + ") -> " + result);
 }
@@ -93,7 +143,7 @@ nb::tuple schema(const Description& description) {
         entry["max"] = field.max >= unbounded ? nb::none() : nb::object(nb::float_(field.max));
         entry["kind"] = member.kind();
         entry["open"] = field.min == smallest;
-        entry["options"] = member.type->options();
+        entry["options"] = member.options();
         entry["required"] = field.required;
         entry["optional"] = field.optional;
         entry["follows"] = field.follows ? nb::object(nb::str(field.follows)) : nb::none();
@@ -104,6 +154,8 @@ nb::tuple schema(const Description& description) {
 }
 
 }  // namespace
+
+std::string qualified(const Description& description) { return qualified(description.python_type()); }
 
 std::string qualified(nb::handle type) {
     return nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__qualname__"));
@@ -204,8 +256,7 @@ void check_passivity(const Condition<double>& rule, const char* name) {
 }
 
 const void* model_in(nb::handle object, const Description& description) {
-    const nb::handle type = description.python_type();
-    if (!PyObject_TypeCheck(object.ptr(), reinterpret_cast<PyTypeObject*>(type.ptr())) || !nb::inst_ready(object))
+    if (!description.is_made(object))
         throw nb::type_error(("this needs a " + std::string(description.python_name) + ", not " + shortened(object)).c_str());
     return nb::inst_ptr<void>(object);
 }
@@ -219,7 +270,7 @@ std::string documentation(const Description& description) {
         text += std::string(field.name) + ": " + field.doc;
         if (member.type->numeric && std::string_view(field.unit) != "1") text += std::string(" [") + field.unit + "]";
         if (member.type->numeric && (field.min > -unbounded || field.max < unbounded)) text += ", in " + limits(field);
-        if (member.type->listed) text += ", one of " + text_of(member.type->options());
+        if (member.type->listed) text += ", one of " + text_of(member.options());
         text += field.required  ? "; required\n"
                 : field.follows ? std::string("; default as ") + field.follows + "\n"
                                 : "; default " + text_of(member.value(description.defaults)) + "\n";
@@ -303,11 +354,10 @@ void define_value(nb::handle type, const Description& description) {
     for (const Member& member : description.members) {
         const Field& field = member.field;
         const std::string unit = *field.unit && std::string_view(field.unit) != "1" ? std::string(" [") + field.unit + "]" : "";
-        const nb::object getter =
-            nb::cpp_function([of, at = &member](nb::handle self) { return at->value(model_in(self, *of)); }, nb::name(field.name),
-                             nb::scope(type), nb::is_method(), nb::is_getter(),
-                             nb::sig(kept(std::string("def ") + field.name + "(self) -> " + member.type->python_type(false))),
-                             kept(field.doc + unit));
+        const nb::object getter = nb::cpp_function(
+            [of, at = &member](nb::handle self) { return at->value(model_in(self, *of)); }, nb::name(field.name), nb::scope(type),
+            nb::is_method(), nb::is_getter(),
+            nb::sig(kept(std::string("def ") + field.name + "(self) -> " + member.python_type(false))), kept(field.doc + unit));
         nb::setattr(type, field.name, property(getter));
     }
     define("__repr__", [of](nb::handle self) { return represented(model_in(self, *of), *of); });

@@ -8,12 +8,6 @@
 /// and compare are compiled once, not once for each struct.
 namespace strainwave::host {
 
-/// True if a value is a T that was made: one from `T.__new__` alone holds nothing.
-template <class T>
-bool is_made(nb::handle value) {
-    return nb::isinstance<T>(value) && nb::inst_ready(value);
-}
-
 /// Takes a value for a number: no truth value, no text, and no array of other values, of which a cast would make a number.
 inline bool to_number(nb::handle value, double& x) {
     if (nb::isinstance<nb::bool_>(value) || nb::isinstance<nb::str>(value)) return false;
@@ -47,12 +41,7 @@ struct Reader {
 
     template <class T>
     T read(nb::handle value, const Field& field) const {
-        if constexpr (is_choice<T>) {
-            return choose<T>(value, field);
-        } else if constexpr (Described<T>) {
-            if (!is_made<T>(value)) refuse_type(field, "a " + nb::cast<std::string>(nb::type<T>().attr("__name__")), value);
-            return nb::cast<T>(value);
-        } else if constexpr (is_sequence<T> || is_array<T>) {
+        if constexpr (is_sequence<T> || is_array<T>) {
             return sequence<T>(value, field);
         } else if constexpr (std::is_enum_v<T>) {
             std::string names;
@@ -69,22 +58,6 @@ struct Reader {
     }
 
 private:
-    template <class T>
-    T choose(nb::handle value, const Field& field) const {
-        T choice{};
-        std::string names;
-        bool found = false;
-        const auto attempt = [&]<class Law>(const Law*) {
-            names += (names.empty() ? "" : ", ") + std::string(nb::cast<std::string>(nb::type<Law>().attr("__name__")));
-            if (!found && is_made<Law>(value)) {
-                choice.model = nb::cast<Law>(value);
-                found = true;
-            }
-        };
-        [&]<class S, class... Law>(const Choice<S, Law...>*) { (attempt(static_cast<const Law*>(nullptr)), ...); }(&choice);
-        if (!found) refuse_type(field, "one of " + names, value);
-        return choice;
-    }
     /// A sequence of numbers; a number alone is a sequence of one.
     template <class T>
     T sequence(nb::handle value, const Field& field) const {
@@ -111,11 +84,7 @@ private:
 
 template <class T>
 nb::object to_python(const T& member) {
-    if constexpr (is_choice<T>) {
-        return member.visit([](const auto& law) { return nb::cast(law); });
-    } else if constexpr (Described<T>) {
-        return nb::cast(member);
-    } else if constexpr (is_sequence<T> || is_array<T>) {
+    if constexpr (is_sequence<T> || is_array<T>) {
         nb::list list;
         for (int i = 0; i < member.size(); ++i) list.append(member[i]);
         return nb::tuple(list);
@@ -126,23 +95,10 @@ nb::object to_python(const T& member) {
     }
 }
 
-/// The type of a member in Python's type annotations.
+/// The type of a member that is no part in Python's type annotations.
 template <class T>
 std::string python_type(bool argument) {
-    if constexpr (is_choice<T>) {
-        std::string names;
-        [&]<class S, class... Law>(const Choice<S, Law...>*) {
-            const auto add = [&](nb::handle type) {
-                names += (names.empty() ? "" : " | ") + nb::cast<std::string>(type.attr("__module__")) + "." +
-                         nb::cast<std::string>(type.attr("__qualname__"));
-            };
-            (add(nb::type<Law>()), ...);
-        }(static_cast<const T*>(nullptr));
-        return names;
-    } else if constexpr (Described<T>) {
-        const auto type = nb::type<T>();
-        return nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__qualname__"));
-    } else if constexpr (is_sequence<T> || is_array<T>) {
+    if constexpr (is_sequence<T> || is_array<T>) {
         if (!argument) return "tuple[float, ...]";
         return is_sequence<T> ? "float | collections.abc.Sequence[float]" : "collections.abc.Sequence[float]";
     } else if constexpr (std::is_enum_v<T>) {
@@ -154,16 +110,10 @@ std::string python_type(bool argument) {
     }
 }
 
-/// Choices of a member: models by their names in files, or the names of an enumeration.
+/// The names of an enumeration.
 template <class T>
 nb::object options_of() {
-    if constexpr (is_choice<T>) {
-        nb::dict models;
-        [&]<class S, class... Law>(const Choice<S, Law...>*) {
-            ((models[Law::name] = nb::type<Law>()), ...);
-        }(static_cast<const T*>(nullptr));
-        return models;
-    } else if constexpr (std::is_enum_v<T>) {
+    if constexpr (std::is_enum_v<T>) {
         nb::list names;
         for (const char* name : choices(T{}).item) names.append(name);
         return nb::tuple(names);
@@ -181,32 +131,52 @@ std::string qualified(nb::handle type);
 template <class M>
 const Description& description_of();
 
-/// The operations on members of one C++ type.
+/// What a part may be: itself, or each law that it is chosen from.
+struct Alternative {
+    const Description& (*description)();
+    void (*assign)(void* member, const void* law);  ///< makes the member a copy of the law
+};
+
+/// The operations on members of one C++ type. Those on parts are the same for all: they go by the alternatives.
 struct MemberType {
     const char* kind;  ///< "number", "count", "sequence", "part" or "choice"
     bool numeric;      ///< True if it has a unit and limits
     bool listed;       ///< True if it is one of a few names
     bool whole;        ///< True if it counts something, whatever its field states
     bool counted;      ///< True if it contains its own count
-    nb::object (*to_python)(const void* member);
-    void (*read)(void* member, nb::handle value, const Reader& reader, const Field& field);
-    std::string (*python_type)(bool argument);
-    nb::object (*options)();
-    PartOf (*part)(const void* member);            ///< null if it is none
-    int (*count)(const void* member);              ///< of its numbers; of one that counts or is listed, what it is
-    double* (*number)(void* member, int element);  ///< null if it has none
+    bool chosen;       ///< True if it is a law chosen from several
+    nb::object (*to_python)(const void* member) = nullptr;
+    void (*read)(void* member, nb::handle value, const Reader& reader, const Field& field) = nullptr;
+    std::string (*python_type)(bool argument) = nullptr;
+    nb::object (*options)() = nullptr;
+    PartOf (*part)(const void* member) = nullptr;  ///< null if it is none
+    const Alternative* alternatives = nullptr;
+    int alternative_count = 0;
+    int (*count)(const void* member) = nullptr;              ///< of its numbers; of one that counts or is listed, what it is
+    double* (*number)(void* member, int element) = nullptr;  ///< null if it has none
 };
 
 namespace detail {
 
 template <class T>
-PartOf part_in(const void* member) {
-    const T& part = *static_cast<const T*>(member);
-    if constexpr (is_choice<T>)
-        return part.visit([&]<class Law>(const Law& law) { return PartOf{&description_of<Law>(), &law, int(part.model.index())}; });
-    else
-        return {&description_of<T>(), member, -1};
-}
+struct Alternatives {
+    static constexpr Alternative all[]{
+        {&description_of<T>, [](void* member, const void* model) { *static_cast<T*>(member) = *static_cast<const T*>(model); }}};
+    static PartOf part(const void* member) { return {&description_of<T>(), member, -1}; }
+};
+template <class S, class... Law>
+struct Alternatives<Choice<S, Law...>> {
+    using T = Choice<S, Law...>;
+    static constexpr Alternative all[]{{&description_of<Law>, [](void* member, const void* law) {
+                                            static_cast<T*>(member)->model.template emplace<Law>(*static_cast<const Law*>(law));
+                                        }}...};
+    static PartOf part(const void* member) {
+        const T& choice = *static_cast<const T*>(member);
+        const void* const law = choice.visit([](const auto& chosen) -> const void* { return &chosen; });
+        const int index = int(choice.model.index());
+        return {&all[index].description(), law, index};
+    }
+};
 template <class T>
 int count_in(const void* member) {
     const T& value = *static_cast<const T*>(member);
@@ -242,19 +212,20 @@ constexpr MemberType made_member_type() {
                     std::is_enum_v<T>,
                     std::is_same_v<T, int>,
                     is_sequence<T>,
-                    [](const void* member) { return to_python(*static_cast<const T*>(member)); },
-                    [](void* member, nb::handle value, const Reader& reader, const Field& field) {
-                        *static_cast<T*>(member) = reader.template read<T>(value, field);
-                    },
-                    [](bool argument) { return python_type<T>(argument); },
-                    [] { return options_of<T>(); },
-                    nullptr,
-                    nullptr,
-                    nullptr};
-    if constexpr (is_part<T>)
-        type.part = &detail::part_in<T>;
-    else
+                    is_choice<T>};
+    if constexpr (is_part<T>) {
+        type.part = &detail::Alternatives<T>::part;
+        type.alternatives = detail::Alternatives<T>::all;
+        type.alternative_count = std::size(detail::Alternatives<T>::all);
+    } else {
+        type.to_python = [](const void* member) { return to_python(*static_cast<const T*>(member)); };
+        type.read = [](void* member, nb::handle value, const Reader& reader, const Field& field) {
+            *static_cast<T*>(member) = reader.template read<T>(value, field);
+        };
+        type.python_type = &python_type<T>;
+        type.options = &options_of<T>;
         type.count = &detail::count_in<T>;
+    }
     if constexpr (has_numbers<T>) type.number = &detail::number_in<T>;
     return type;
 }
@@ -269,7 +240,12 @@ struct Member {
 
     const void* in(const void* model) const { return static_cast<const char*>(model) + offset; }
     void* in(void* model) const { return static_cast<char*>(model) + offset; }
-    nb::object value(const void* model) const { return type->to_python(in(model)); }
+    nb::object value(const void* model) const;
+    /// Sets it in a model from Python, or raises an error.
+    void read(void* model, nb::handle value, const Reader& reader) const;
+    std::string python_type(bool argument) const;
+    /// Choices of it: models by their names in files, or the names of an enumeration.
+    nb::object options() const;
     const char* kind() const { return type->numeric && (type->whole || field.whole) ? "count" : type->kind; }
 };
 
@@ -282,11 +258,20 @@ struct Description {
     std::vector<Member> members;
     const void* defaults;                        ///< a model as C++ makes it
     void (*copy)(void* to, const void* from);    ///< to where none is yet
-    nb::object (*cast)(const void* model);       ///< a copy for Python
     std::string (*problem)(const void* model);   ///< how its own numbers contradict each other; empty if they do not
     void (*check_passivity)(const void* model);  ///< null if it cannot create energy
     nb::handle (*python_type)();
+
+    /// Adds a member, which lies in `defaults`.
+    void add(const Field& field, const void* member, const MemberType* type);
+    /// True if a value is a model of this type that was made: one from `__new__` alone holds nothing.
+    bool is_made(nb::handle value) const;
+    /// A copy of a model for Python.
+    nb::object cast(const void* model) const;
 };
+
+/// The type of a described struct in Python's type annotations.
+std::string qualified(const Description& description);
 
 template <class M>
 inline const Description* bound_description = nullptr;
@@ -301,17 +286,13 @@ const Description& describe(const char* python_name, const std::string& name) {
     static const M defaults{};
     static const Description description = [&] {
         Description made{};
+        made.defaults = &defaults;
         made.python_name = python_name;
         made.name = name;
         if constexpr (requires { M::doc; }) made.doc = M::doc;
         if constexpr (requires { M::source; }) made.source = M::source;
-        M::fields(defaults, [&]<class T>(const T& member, const Field& field) {
-            made.members.push_back(
-                {field, reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&defaults), &member_type<T>});
-        });
-        made.defaults = &defaults;
+        M::fields(defaults, [&]<class T>(const T& member, const Field& field) { made.add(field, &member, &member_type<T>); });
         made.copy = [](void* to, const void* from) { new (to) M(*static_cast<const M*>(from)); };
-        made.cast = [](const void* model) { return nb::cast(*static_cast<const M*>(model)); };
         made.problem = [](const void* model) { return own_problem_of(*static_cast<const M*>(model)); };
         if constexpr (requires { defaults.passivity(); })
             made.check_passivity = [](const void* model) { check_passivity(static_cast<const M*>(model)->passivity(), M::name); };

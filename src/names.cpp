@@ -1,6 +1,5 @@
 #include "names.hpp"
 
-#include <functional>
 #include <map>
 
 #include "general/drive.hpp"
@@ -21,43 +20,51 @@ constexpr auto output_of_law() {
         return Stateless<double>{};
 }
 
-using Number = std::function<void(const std::string& name, int element, const Field&)>;
+/// Adds the numbers of one part to the names of a drive.
+struct NamesOfPart {
+    std::string part;
+    std::vector<Name>& names;
+
+    void add(const std::string& before, int element, const Field& field) const {
+        names.push_back({part, before + field.name, element, field});
+    }
+};
 
 template <class X, class Law>
-void each_name(const Law& law, const std::string& before, const Number& number);
+void each_name(const Law& law, const std::string& before, const NamesOfPart& names);
 
 /// Names of a struct within another: of the part of that name, if the law has one.
 template <class X, class Law>
-void each_name_within(const Law& law, const std::string& before, const Field& field, const Number& number) {
+void each_name_within(const Law& law, const std::string& before, const Field& field, const NamesOfPart& names) {
     bool is_of_part = false;
     general::with_part(law, field.name, [&](const auto& part) {
         is_of_part = true;
-        each_name<X>(part, before + field.name + ".", number);
+        each_name<X>(part, before + field.name + ".", names);
     });
-    if (!is_of_part) each_name<X>(law, before + field.name + "_", number);
+    if (!is_of_part) each_name<X>(law, before + field.name + "_", names);
 }
 
-/// Calls number(name, element, field) for each number of a struct of a law, whose name begins with `before`.
+/// Adds each number of a struct of a law, with a name that begins with `before`.
 template <class X, class Law>
-void each_name(const Law& law, const std::string& before, const Number& number) {
+void each_name(const Law& law, const std::string& before, const NamesOfPart& names) {
     if constexpr (stands_for_chosen<X>) {  // a law that varies another has its state
-        law.law.visit([&]<class Inner>(const Inner& inner) { each_name<StateOf<Inner>>(inner, before, number); });
+        law.law.visit([&]<class Inner>(const Inner& inner) { each_name<StateOf<Inner>>(inner, before, names); });
     } else {
-        X names{};
-        X::fields(names, [&]<class T>(const T& member, const Field& field) {
+        X numbers{};
+        X::fields(numbers, [&]<class T>(const T& member, const Field& field) {
             if constexpr (stands_for_chosen<T>)
                 general::with_part(law, field.name, [&](const auto& part) {
                     if constexpr (requires { part.model; })
                         part.visit([&]<class Inner>(const Inner& inner) {
-                            each_name<StateOf<Inner>>(inner, before + field.name + ".", number);
+                            each_name<StateOf<Inner>>(inner, before + field.name + ".", names);
                         });
                 });
             else if constexpr (Described<T>)
-                each_name_within<T>(law, before, field, number);
+                each_name_within<T>(law, before, field, names);
             else if constexpr (requires { member.item; })
-                for (int i = 0; i < member.size(); ++i) number(before + field.name, i, field);
+                for (int i = 0; i < member.size(); ++i) names.add(before, i, field);
             else
-                number(before + field.name, -1, field);
+                names.add(before, -1, field);
         });
     }
 }
@@ -74,9 +81,7 @@ struct NameWalk {
     void operator()(const T& member, const Field& field) const {
         const std::string name = field.name;
         if constexpr (kernel::Slots<T>) {
-            drive.stateful_parts([&](const char* part, const auto& choice) {
-                if (path + name == part) choice.visit([&](const auto& law) { each_of(law, part); });
-            });
+            each_of_part(path + name);
         } else if constexpr (Described<T>) {
             const bool is_part = name != "continuous" && name != "discrete";
             T::fields(member, NameWalk{drive, names, is_part ? path + name + "." : path, discrete || name == "discrete"});
@@ -86,11 +91,13 @@ struct NameWalk {
     }
 
 private:
+    void each_of_part(const std::string& part) const {
+        drive.stateful_parts([&](const char* name, const auto& choice) {
+            if (part == name) choice.visit([&](const auto& law) { each_of(law, {part, names}); });
+        });
+    }
     template <class Law>
-    void each_of(const Law& law, const std::string& part) const {
-        const auto named = [&](const std::string& name, int element, const Field& field) {
-            names.push_back({part, name, element, field});
-        };
+    void each_of(const Law& law, const NamesOfPart& named) const {
         if constexpr (of_output)
             each_name<decltype(output_of_law<Law>())>(law, "", named);
         else if (discrete)

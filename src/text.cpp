@@ -48,4 +48,9 @@ const char* kept(std::string text) {
     return texts.back()->c_str();
 }
 
+const char* name_of_template(const std::string& signature) {
+    const std::size_t end = signature.find("<double"), start = signature.rfind("::", end) + 2;
+    return kept(signature.substr(start, end - start));
+}
+
 }  // namespace strainwave::host

@@ -23,6 +23,8 @@ std::string text_of(nb::handle value);
 std::string shortened(nb::handle value);
 /// A text written in a raw string, with the indent of its source taken off.
 std::string dedented(const char* text);
+/// The name of the first template of `double` in the signature of a function.
+const char* name_of_template(const std::string& signature);
 /// Keeps a text that nanobind only points at.
 const char* kept(std::string text);
 

@@ -136,7 +136,8 @@ void error_verbs(const BoundLaw& of) {
     function<Part>(of, "slope", "angle", "Return the derivative [rad/rad] of the error by the input angle.",
                    [](const Part& law, double x) { return law.at(turned(x)).slope; });
     define_verb(
-        of.type, of.description, "harmonics", {{"highest", "int", "8"}}, python_type<kinematic_error::Fourier<double>>(false),
+        of.type, of.description, "harmonics", {{"highest", "int", "8"}},
+        qualified(description_of<kinematic_error::Fourier<double>>()),
         "Return the harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
         [of](const void* model, const Call& call) {
             return nb::cast(harmonics_of(single_law<Part>(of, model).part, call.whole("highest")));

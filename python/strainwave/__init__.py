@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 try:
     import_module("strainwave._core")
-except ImportError as error:
+except Exception as error:  # in a clone also one of the build, which compiles what was edited
     import sys
     import sysconfig
 
     raise ImportError(
-        f"the compiled core of strainwave does not load: {error}. In a clone, `python3 dev.py demo` compiles it; a wheel must "
-        f"be one for Python {sys.version_info.major}.{sys.version_info.minor} on {sysconfig.get_platform()}"
+        f"the compiled core of strainwave does not load: {error}. In a clone, `python3 dev.py demo` compiles it, and "
+        f"`source .venv/bin/activate` finds the tools for that; a wheel must be one for Python "
+        f"{sys.version_info.major}.{sys.version_info.minor} on {sysconfig.get_platform()}"
     ) from None
 from strainwave._core import (
     Compensation,

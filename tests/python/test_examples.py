@@ -25,6 +25,7 @@ MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_t
 SLOW_MODULES = (
     "compensate.py",
     "detection_limit.py",
+    "recovery.py",
     "influence.py",
     "two_encoders.py",
 )  # their examples take 0.5 s and more

@@ -51,12 +51,15 @@ def compare(
         raise ValueError(f"--column {column[0]}: of gears and drives all numbers are compared; leave it out")
     sets = [GearSet.read(first), GearSet.read(second)]
     differences = compared(*sets)
-    print(difference_table(differences) if differences else "equal, number by number")
+    parts = [difference_table(differences) if differences else "equal, number by number"]
     if measured is not None:
         from strainwave.analysis.measured_command import MeasuredCommand
 
         run = MeasuredCommand.read(measured)
-        for name, each in zip((first, second), sets, strict=True):
-            print(f"\n{name} against {measured.name}\n{agreement_table([run.agreement(each.drive)])}")
+        parts += [
+            f"{name} against {measured.name}\n{agreement_table([run.agreement(each.drive)])}"
+            for name, each in zip((first, second), sets, strict=True)
+        ]
     if stroke is not None:
-        print(f"\n{stroke_table(sets[0].drive, sets[1].drive, stroke, tolerance)}")
+        parts.append(stroke_table(sets[0].drive, sets[1].drive, stroke, tolerance))
+    print("\n\n".join(parts))  # last, so that a refusal leaves no half of an answer

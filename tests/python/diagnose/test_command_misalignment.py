@@ -12,6 +12,7 @@ from tests.python.command import refused, strainwave
 LUMPED = "tilt-actuator-lumped"
 
 
+@pytest.mark.slow("diagnose")
 def test_the_command_prints_the_levels_and_writes_the_sweeps(tmp_path: Path) -> None:
     result = strainwave("misalignment", LUMPED, "--stroke", "20", "--time", "1", "--out", "found", folder=tmp_path)
     assert result.returncode == 0, result.stderr
