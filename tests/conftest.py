@@ -32,7 +32,7 @@ settings.load_profile("strainwave")
 def nothing_remembered() -> Iterator[None]:
     """Each test begins as a new process does: no gear was loaded from a file with ratings, and no drive has taken a step."""
     yield
-    kernels.forget_steps()
+    kernels.forget_work()
     if ratings := sys.modules.get("strainwave.files.ratings"):
         ratings.forget()
 

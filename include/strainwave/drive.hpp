@@ -115,6 +115,7 @@ struct Drive {
 
     /// The rate of the continuous numbers, and the quantities that it follows from.
     struct Derivatives {
+        constexpr Derivatives() {}  // sets nothing to zero that `fill` sets
         Continuous rate;
         Mesh mesh;
         Contacts contacts;
@@ -188,39 +189,65 @@ struct Drive {
         x.continuous.transmission_error = found.transmission_error;
     }
 
-    SW_RATES constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
+    /// The derivatives; the kinematic error may be known.
+    template <class... Foreseen>
+    SW_RATES constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u,
+                                               const Foreseen&... error) const {
         if constexpr (load::can_prescribe<Load>) {
             if (prescribes(load)) {
                 const Continuous z = prescribed_motion::placed<S>(*this, x, y, u);
-                return derivatives(x, z, u, mesh(x, z, u));
+                return derivatives_of(x, z, u, loaded(geometry(x, z, error...), x, z, u));
             }
         }
-        return derivatives(x, y, u, mesh(x, y, u));
+        return derivatives_of(x, y, u, loaded(geometry(x, y, error...), x, y, u));
+    }
+    /// Rates of which those of positions are right: they follow from the speeds.
+    constexpr Continuous coasting(Continuous rate, const Continuous& y) const {
+        rate.input_angle = y.input_speed;
+        return rate;
+    }
+    static constexpr bool foresees = Gear::foresees;
+    /// What derivatives take from positions alone, at two stages of a step.
+    constexpr auto foreseen(const State& one, const State& other) const {
+        return gear.kinematic_error.at({one.continuous.input_angle, one.turns}, {other.continuous.input_angle, other.turns});
     }
 
     /// Brings the memory of a state up to date.
-    SW_RATES constexpr Evaluation evaluate(State x, const Input& u) const {
-        prescribed_motion::place<S>(*this, x, u);
-        const auto geometry = this->geometry(x, x.continuous);
-        commit(x, geometry);
-        return {x, derivatives(x, x.continuous, u, loaded(geometry, x, x.continuous, u))};
+    constexpr Evaluation evaluate(const State& x, const Input& u) const {
+        Evaluation at{x, {}};
+        refresh(at, u);
+        return at;
+    }
+    /// The same in place.
+    template <class... Foreseen>
+    SW_RATES constexpr void refresh(Evaluation& at, const Input& u, const Foreseen&... error) const {
+        prescribed_motion::place<S>(*this, at.state, u);
+        auto geometry = this->geometry(at.state, at.state.continuous, error...);
+        commit(at.state, geometry);
+        fill(at.derivatives, at.state, at.state.continuous, u, loaded(geometry, at.state, at.state.continuous, u));
     }
 
-    constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const Mesh& mesh) const {
-        const auto asked = command(u);
-        const Measurement actual = measurable(x, y, u, mesh.torque), measured = sensors.shown(y.sensors, actual);
+    constexpr Derivatives derivatives_of(const State& x, const Continuous& y, const Input& u, const Mesh& mesh) const {
+        Derivatives now;
+        fill(now, x, y, u, mesh);
+        return now;
+    }
+    /// Fills in the derivatives where they stay: a copy would wait for all that was just stored.
+    constexpr void fill(Derivatives& now, const State& x, const Continuous& y, const Input& u, const Mesh& mesh) const {
+        auto asked = command(u);
+        Measurement actual = measurable(x, y, u, mesh.torque), measured = sensors.shown(y.sensors, actual);
         const S actuation = control::actuation(control, y.control, x.discrete.control, asked, measured);
-        const Rotor rotor = this->rotor(x, y, u);
+        Rotor rotor = this->rotor(x, y, u);
         const S motor_torque = motor.torque(y.motor, actuation, rotor);
 
-        Continuous rate{};
-        const Contacts at = contacts::at<S>(*this, x, y, mesh, u);
-        const Resistance input = friction::resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
-        const Resistance meshing = friction::resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
-        const Resistance output = friction::resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
+        Continuous& rate = now.rate;
+        Contacts at = contacts::at<S>(*this, x, y, mesh, u);
+        Resistance input = friction::resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
+        Resistance meshing = friction::resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
+        Resistance output = friction::resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
         const S load_torque = prescribes(load) ? mesh.torque - output.torque()
                                                : strainwave::load_torque<S>(load, output_angle(x, y), y.output_speed, u.load);
-        const Braking<S> braking = this->braking(u);
+        Braking<S> braking = this->braking(u);
         const S brake = x.output_slip_direction * braking.slip;
         S input_driving_torque = motor_torque - mesh.input_torque - meshing.always * mesh.per_input - input.always;
         const S output_driving_torque = mesh.torque - load_torque - output.always;
@@ -239,19 +266,17 @@ struct Drive {
         rate.structure = mesh.rate;
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed = moving(at.output, output_driving_torque - output.sliding - brake) / output_inertia();
-        Derivatives now{rate,
-                        mesh,
-                        at,
-                        actuation,
-                        load_torque + brake,
-                        braking,
-                        input.torque(),
-                        meshing.torque(),
-                        output.torque(),
-                        input_driving_torque,
-                        output_driving_torque};
+        now.mesh = mesh;
+        now.contacts = at;
+        now.actuation = actuation;
+        now.load_torque = load_torque + brake;
+        now.braking = braking;
+        now.friction_input = input.torque();
+        now.friction_mesh = meshing.torque();
+        now.friction_output = output.torque();
+        now.input_driving_torque = input_driving_torque;
+        now.output_driving_torque = output_driving_torque;
         measure(x, y, u, now);
-        return now;
     }
 
     constexpr Continuous relaxation_rate(const Continuous& y, const Derivatives& now) const {
@@ -264,14 +289,14 @@ struct Drive {
         return rates;
     }
     constexpr Continuous clamped(Continuous y, const Derivatives& now) const {
-        const Contacts at = contacts::moved<S, Drive>(now, y);
+        Contacts at = contacts::moved<S, Drive>(now, y);
         y.friction_input = friction::clamped(gear.friction_input, y.friction_input, at.input);
         y.friction_mesh = friction::clamped(gear.friction_mesh, y.friction_mesh, at.mesh);
         y.friction_output = friction::clamped(gear.friction_output, y.friction_output, at.output);
         return y;
     }
     constexpr Continuous update_mode(Continuous y, const Derivatives& now) const {
-        const Contacts at = contacts::moved<S, Drive>(now, y);
+        Contacts at = contacts::moved<S, Drive>(now, y);
         y.friction_input = friction::update_mode(gear.friction_input, y.friction_input, at.input);
         y.friction_mesh = friction::update_mode(gear.friction_mesh, y.friction_mesh, at.mesh);
         y.friction_output = friction::update_mode(gear.friction_output, y.friction_output, at.output);
@@ -434,7 +459,10 @@ struct Drive {
     constexpr S output_angle(const State& x, const Continuous& y) const {
         return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
     }
-    constexpr Mesh geometry(const State& x, const Continuous& y) const { return gear.geometry(y.structure, gear_shafts(x, y)); }
+    template <class... Foreseen>
+    constexpr Mesh geometry(const State& x, const Continuous& y, const Foreseen&... error) const {
+        return gear.geometry(y.structure, gear_shafts(x, y), error...);
+    }
     constexpr typename Gear::Shafts gear_shafts(const State& x, const Continuous& y) const {
         return gear.shafts({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
     }

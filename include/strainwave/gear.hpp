@@ -130,10 +130,15 @@ struct Gear {
         return {input_angle, input_speed, transmission_error, output_speed, kinematics.inverse_ratio()};
     }
 
+    /// True if the kinematic error at two angles takes little longer than at one.
+    static constexpr bool foresees =
+        always_rigid && requires(const KinematicError& law, const Angle<S>& angle) { law.at(angle, angle); };
+
     /// All of it but the torques.
-    constexpr Mesh geometry(const Inner& inner, const Shafts& at) const {
-        const auto generator = structure.generator(inner, at);
-        const Engaged found = engaged(inner, at, generator);
+    constexpr Mesh geometry(const Inner& inner, const Shafts& at) const { return geometry(inner, at, full_error(inner, at)); }
+    /// The same where the law's kinematic error is known.
+    constexpr Mesh geometry(const Inner& inner, const Shafts& at, const kinematic_error::Error<S>& full) const {
+        Engaged found = engaged(inner, at, full);
         Mesh mesh{};
         mesh.error = found.error.value;
         mesh.per_input = found.per_output * at.inverse_ratio - found.error.slope;
@@ -152,7 +157,7 @@ struct Gear {
     constexpr S noise_rate(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& acceleration) const {
         if (!kinematic_noise.active()) return S(0.0);
         const auto generator = structure.generator(inner, at);
-        const Engaged without = engaged_without_noise(inner, at, generator);
+        const Engaged without = engaged_without_noise(inner, at, kinematic_error.at(generator.angle));
         const S rate = structure.rigid() ? without.per_output * (at.inverse_ratio * at.input_speed - at.output_speed) -
                                                without.error.slope * at.input_speed
                                          : mesh.twist_rate;
@@ -164,9 +169,9 @@ struct Gear {
     /// The torques of a gear at these angles and a temperature [K], its hysteresis last brought up to date at `held_twist`.
     constexpr Mesh loaded(Mesh mesh, const Inner& inner, const Shafts& at, const typename Hysteresis::State& held,
                           const S& held_twist, const S& temperature) const {
-        const variation::Factor<S> factor = stiffness_factor(inner, at);
+        variation::Factor<S> factor = stiffness_factor(inner, at);
         mesh.spring = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature, factor.value) + damping * mesh.twist_rate;
-        const auto reaction = structure.reaction(inner, at, mesh, load(mesh, turning(factor, mesh.twist, temperature)));
+        auto reaction = structure.reaction(inner, at, mesh, load(mesh, turning(factor, mesh.twist, temperature)));
         mesh.torque = reaction.torque;
         mesh.input_torque = reaction.input_torque;
         mesh.rate = reaction.rate;
@@ -264,7 +269,7 @@ struct Gear {
         const auto inner = initial_state(structure);
         for (int i = 0; i < samples; ++i) {
             const Shafts at = shafts({S((2.0 * i / samples - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0));
-            const Engaged stood = engaged_without_noise(inner, at, structure.generator(inner, at));
+            const Engaged stood = engaged_without_noise(inner, at, full_error(inner, at));
             found.slope = max(found.slope, abs(stood.error.slope));
             found.per_twist = max(found.per_twist, abs(stood.per_twist));
         }
@@ -331,10 +336,14 @@ private:
         S per_output{1.0}, per_twist{0.0};
     };
 
+    constexpr kinematic_error::Error<S> full_error(const Inner& inner, const Shafts& at) const {
+        return kinematic_error.at(structure.generator(inner, at).angle);
+    }
     /// The noise follows the elastic torque that there is without it, so that neither waits for the other.
-    constexpr Engaged engaged(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
-        Engaged found = engaged_without_noise(inner, at, generator);
+    constexpr Engaged engaged(const Inner& inner, const Shafts& at, const kinematic_error::Error<S>& full) const {
+        Engaged found = engaged_without_noise(inner, at, full);
         if (kinematic_noise.active()) {
+            const auto generator = structure.generator(inner, at);
             const kinematic_error::Error<S> noise =
                 kinematic_noise.at(generator.angle, stiffness.torque(found.twist), generator.speed);
             found.error = {found.error.value + noise.value, found.error.slope + noise.slope};
@@ -342,8 +351,7 @@ private:
         }
         return found;
     }
-    constexpr Engaged engaged_without_noise(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
-        const kinematic_error::Error<S> full = kinematic_error.at(generator.angle);
+    constexpr Engaged engaged_without_noise(const Inner& inner, const Shafts& at, const kinematic_error::Error<S>& full) const {
         const S gap = structure.gap(inner, at), left = gap - full.value;
         if (!kinematic_error::follows_load(kinematic_error)) return {full, left, structure.spring_twist(inner, at, left)};
         const S twist = structure.spring_twist(inner, at, structure.rigid() ? relieved_twist(full.value, gap) : left);

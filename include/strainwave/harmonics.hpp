@@ -44,7 +44,55 @@ struct Harmonics {
         return sum;
     }
 
+#if !defined(__CUDACC_RTC__)
+    /// The sums at two angles, with the bits that each has alone: the four waves of an angle are one register, and neither angle
+    /// waits for the other.
+    Array<Sum, 2> at(const Angle<S>& one, const Angle<S>& other) const
+        requires detail::takes_pairs<S>
+    {
+        using Two = typename detail::Vector<double, 2 * int(sizeof(double))>::type;
+        if (top == 0 || order.count > 0 || !(abs(one.within) < elementary::farthest && abs(other.within) < elementary::farthest))
+            return {{at(one), at(other)}};
+        const auto [sine, cosine] = elementary::sincos(Two{one.within, other.within});
+        Rotating first({sine[0], cosine[0]}), second({sine[1], cosine[1]});
+        for (int n = 0; 2 * n < top; ++n) {
+            first.add(value[n], slope[n]);
+            second.add(value[n], slope[n]);
+        }
+        return {{first.sum(), second.sum()}};
+    }
+#endif
+
 private:
+#if !defined(__CUDACC_RTC__)
+    /// What `whole_orders` sums, in registers.
+    struct Rotating {
+        using Four = typename detail::Vector<double, 4 * int(sizeof(double))>::type;
+        Four before, wave, step, values{}, slopes{};
+
+        explicit Rotating(const SinCos<double>& base) {
+            const double twice = base.sin + base.sin, sine = twice * base.cos, cosine = 1.0 - twice * base.sin;
+            before = Four{-base.sin, base.cos, 0.0, 1.0};
+            wave = Four{base.sin, base.cos, sine, cosine};
+            step = Four{} + (cosine + cosine);
+        }
+        void add(const Waves& value, const Waves& slope) {
+            values = values + all(value) * wave;
+            slopes = slopes + all(slope) * wave;
+            const Four next = step * wave - before;
+            before = wave;
+            wave = next;
+        }
+        Sum sum() const {
+            return {(values[0] + values[1]) + (values[2] + values[3]), (slopes[0] + slopes[1]) + (slopes[2] + slopes[3])};
+        }
+        static Four all(const Waves& waves) {
+            Four four;
+            __builtin_memcpy(&four, &waves, sizeof four);
+            return four;
+        }
+    };
+#endif
     /// An angle so large that its place in the turn is lost, but of which a sine is a number in every scalar.
     static constexpr S finite(const S& angle) { return clip(angle, S(-1e18), S(1e18)); }
 

@@ -87,7 +87,13 @@ __noinline__
 #endif
     typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u,
                                            const S& dt, integrate::Steps<S, Drive>& steps) {
-    return drive.evaluate(steps(drive, from, u, dt), u.end);
+    if constexpr (Drive::foresees) {
+        return integrate::foreseeing_step(drive, from, u, dt);
+    } else {
+        typename Drive::Evaluation at{steps(drive, from, u, dt), {}};
+        drive.refresh(at, u.end);
+        return at;
+    }
 }
 
 /// Runs a drive from `state` through one step or more and calls record(outputs) at the end of each step to be kept. `advance` takes

@@ -50,7 +50,7 @@ def of_the_catalogue() -> str:
     for name in sw.catalogue("drives"):
         drive = drive_of(sw.load(name))
         dt = min(1e-4, 0.25 / _core.max_rate(drive, 0.0))
-        duration = 1.2 * kernels.LOOK_UP_STEPS * dt
+        duration = 1.2 * kernels.LOOK_UP_SECONDS / kernels.STEP_SECONDS["simulate"] * dt
         numbers.update(sw.simulate(drive, sw.scenario.sine(0.02, 2.0 / duration, duration), dt)["twist"].tobytes())
         assert _core.loaded_jobs(drive) == (["simulate"] if by_kernels else []), name  # by itself, for so many steps
         for job in kernels.PUBLIC_JOBS:

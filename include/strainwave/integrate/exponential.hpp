@@ -120,4 +120,42 @@ constexpr typename System::State exponential_step(const System& system, const ty
     return x;
 }
 
+/// The same step, and the evaluation at its end, of a system whose `foreseen` is cheaper for two stages together. Positions follow
+/// from speeds: those of two stages are known before the torques are.
+template <class S, class System>
+constexpr typename System::Evaluation foreseeing_step(const System& system, const typename System::Evaluation& from,
+                                                      const Interval<typename System::Input>& u, const S& dt) {
+    using Continuous = typename System::Continuous;
+    typename System::Evaluation there{from.state, {}};
+    auto& x = there.state;
+    const Continuous& y1 = from.state.continuous;
+    const auto& now = from.derivatives;
+    const auto clamped = [&](const Continuous& y) { return system::clamped(system, y, now); };
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y1, now), dt);
+    const auto coasting = [&](const Continuous& y) { return scheme.forcing(system.coasting(now.rate, y), y); };
+    const auto forcing = [&](const Continuous& y, const auto& input, const auto& foreseen) {
+        return scheme.forcing(system.derivatives(x, y, input, foreseen).rate, y);
+    };
+    const auto at = [&](const Continuous& y) {
+        typename System::State ahead = x;
+        ahead.continuous = y;
+        return ahead;
+    };
+    const auto n1 = scheme.forcing(now.rate, y1);
+    const auto y2 = clamped(scheme.halfway(y1, n1));
+    const auto in_middle = system.foreseen(at(y2), at(scheme.halfway(y1, coasting(y2))));
+    const auto n2 = forcing(y2, u.middle, in_middle[0]);
+    const auto y3 = clamped(scheme.halfway(y1, n2));
+    const auto n3 = forcing(y3, u.middle, in_middle[1]);
+    const auto y4 = clamped(scheme.onward(y2, n3, n1));
+    auto end = at(scheme.complete(y1, n1, n2, n3, coasting(y4)));
+    system::finish_step(system, end, dt);
+    const auto at_end = system.foreseen(at(y4), end);
+    const auto n4 = forcing(y4, u.end, at_end[0]);
+    x.continuous = system::update_mode(system, clamped(scheme.complete(y1, n1, n2, n3, n4)), now);
+    system::finish_step(system, x, dt);
+    system.refresh(there, u.end, at_end[1]);
+    return there;
+}
+
 }  // namespace strainwave::integrate

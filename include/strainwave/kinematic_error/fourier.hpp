@@ -45,6 +45,12 @@ struct Fourier {
             const auto [value, slope] = sum.at(angle);
             return {value, slope};
         }
+        constexpr Array<Error<S>, 2> at(const Angle<S>& one, const Angle<S>& other) const
+            requires detail::takes_pairs<S>
+        {
+            const auto sums = sum.at(one, other);
+            return {{{sums[0].value, sums[0].slope}, {sums[1].value, sums[1].slope}}};
+        }
     };
 
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }

@@ -1,5 +1,13 @@
 #pragma once
 
+namespace strainwave::detail {
+
+/// True for a scalar that two evaluations together take little longer with than one: the numbers of each fill a register.
+template <class S>
+inline constexpr bool takes_pairs = false;
+
+}  // namespace strainwave::detail
+
 // Vectors are for packs, which NVRTC has no place for.
 #if !defined(__CUDACC_RTC__)
 namespace strainwave::detail {
@@ -17,6 +25,8 @@ inline constexpr int register_width = 4;
 #else
 inline constexpr int register_width = 2;
 #endif
+template <>
+inline constexpr bool takes_pairs<double> = register_width >= 4;
 
 }  // namespace strainwave::detail
 #endif

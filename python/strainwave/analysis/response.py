@@ -238,8 +238,8 @@ class _Sines:
         while True:
             outputs = beginning(self.drive, state, excitation.first(), channels, len(time_grid.times))
             keep, method = time_grid.samples[1:], _core.Method.exponential
-            kernels.prepare(self.drive, "simulate", len(time_grid.instants))
-            state = _core.simulate(self.drive, state, time_grid.instants, inputs, keep, method, channels, outputs, 1)
+            with kernels.prepared(self.drive, "simulate", len(keep)):
+                state = _core.simulate(self.drive, state, time_grid.instants, inputs, keep, method, channels, outputs, 1)
             run = recording(self.drive, time_grid, recorded, outputs, temperature)
             yield {name: run[name] for name in run.names if name != "time"}
 

@@ -85,7 +85,7 @@ def estimate(shards: Shards, folder: Path, workers: int, shards_left: int | None
 def prepare_kernel(population: Population) -> None:
     """Compile the kernel of the drive, once and before the workers start, if the runs are worth it."""
     table = population.plan.simulation
-    if population.plan.members * table.duration / table.dt >= kernels.COMPILE_STEPS:
+    if kernels.pays(population.drive, "simulate_many", population.plan.members * table.duration / table.dt):
         kernels.load(population.drive, "simulate_many", compile_it=True)
 
 

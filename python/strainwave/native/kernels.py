@@ -5,8 +5,11 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
+import time
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
@@ -18,11 +21,39 @@ if TYPE_CHECKING:
 Job = Literal["simulate", "simulate_adaptively", "simulate_many", "differentiate", "inverse_dynamics"]
 JOBS: tuple[Job, ...] = get_args(Job)
 PUBLIC_JOBS = JOBS[:-1]  # inverse dynamics are of the rigid drives that `identify` makes
-LOOK_UP_STEPS = 20_000  # of the general drive: from then on a kernel that was compiled before is worth its look-up of some ms
-COMPILE_STEPS = 4_000_000  # of the general drive, some 6 to 10 s: several times what a compilation takes
-ADAPTIVE_STEPS = 3  # of the general drive that take as long as one whose error is estimated
-INSTANT_STEPS = 5  # of the general drive, as which an instant of inverse dynamics counts: its kernel compiles in a second
-DERIVATIVE_STEPS = 3  # of the general drive that take as long as one with four derivatives
+LOOK_UP_SECONDS = 0.04  # of the general drive: from then on a kernel that was compiled before is worth its look-up of some ms
+SAVED_SHARE = 0.75  # of the general drive's time, at the least: a kernel takes a quarter of it, one of members less
+# Time of a compilation, and of a step of the general drive (with four derivatives, or at an instant of inverse dynamics), as
+# measured with the drive of the benchmarks on an AMD EPYC, November 2026: processor time of g++ 12 and of one thread.
+COMPILE_SECONDS: dict[Job, float] = {
+    "simulate": 2.9,
+    "simulate_adaptively": 2.8,
+    "simulate_many": 4.4,
+    "differentiate": 3.4,
+    "inverse_dynamics": 1.1,
+}
+STEP_SECONDS: dict[Job, float] = {
+    "simulate": 2.2e-6,
+    "simulate_adaptively": 8.1e-6,
+    "simulate_many": 2.0e-6,
+    "differentiate": 7.8e-6,
+    "inverse_dynamics": 2.1e-6,
+}
+TYPICAL_STEPS = 10_000.0  # measured steps that count as much as the typical time of a step
+
+
+@dataclass
+class Work:
+    """Work of the general drive in this process: steps and their time [s]."""
+
+    steps: float = 0.0
+    seconds: float = 0.0
+    looked_up: bool = False
+
+    def step_seconds(self, job: Job) -> float:
+        """Return the estimated time of a step: as measured, or the typical time as long as few steps are measured."""
+        return (self.seconds + TYPICAL_STEPS * STEP_SECONDS[job]) / (self.steps + TYPICAL_STEPS)
+
 
 # What each job is in the table of a kernel, `strainwave::kernel::Table`.
 ENTRIES: dict[Job, str] = {
@@ -43,7 +74,8 @@ def _core_on_disk() -> tuple[int, int, int]:
 _CORE_IN_USE = _core_on_disk()
 UPDATED = "strainwave was updated after this process had begun; restart the process"
 
-_steps_taken: dict[tuple[tuple[int, ...], Job], float] = defaultdict(float)  # by the general drive in this process, by laws
+_work: dict[tuple[tuple[int, ...], Job], Work] = defaultdict(Work)  # by laws
+_clock = time.perf_counter
 
 
 def source(drive: Drive, jobs: Sequence[Job]) -> str:
@@ -80,27 +112,54 @@ def kernel_of(drive: Drive, job: Job) -> Kernel:
 def prepare(drive: Drive, job: Job, steps: float) -> None:
     """Load a kernel before a job of so many steps of the general drive, and compile it if that pays.
 
-    It pays once the general drive has taken or is about to take several times as long, in this process. The results are the
-    same with and without a kernel. Without a compiler the general drive goes on, with one warning.
+    It pays once the seconds that a kernel saves, of those the general drive has taken and is about to take in this process,
+    exceed those of a compilation. The results are the same with and without a kernel. Without a compiler the general drive goes
+    on, with one warning.
     """
-    laws = tuple(_core.parts(drive)[0])
-    before = _steps_taken[laws, job]
-    total = _steps_taken[laws, job] = before + steps
-    if total < LOOK_UP_STEPS or job in _core.loaded_jobs(drive):
+    work = _work_of(drive, job)
+    seconds = work.seconds + steps * work.step_seconds(job)
+    if seconds < LOOK_UP_SECONDS or job in _core.loaded_jobs(drive):
         return
-    worth_it = total >= COMPILE_STEPS
-    if worth_it or before < LOOK_UP_STEPS:
+    worth_it = _pays(job, seconds)
+    if worth_it or not work.looked_up:
+        work.looked_up = True
         load(drive, job, compile_it=worth_it)
 
 
+def pays(drive: Drive, job: Job, steps: float) -> bool:
+    """True if a kernel saves more seconds of so many steps than its compilation takes."""
+    return _pays(job, steps * _work_of(drive, job).step_seconds(job))
+
+
+def _pays(job: Job, seconds: float) -> bool:
+    return SAVED_SHARE * seconds >= COMPILE_SECONDS[job]
+
+
+@contextmanager
+def prepared(drive: Drive, job: Job, steps: float, to_come: float = 0.0) -> Iterator[None]:
+    """Prepare a job of `steps` and those `to_come`, and measure the time of `steps`, unless a kernel takes them."""
+    prepare(drive, job, steps + to_come)
+    begin, by_kernel = _clock(), job in _core.loaded_jobs(drive)
+    yield
+    if not by_kernel:
+        work = _work_of(drive, job)
+        work.steps += steps
+        work.seconds += _clock() - begin
+
+
 def note(drive: Drive, job: Job, steps: float) -> None:
-    """Count steps that the general drive has taken for a job, beyond those that `prepare` has counted."""
-    _steps_taken[tuple(_core.parts(drive)[0]), job] += steps
+    """Count steps that a job took and that were not measured."""
+    work = _work_of(drive, job)
+    work.seconds, work.steps = work.seconds + steps * work.step_seconds(job), work.steps + steps
 
 
-def forget_steps() -> None:
+def forget_work() -> None:
     """Begin to count the steps of the general drive anew."""
-    _steps_taken.clear()
+    _work.clear()
+
+
+def _work_of(drive: Drive, job: Job) -> Work:
+    return _work[tuple(_core.parts(drive)[0]), job]
 
 
 def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:

@@ -183,6 +183,7 @@ def _run(
         first += int(np.count_nonzero(keep))
         if shown is not None:
             shown(end)
+    kernels.note(drive, "simulate", steps)
     return outputs, state
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
@@ -285,22 +286,23 @@ class _Plan(ComparedByFields):
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [each.channel for each in self.recorded.values()]
         outputs = np.empty((len(channels), last - first, len(self.time)))
-        if self.backend == "cpu":
-            kernels.prepare(self.drive, "simulate_many", self.members * self.steps)
-        sound, twists, fastest, on_bristles, refusals = RUN_MEMBERS[self.backend](
-            self.drive,
-            self.numbers,
-            values,
-            None if self.initial is None else (self.initial[0], np.ascontiguousarray(self.initial[1][:, first:last])),
-            self.time_grid.instants,
-            self.inputs,
-            self.time_grid.samples[1:],
-            channels,
-            MAX_STEP_PHASE / self.time_grid.longest,
-            self.threads,
-            outputs,
-            shown,
-        )
+        members, to_come = last - first, self.members - last
+        prepared = kernels.prepared(self.drive, "simulate_many", members * self.steps, to_come * self.steps)
+        with prepared if self.backend == "cpu" else nullcontext():
+            sound, twists, fastest, on_bristles, refusals = RUN_MEMBERS[self.backend](
+                self.drive,
+                self.numbers,
+                values,
+                None if self.initial is None else (self.initial[0], np.ascontiguousarray(self.initial[1][:, first:last])),
+                self.time_grid.instants,
+                self.inputs,
+                self.time_grid.samples[1:],
+                channels,
+                MAX_STEP_PHASE / self.time_grid.longest,
+                self.threads,
+                outputs,
+                shown,
+            )
         failures = self.failures(first, outputs, sound, twists, fastest, refusals)
         _tell_of_bristles(self.time_grid.longest, on_bristles)
         outputs[:, list(failures), :] = np.nan

@@ -188,9 +188,8 @@ def simulate(
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     taken = method or "exponential"
-    kernels.prepare(drive, "simulate", len(time_grid.instants))
-    outputs, first = course.beginning(state, excitation.first()), 1
-    with progressing(progress, len(time_grid.instants) - 1) as shown:
+    outputs, first, steps = course.beginning(state, excitation.first()), 1, len(time_grid.instants) - 1
+    with kernels.prepared(drive, "simulate", steps), progressing(progress, steps) as shown:
         for number, chunk in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
             laid_out, keep = excitation.over(chunk), chunk.samples[1:]
@@ -367,12 +366,12 @@ def simulate_adaptively(
     excitation.check_temperature(ends)
     channels = [each.channel for each in recorded.values()]
     outputs = beginning(drive, state, excitation.first(), channels, len(samples))
-    kernels.prepare(drive, "simulate_adaptively", kernels.ADAPTIVE_STEPS * len(ends))
+    kernels.prepare(drive, "simulate_adaptively", len(ends))
     with progressing(progress, len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
             drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
         )
-    kernels.note(drive, "simulate_adaptively", kernels.ADAPTIVE_STEPS * (accepted + rejected))
+    kernels.note(drive, "simulate_adaptively", accepted + rejected)
     check_meaning(samples, recorded, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
     end = _finite(State.of(drive, state), "check the parameters")
@@ -413,8 +412,8 @@ def differentiate(
             return _core.differentiate(drive, beginning, time_grid.instants, inputs, kept, group, counter)
 
         groups = [list(numbers[first : first + _core.slopes]) for first in range(0, max(len(numbers), 1), _core.slopes)]
-        kernels.prepare(drive, "differentiate", kernels.DERIVATIVE_STEPS * len(groups) * len(time_grid.instants))
-        runs = side_by_side([partial(run_by, group) for group in groups])
+        with kernels.prepared(drive, "differentiate", len(groups) * len(kept)):
+            runs = side_by_side([partial(run_by, group) for group in groups])
         outputs, slopes = runs[0][0], np.concatenate([by_numbers for _, by_numbers in runs])
     channels = [each.channel for each in recorded.values()]
     return recording(drive, time_grid, recorded, outputs[channels], temperature), slopes[:, channels]

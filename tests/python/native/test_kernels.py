@@ -59,7 +59,7 @@ def _general_drive(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("STRAINWAVE_KERNELS", KEPT)
     for drive in (DRIVE, NESTED):
         _core.forget_kernels(drive)
-    kernels.forget_steps()
+    kernels.forget_work()
     yield
     for drive in (DRIVE, NESTED):
         _core.forget_kernels(drive)
@@ -116,38 +116,77 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
     return calls
 
 
-def test_short_work_asks_for_no_kernel(asked: list[bool]) -> None:
-    kernels.prepare(DRIVE, "simulate", kernels.LOOK_UP_STEPS - 1)
+@pytest.fixture
+def step_seconds(monkeypatch: pytest.MonkeyPatch) -> float:
+    """Return the typical time of a step [s] of every job; a compilation takes 1 s."""
+    monkeypatch.setattr(kernels, "STEP_SECONDS", dict.fromkeys(kernels.JOBS, 1e-5))
+    monkeypatch.setattr(kernels, "COMPILE_SECONDS", dict.fromkeys(kernels.JOBS, 1.0))
+    return 1e-5
+
+
+def steps_of(seconds: float, step_seconds: float) -> float:
+    """Return the steps that take so long [s], and a little more."""
+    return 1.001 * seconds / step_seconds
+
+
+WORTH_IT = 1.0 / kernels.SAVED_SHARE  # s of the general drive, for a compilation of 1 s
+
+
+def test_short_work_asks_for_no_kernel(asked: list[bool], step_seconds: float) -> None:
+    kernels.prepare(DRIVE, "simulate", 0.99 * kernels.LOOK_UP_SECONDS / step_seconds)
     assert asked == []
 
 
-def test_longer_work_looks_a_kernel_up_once_and_long_work_compiles_it(asked: list[bool]) -> None:
+def test_longer_work_looks_a_kernel_up_once_and_long_work_compiles_it(asked: list[bool], step_seconds: float) -> None:
     for _ in range(3):
-        kernels.prepare(DRIVE, "simulate", kernels.LOOK_UP_STEPS)
+        kernels.prepare(DRIVE, "simulate", steps_of(kernels.LOOK_UP_SECONDS, step_seconds))
     assert asked == [False]
-    kernels.prepare(DRIVE, "simulate", kernels.COMPILE_STEPS)
+    kernels.prepare(DRIVE, "simulate", steps_of(WORTH_IT, step_seconds))
     assert asked == [False, True]
 
 
-def test_work_that_comes_in_many_pieces_is_long_work(asked: list[bool]) -> None:
+def test_work_that_comes_in_many_pieces_is_long_work(asked: list[bool], step_seconds: float) -> None:
     pieces = 10
     for _ in range(pieces + 1):
-        kernels.prepare(DRIVE, "differentiate", kernels.COMPILE_STEPS / pieces)
+        kernels.prepare(DRIVE, "differentiate", steps_of(WORTH_IT, step_seconds) / pieces)
+        kernels.note(DRIVE, "differentiate", steps_of(WORTH_IT, step_seconds) / pieces)
     assert asked == [False, True, True]
 
 
-def test_jobs_and_laws_are_counted_apart(asked: list[bool]) -> None:
-    kernels.prepare(DRIVE, "simulate", 0.6 * kernels.COMPILE_STEPS)
-    kernels.prepare(DRIVE, "simulate_many", 0.6 * kernels.COMPILE_STEPS)
-    kernels.prepare(NESTED, "simulate", 0.6 * kernels.COMPILE_STEPS)
+def test_jobs_and_laws_are_counted_apart(asked: list[bool], step_seconds: float) -> None:
+    steps = 0.6 * steps_of(WORTH_IT, step_seconds)
+    for drive, job in ((DRIVE, "simulate"), (DRIVE, "simulate_many"), (NESTED, "simulate")):
+        kernels.prepare(drive, job, steps)
+        kernels.note(drive, job, steps)
     assert asked == [False] * 3
+
+
+@pytest.mark.parametrize(("slowness", "compiled"), [(1.0, False), (3.0, True), (0.3, False)])
+def test_measured_steps_decide_what_a_kernel_saves(
+    slowness: float, compiled: bool, asked: list[bool], step_seconds: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured, ahead = kernels.TYPICAL_STEPS, 0.7 * steps_of(WORTH_IT, step_seconds)
+    instants = iter([0.0, slowness * step_seconds * measured])
+    monkeypatch.setattr(kernels, "_clock", lambda: next(instants))
+    with kernels.prepared(DRIVE, "simulate", measured):
+        pass
+    kernels.prepare(DRIVE, "simulate", ahead)
+    assert asked == [False] + [True] * compiled
+    assert kernels.pays(DRIVE, "simulate", ahead) == compiled
+
+
+def test_a_job_whose_kernel_compiles_for_longer_needs_more_work(monkeypatch: pytest.MonkeyPatch, step_seconds: float) -> None:
+    steps = steps_of(WORTH_IT, step_seconds)
+    assert kernels.pays(DRIVE, "simulate", steps)
+    monkeypatch.setitem(kernels.COMPILE_SECONDS, "simulate", 1.1)
+    assert not kernels.pays(DRIVE, "simulate", steps)
 
 
 def test_an_ensemble_compiles_its_kernel_and_announces_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(kernels, "COMPILE_STEPS", 1000)
-    monkeypatch.setattr(kernels, "LOOK_UP_STEPS", 100)
+    monkeypatch.setitem(kernels.COMPILE_SECONDS, "simulate_many", 1e-3)
+    monkeypatch.setattr(kernels, "LOOK_UP_SECONDS", 1e-4)
     inertias = {"load.inertia": np.linspace(0.4, 0.6, 5)}
     sw.simulate_many(DRIVE, command(0.05), inertias, STEP)
     assert _core.loaded_jobs(DRIVE) == ["simulate_many"]
@@ -212,8 +251,8 @@ def test_without_a_compiler_the_general_drive_goes_on_and_says_so_once(
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CXX", raising=False)
     monkeypatch.setattr("strainwave.native.compilers.zig_program", lambda: None)
-    monkeypatch.setattr(kernels, "COMPILE_STEPS", 1000)
-    monkeypatch.setattr(kernels, "LOOK_UP_STEPS", 100)
+    monkeypatch.setitem(kernels.COMPILE_SECONDS, "simulate_many", 1e-3)
+    monkeypatch.setattr(kernels, "LOOK_UP_SECONDS", 1e-4)
     inertias = {"load.inertia": np.linspace(0.4, 0.6, 5)}
     with pytest.warns(KernelWarning, match=r"no C\+\+20 compiler"):
         first = sw.simulate_many(DRIVE, command(0.05), inertias, STEP)

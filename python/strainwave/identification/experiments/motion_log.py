@@ -309,8 +309,8 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     inputs = np.zeros((len(motion.time), INPUT_COUNT))
     inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others, ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
-    kernels.prepare(rigid, "inverse_dynamics", kernels.INSTANT_STEPS * len(inputs))
-    torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])
+    with kernels.prepared(rigid, "inverse_dynamics", len(inputs)):
+        torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])
     found = np.zeros((len(paths), len(torque)))
     found[places] = slopes
     return torque, found
