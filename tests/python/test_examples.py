@@ -26,6 +26,7 @@ SLOW_MODULES = (
     "compensate.py",
     "detection_limit.py",
     "recovery.py",
+    "misalignment_sweep.py",
     "influence.py",
     "two_encoders.py",
 )  # their examples take 0.5 s and more
