@@ -131,7 +131,7 @@ std::string qualified(nb::handle type);
 template <class M>
 const Description& description_of();
 
-/// What a part may be: itself, or each law that it is chosen from.
+/// A type that a part may have: its own, or that of a law that it is chosen from.
 struct Alternative {
     const Description& (*description)();
     void (*assign)(void* member, const void* law);  ///< makes the member a copy of the law

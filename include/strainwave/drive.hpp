@@ -207,7 +207,7 @@ struct Drive {
         return rate;
     }
     static constexpr bool foresees = Gear::foresees;
-    /// What derivatives take from positions alone, at two stages of a step.
+    /// Quantities of the derivatives that follow from positions alone, at two stages of a step.
     constexpr auto foreseen(const State& one, const State& other) const {
         return gear.kinematic_error.at({one.continuous.input_angle, one.turns}, {other.continuous.input_angle, other.turns});
     }

@@ -65,7 +65,7 @@ struct Harmonics {
 
 private:
 #if !defined(__CUDACC_RTC__)
-    /// What `whole_orders` sums, in registers.
+    /// The sums of `whole_orders`, in registers.
     struct Rotating {
         using Four = typename detail::Vector<double, 4 * int(sizeof(double))>::type;
         Four before, wave, step, values{}, slopes{};

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-WIDTH = 7.0  # inches, of a figure
+FIGURE_WIDTH = 7.0  # inches, of a figure
 INK, MUTED = "black", "grey"
 AXIS: dict[str, Any] = {"color": MUTED, "linewidth": 0.8, "linestyle": (0, (9, 2, 1.5, 2))}
 STILL, TURNING = "tab:blue", "tab:orange"
@@ -22,7 +22,7 @@ DRAWN_SHIFT, DRAWN_DIRECTION, DRAWN_TURN = 0.17, np.radians(35.0), np.radians(65
 
 def wave_generator() -> Figure:
     """Draw a misaligned wave generator in the circular spline, seen along the shaft (document A's Figure 1.b)."""
-    figure = Figure((WIDTH, 4.6), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 4.6), layout="constrained")
     axes = figure.subplots()
     _ring(axes)
     centre = DRAWN_SHIFT * _unit(DRAWN_DIRECTION)
@@ -84,7 +84,7 @@ def scales(major_radius: float, minor_radius: float, eccentricity: float) -> tup
 
 def angles() -> Figure:
     """Draw eccentricities and angular deviations with their frames (document A's Figure 2)."""
-    figure = Figure((WIDTH, 6.4), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 6.4), layout="constrained")
     above = figure.add_gridspec(2, 2, height_ratios=(1.25, 1.0))
     _plan(figure.add_subplot(above[0, :]))
     _side(figure.add_subplot(above[1, 0]), "X", "β₂", "α₂")

@@ -18,7 +18,7 @@ from strainwave.typeset import ARCMIN_PER_RADIAN, number
 
 Array = NDArray[np.float64]
 
-WIDTH = 7.0  # inches, of a figure
+FIGURE_WIDTH = 7.0  # inches, of a figure
 DETAIL_TURNS = 2.0  # turns of the input that a detail shows
 TILTED = (("tab:purple", ":"), ("tab:green", "--"), ("tab:orange", "-"))  # colour and line of each tilt shown
 SHARING = {"single": ("tab:blue", "o"), "max": ("tab:orange", "s"), "mean": ("tab:green", "^")}
@@ -49,7 +49,7 @@ def tilt_words(tilt: float) -> str:
 
 def pure_figure(pure: PureError) -> Figure:
     """Draw a measured curve and the law fitted to it, and what it leaves, over a turn of the input."""
-    turn, figure = np.degrees(pure.angle), Figure((WIDTH, 5.0), layout="constrained")
+    turn, figure = np.degrees(pure.angle), Figure((FIGURE_WIDTH, 5.0), layout="constrained")
     error, rest = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
     measured = "measured" if pure.source else "curve, assumed"
     error.plot(turn, ARCMIN_PER_RADIAN * pure.curve, color="tab:blue", linewidth=2.6, alpha=0.6, label=measured)
@@ -68,7 +68,7 @@ def pure_figure(pure: PureError) -> Figure:
 
 def ramp_figure(found: MisalignmentStudy) -> Figure:
     """Draw torque, current and error of the output over the ramp, straight and with the largest tilt shown."""
-    figure = Figure((WIDTH, 6.0), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 6.0), layout="constrained")
     torque, current, error = figure.subplots(3, 1, sharex=True, height_ratios=(1.3, 1.3, 1.0))
     for tilt, colour in ((study.SHOWN_TILTS[-1], "tab:orange"), (0.0, "black")):
         run = found.shown[OUTPUT][tilt]
@@ -85,7 +85,7 @@ def ramp_figure(found: MisalignmentStudy) -> Figure:
 
 def difference_figure(found: MisalignmentStudy) -> Figure:
     """Draw document A's Figure 3.b, read both ways: differences of the torque, and the kinematic error, for three tilts."""
-    ramp, runs, figure = found.ramp, found.shown[OUTPUT], Figure((WIDTH, 7.0), layout="constrained")
+    ramp, runs, figure = found.ramp, found.shown[OUTPUT], Figure((FIGURE_WIDTH, 7.0), layout="constrained")
     whole, torque, error = figure.subplots(3, 1)
     for tilt, (colour, line) in zip(study.SHOWN_TILTS[::-1], TILTED[::-1], strict=True):
         there, run = study.difference(ramp, runs, tilt, "torque"), ramp.settled(runs[tilt])
@@ -110,7 +110,7 @@ def _detail(turns: Array) -> NDArray[np.bool_]:
 
 def level_figure(found: MisalignmentStudy) -> Figure:
     """Draw half swings of torque and current over the size of m, for each way of sharing, by eccentricity and by tilt."""
-    figure = Figure((WIDTH, 3.8), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 3.8), layout="constrained")
     panels = figure.subplots(1, 2)
     for axes, column, words in zip(panels, ("torque_swing", "current_swing"), ("torque [N·m]", "current [A]"), strict=True):
         for combine, (colour, marker) in SHARING.items():
@@ -128,7 +128,7 @@ def level_figure(found: MisalignmentStudy) -> Figure:
 def spectrum_figure(found: MisalignmentStudy) -> Figure:
     """Draw orders of torque, current and output angle, straight and tilted."""
     names = {"torque": "torque [N·m]", "current": "motor current [A]", "output_angle": "output angle − command [arcmin]"}
-    figure = Figure((WIDTH, 6.5), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 6.5), layout="constrained")
     panels = figure.subplots(3, 1, sharex=True)
     for axes, (column, words) in zip(panels, names.items(), strict=True):
         scale = ARCMIN_PER_RADIAN if column == "output_angle" else 1.0
@@ -145,7 +145,7 @@ def spectrum_figure(found: MisalignmentStudy) -> Figure:
 
 def flap_figure(found: MisalignmentStudy) -> Figure:
     """Draw the change of the output by a tilt, with the loop on either shaft, and the simulated error."""
-    largest, figure = study.SHOWN_TILTS[-1], Figure((WIDTH, 3.6), layout="constrained")
+    largest, figure = study.SHOWN_TILTS[-1], Figure((FIGURE_WIDTH, 3.6), layout="constrained")
     axes = figure.subplots()
     run = found.ramp.settled(found.shown[OUTPUT][largest])
     turns, put_in = run["input_angle"] / (2.0 * np.pi), -ARCMIN_PER_RADIAN * run["kinematic_error"]
@@ -164,7 +164,7 @@ def flap_figure(found: MisalignmentStudy) -> Figure:
 
 def passing_figure(found: MisalignmentStudy) -> Figure:
     """Draw the share of the error that the output has, over the frequency of the order, for each gain of the position loop."""
-    figure = Figure((WIDTH, 5.8), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 5.8), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True, sharey=True)
     for axes, side in zip(panels, (OUTPUT, INPUT), strict=True):
         table = found.passing[side].table
@@ -187,7 +187,7 @@ def passing_figure(found: MisalignmentStudy) -> Figure:
 
 def recovery_figure(recoveries: Mapping[str, Recovery]) -> Figure:
     """Draw the estimates of m from records with different noise, the ellipse of the first, and the true value."""
-    figure = Figure((WIDTH, 3.8), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 3.8), layout="constrained")
     panels = figure.subplots(1, len(recoveries), squeeze=False)[0]
     for axes, (column, recovery) in zip(panels, recoveries.items(), strict=True):
         sign = 1.0 if np.dot(recovery.best.m, recovery.m) > 0.0 else -1.0
@@ -216,7 +216,7 @@ def measured_figure(found: MisalignmentStudy, measured: sw.Recording) -> Figure:
     names = {"torque": "torque at the output [N·m]", "current": "motor current [A]"}
     names |= {"output_angle": "output angle [rad]", "input_angle": "input angle [rad]"}
     there = [name for name in names if name in measured]
-    figure = Figure((WIDTH, 1.0 + 2.0 * len(there)), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 1.0 + 2.0 * len(there)), layout="constrained")
     panels = figure.subplots(len(there), 1, sharex=True, squeeze=False)[:, 0]
     tilted = found.shown[OUTPUT][study.SHOWN_TILT]
     for axes, name in zip(panels, there, strict=True):

@@ -21,7 +21,7 @@ MODELS: dict[str, dict[str, Any]] = {
     SIMPLIFIED: {"color": "tab:green", "linestyle": "--", "linewidth": 1.1},
 }
 LEAST_OF_TABLE_4 = min(rms for rms, _, _ in study.TABLE_4.values())
-WIDTH = 7.0  # inches, of a figure
+FIGURE_WIDTH = 7.0  # inches, of a figure
 
 
 class ExperimentRow(NamedTuple):
@@ -242,7 +242,7 @@ def _measured(measured: MeasuredRun) -> dict[str, Any]:
 
 def experiment_figure(experiment: CommandExperiment) -> Figure:
     """Draw command and response, their difference, the difference of the models, and the current, over time."""
-    figure, runs = Figure((WIDTH, 7.5), layout="constrained"), experiment.runs
+    figure, runs = Figure((FIGURE_WIDTH, 7.5), layout="constrained"), experiment.runs
     first = runs[FULL]
     response, error, apart, current = figure.subplots(4, 1, sharex=True, height_ratios=(1.7, 1.1, 0.9, 1.1))
     response.plot(first.time, 1e3 * first["command"], color="black", linewidth=0.9, label="command")
@@ -261,7 +261,7 @@ def experiment_figure(experiment: CommandExperiment) -> Figure:
 
 def measured_figure(measured: MeasuredRun) -> Figure:
     """Draw a measured output angle and those of the models, and how far they are apart, over time."""
-    recording, figure = measured.recording, Figure((WIDTH, 4.5), layout="constrained")
+    recording, figure = measured.recording, Figure((FIGURE_WIDTH, 4.5), layout="constrained")
     response, error = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1.1))
     response.plot(recording.time, 1e3 * recording["command"], color="black", linewidth=0.9, label="command")
     response.plot(recording.time, 1e3 * recording["output_angle"], color="tab:blue", linewidth=2.6, alpha=0.6, label="measured")
@@ -333,7 +333,7 @@ def control_figure(found: PositionControl) -> Figure:
 
 
 def _figure(height: float) -> tuple[Figure, Axes]:
-    figure = Figure((WIDTH, height), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, height), layout="constrained")
     return figure, figure.subplots()
 
 

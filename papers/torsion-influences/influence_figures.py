@@ -13,7 +13,7 @@ from strainwave.rig import Cycle
 from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, quantity
 from torsion_influences import OWN, SPECIMEN, CatalogueRow, Influence, Sweep
 
-WIDTH = 7.0  # inches, of a figure
+FIGURE_WIDTH = 7.0  # inches, of a figure
 MAX_WIDTH_IN_ARCMIN = 0.02  # rad: wider loops are drawn in degrees, narrower ones in minutes of arc
 RATIO_TICKS = (30, 50, 80, 100, 160)
 
@@ -36,7 +36,7 @@ def figures(found: Influence) -> dict[str, Figure]:
 def loops_figure(loops: Sequence[Cycle]) -> Figure:
     """Draw loops of several torques, the largest behind."""
     angle, unit = _angles(max(float(np.ptp(each.angle)) for each in loops))
-    figure = Figure((WIDTH, 4.0), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 4.0), layout="constrained")
     axes = figure.subplots()
     for loop, shade in zip(reversed(loops), np.linspace(1.0, 0.35, len(loops)), strict=True):
         label = quantity(loop.peak, "N.m", 3)
@@ -53,7 +53,7 @@ def _angles(largest: float) -> tuple[float, str]:
 def amplitude_figure(sweep: Sweep) -> Figure:
     """Draw area, width and slopes over the torque level."""
     angle, unit = _angles(float(sweep["width"].max()))
-    figure = Figure((WIDTH, 6.5), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 6.5), layout="constrained")
     area, width, slopes = figure.subplots(3, 1, sharex=True)
     lost = sweep["area"] > 0.0
     area.plot(sweep.levels[lost], sweep["area"][lost], color="tab:orange", marker="o")
@@ -71,7 +71,7 @@ def amplitude_figure(sweep: Sweep) -> Figure:
 
 def ratio_figure(rows: tuple[CatalogueRow, ...]) -> Figure:
     """Draw the first stiffness over the ratio, by size: at the output, and as the input sees it."""
-    figure = Figure((WIDTH, 5.4), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 5.4), layout="constrained")
     output, input_ = figure.subplots(2, 1, sharex=True)
     for size, sized in list(by_size(rows).items())[::2]:
         ratios, stiffness = np.array([row.ratio for row in sized], float), np.array([row.k1 for row in sized])
@@ -89,7 +89,7 @@ def ratio_figure(rows: tuple[CatalogueRow, ...]) -> Figure:
 def preload_figure(sweep: Sweep, peak: float, friction: float) -> Figure:
     """Draw area and width of the loop at the input over the friction there."""
     angle, unit = _angles(float(sweep["width"].max()))
-    figure = Figure((WIDTH, 4.4), layout="constrained")
+    figure = Figure((FIGURE_WIDTH, 4.4), layout="constrained")
     area, width = figure.subplots(2, 1, sharex=True)
     style: dict[str, Any] = {"color": "tab:orange", "marker": "o"}
     area.plot(sweep.levels, sweep["area"], **style)
@@ -102,7 +102,7 @@ def preload_figure(sweep: Sweep, peak: float, friction: float) -> Figure:
 
 def temperature_figure(sweep: Sweep) -> Figure:
     """Draw area and slopes of the loop at the input over the temperature."""
-    celsius, figure = sweep.levels - ZERO_CELSIUS, Figure((WIDTH, 4.6), layout="constrained")
+    celsius, figure = sweep.levels - ZERO_CELSIUS, Figure((FIGURE_WIDTH, 4.6), layout="constrained")
     area, slopes = figure.subplots(2, 1, sharex=True)
     area.plot(celsius, sweep["area"], color="tab:orange", marker="o")
     slopes.plot(celsius, sweep["high_stiffness"], color="tab:blue", marker="^", label="unloading")

@@ -1,4 +1,4 @@
-"""What each compensation gains over a tuned cascade, on gears unlike the model: `python -m tests.evidence.compensated`.
+"""Gain of each compensation over a tuned cascade, on gears unlike the model: `python -m tests.evidence.compensated`.
 
 Two plants: that of the conservative Lagrangian with bristles and Maxwell elements, and the robot joint of the catalogue. Of
 each, 200 gears are drawn whose parts have up to 0, 10 and 30 % more or less than the model has. Printed are median and 95 % of

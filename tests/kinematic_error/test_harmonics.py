@@ -14,8 +14,8 @@ from tests.support.cplusplus import STRICT, compiler
 
 Array = NDArray[np.float64]
 SOURCE = Path(__file__).parent / "harmonics.cpp"
-PAIRS = 500
-FARTHEST = 1e6  # rad, within which sines of two angles are evaluated together
+ANGLE_PAIRS = 500
+MAX_PAIRED_ANGLE = 1e6  # rad, within which sines of two angles are evaluated together
 
 
 @pytest.fixture(scope="module")
@@ -36,15 +36,15 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_two_angles_together_have_the_bits_of_each_and_the_closed_form(program: Path, orders: list[float]) -> None:
     random = np.random.default_rng(len(orders))
     amplitude, phase = random.uniform(-1e-3, 1e-3, len(orders)), random.uniform(-4.0, 4.0, len(orders))
-    within, turns = random.uniform(-np.pi, np.pi, (PAIRS, 2)), np.round(random.uniform(-100.0, 100.0, (PAIRS, 2)))
-    within[0], within[1], within[2] = (0.0, -0.0), (1.0, 10.0 * FARTHEST), (1e300, 1.0)
+    within, turns = random.uniform(-np.pi, np.pi, (ANGLE_PAIRS, 2)), np.round(random.uniform(-100.0, 100.0, (ANGLE_PAIRS, 2)))
+    within[0], within[1], within[2] = (0.0, -0.0), (1.0, 10.0 * MAX_PAIRED_ANGLE), (1e300, 1.0)
     law = "\n".join(f"{each[0]:.17g} {each[1]:.17g} {each[2]:.17g}" for each in zip(orders, amplitude, phase, strict=True))
     angles = "\n".join(f"{w[0]:.17g} {t[0]:.17g} {w[1]:.17g} {t[1]:.17g}" for w, t in zip(within, turns, strict=True))
     printed = subprocess.run(
         [program], input=f"{len(orders)}\n{law}\n{angles}\n", capture_output=True, text=True, check=True
     ).stdout
     rows = np.array([line.split() for line in printed.splitlines()], dtype=float)
-    assert rows.shape == (PAIRS, 5)
+    assert rows.shape == (ANGLE_PAIRS, 5)
     assert rows[:, 4].all()
     angle = (within + 2.0 * np.pi * turns)[3:, :, None]
     order = np.array(orders, dtype=float)

@@ -119,7 +119,7 @@ def test_what_was_put_in_comes_back_within_its_interval(ramp: ActuatorRamp, monk
         assert complex(*each.m) == pytest.approx(expected, rel=1e-4)
         assert each.within >= 19, (each.column, each.law.combine)
         assert min(each.first, key=lambda combine: each.first[combine].misfit) == each.law.combine
-        assert each.best.half_widths[0] < 0.1 * abs(expected), "the interval tells something"
+        assert each.best.half_widths[0] < 0.1 * abs(expected), "the interval determines the vector"
         for trial in each.trials:
             gaps = [np.subtract(trial.m, sign * np.array(each.m)) for sign in (1.0, -1.0)]
             distances.append(min(gap @ np.linalg.solve(trial.covariance, gap) for gap in gaps))

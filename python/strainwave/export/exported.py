@@ -68,6 +68,6 @@ class Form(NamedTuple):
 
     @property
     def model(self) -> str:
-        """What it needs: a gear, of which a function takes the name or path, too; or a drive."""
+        """Return "gear" for a function that takes the name or path of a gear, too; else "drive"."""
         model, *_ = signature(self.write, eval_str=True).parameters.values()
         return "gear" if str in get_args(model.annotation) else "drive"

@@ -225,8 +225,8 @@ def bench(seed: int) -> tuple[dict[str, Any], float]:
 def test_at_one_speed_the_measured_amplitude_stands(seed: int) -> None:
     """One speed does not determine how the output vibrates: a natural frequency fitted to it made 491 of 121 µrad."""
     columns, amplitude = bench(seed)
-    found = told(columns)
-    assert found.natural_frequency is None
-    assert abs(order(found, 2.0).amplitude - amplitude) < 3.0 * order(found, 2.0).amplitude_sigma
-    assert order(found, 2.0).amplitude_sigma < 2e-7
-    assert any("amplitudes are those measured at" in remark for remark in found.remarks)
+    result = told(columns)
+    assert result.natural_frequency is None
+    assert abs(order(result, 2.0).amplitude - amplitude) < 3.0 * order(result, 2.0).amplitude_sigma
+    assert order(result, 2.0).amplitude_sigma < 2e-7
+    assert any("amplitudes are those measured at" in remark for remark in result.remarks)
