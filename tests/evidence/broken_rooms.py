@@ -65,7 +65,7 @@ FAULTS = (
     ),
     Fault(
         "identification",
-        f"{PACKAGE}/identification/fitting/covariance.py",
+        f"{PACKAGE}/statistics/covariance.py",
         "total += (1.0 - lag / (lags + 1)) *",
         "total -= (1.0 - lag / (lags + 1)) *",
     ),

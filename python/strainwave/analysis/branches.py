@@ -7,6 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.statistics.scale import noise_sigma
+
 Array = NDArray[np.float64]
 
 MAX_PATH_SAMPLES = 2_000  # of a quasi-static path: more add only noise, which their means contain too
@@ -16,13 +18,6 @@ MIN_REVERSAL_SHARE = 0.02  # of the span [1]: smaller reversals do not belong to
 MAX_REVERSAL_SHARE = 0.25  # of the span [1]: larger reversals count, even if few samples make the path look like noise
 
 
-def noise(values: Array) -> float:
-    """Standard deviation of white noise on a smooth series, by the median of its second differences."""
-    if len(values) < 3:
-        return 0.0
-    return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6.0)))
-
-
 def turning_points(path: Array) -> list[int]:
     """Samples at which a path turns back by more than its noise; those of its ends are none.
 
@@ -30,7 +25,7 @@ def turning_points(path: Array) -> list[int]:
     [3]
     """
     span = float(np.ptp(path))
-    least = min(max(MIN_REVERSAL_SIGMA * noise(path), MIN_REVERSAL_SHARE * span), MAX_REVERSAL_SHARE * span)
+    least = min(max(MIN_REVERSAL_SIGMA * noise_sigma(path), MIN_REVERSAL_SHARE * span), MAX_REVERSAL_SHARE * span)
     turns: list[int] = []
     low = high = 0
     sense = 0

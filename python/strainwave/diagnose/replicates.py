@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from strainwave.diagnose.motion import MAX_SAMPLES
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.orders.floor import Floor
 from strainwave.orders.ripple import Ripple
 from strainwave.orders.smooth_part import Moving, floor_without, least_squares, shaft_of
+from strainwave.statistics.floor import Floor
 
 Array = NDArray[np.float64]
 

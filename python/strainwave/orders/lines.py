@@ -10,9 +10,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.orders.floor import Floor, floor_under
 from strainwave.orders.scan import Spectrum, order_spectrum_of, spread_of, time_spectrum_of
 from strainwave.orders.smooth_part import Moving, Shaft
+from strainwave.statistics.floor import Floor, floor_under
 
 Array = NDArray[np.float64]
 Kind = Literal["order", "time", "joint", "either"]

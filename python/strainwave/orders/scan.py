@@ -19,8 +19,8 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.orders.floor import Floor
 from strainwave.orders.smooth_part import Shaft
+from strainwave.statistics.floor import Floor
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
-from strainwave.orders.floor import Floor, floor_of, taper
 from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
+from strainwave.statistics.floor import Floor, floor_of, taper
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.orders.floor import floor_of
+from strainwave.statistics.floor import floor_of
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave.analysis.branches import monotone, noise, slid, thinned, turning_points
+from strainwave.analysis.branches import monotone, slid, thinned, turning_points
+from strainwave.statistics.scale import noise_sigma
 
 ENDS = st.lists(st.floats(0.2, 1.0), min_size=1, max_size=6)
 
@@ -45,8 +46,8 @@ def test_without_wiggles_each_branch_runs_one_way_and_stays_within_the_noise(len
 def test_noise_on_a_smooth_series_is_told_from_the_series(scale: float) -> None:
     x = np.linspace(0.0, 20.0, 4000)
     random = np.random.default_rng(0).normal(size=len(x))
-    assert noise(scale * (100.0 * np.sin(x) + random)) == pytest.approx(scale, rel=0.05)
-    assert noise(np.zeros(2)) == 0.0
+    assert noise_sigma(scale * (100.0 * np.sin(x) + random)) == pytest.approx(scale, rel=0.05)
+    assert noise_sigma(np.zeros(2)) == 0.0
 
 
 def test_what_lies_just_behind_a_reversal_slides_not_yet() -> None:

@@ -24,10 +24,10 @@ from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
-from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.covariance import covariance_of
 
 Array = NDArray[np.float64]
 

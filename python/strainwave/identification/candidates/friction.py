@@ -26,9 +26,9 @@ from strainwave.identification.candidates.steady_shapes import (
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
-from strainwave.identification.fitting.loss import NORMAL_MAD
-from strainwave.identification.fitting.noise import chance_of_gain
 from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.residuals import chance_of_gain
+from strainwave.statistics.scale import NORMAL_MAD
 
 Array = NDArray[np.float64]
 

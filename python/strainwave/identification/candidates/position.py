@@ -17,8 +17,8 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.friction import PositionDependent
 from strainwave.identification.experiments.experiment import sensible
-from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.statistics.covariance import covariance_of
 
 Array = NDArray[np.float64]
 

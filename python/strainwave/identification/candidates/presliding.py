@@ -16,8 +16,9 @@ from strainwave._core import PassivityWarning
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.friction import MAX_CHANCE, by_chance, dissipating
 from strainwave.identification.experiments.presliding import BreakawayPoint, PreslidingLoop
-from strainwave.identification.fitting.covariance import covariance_of
-from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.statistics.covariance import covariance_of
+from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 

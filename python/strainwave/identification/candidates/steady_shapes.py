@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.identification.experiments.friction_table import FrictionTable, varies
-from strainwave.identification.fitting.noise import chance_of_gain
+from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
 

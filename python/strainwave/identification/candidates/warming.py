@@ -13,7 +13,8 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
-from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.analysis.branches import noise
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.identification.checks.mistakes import MISTAKEN
@@ -19,6 +18,7 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.kinematics import StrainWave
+from strainwave.statistics.scale import noise_sigma
 
 Array = NDArray[np.float64]
 
@@ -96,7 +96,7 @@ def unexplained(found: Fit) -> Array:
 def left(measured: Array, predicted: Array) -> Array:
     """Return the same of any prediction, shape (channels, n) like the measurement."""
     residual = measured - predicted
-    misfit = np.sqrt(np.maximum(np.mean(residual**2, axis=1) - [noise(row) ** 2 for row in measured], 0.0))
+    misfit = np.sqrt(np.maximum(np.mean(residual**2, axis=1) - [noise_sigma(row) ** 2 for row in measured], 0.0))
     variation = np.std(measured, axis=1)
     return np.where(variation > 0.0, misfit / np.where(variation > 0.0, variation, 1.0), 0.0)
 

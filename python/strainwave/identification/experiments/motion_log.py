@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments
 from strainwave._core import Gear
-from strainwave.analysis.branches import noise
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.experiment import (
@@ -25,9 +24,9 @@ from strainwave.identification.experiments.experiment import (
 )
 from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
 from strainwave.identification.experiments.motion import MAX_GAP_STEPS, Motion, in_gap, motion_of
-from strainwave.identification.fitting.loss import NORMAL_MAD
 from strainwave.messages import listed
 from strainwave.native import kernels
+from strainwave.statistics.scale import NORMAL_MAD, noise_sigma
 
 Array = NDArray[np.float64]
 Side = Literal["input", "output"]
@@ -360,7 +359,7 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
     if clipped.all():  # a square wave, no range that is too small
         clipped = np.zeros(len(values), bool)
     off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
-    scale = noise(values[~clipped])
+    scale = noise_sigma(values[~clipped])
     if np.median(off) == 0.0:  # values that are held or smooth, of which extremes would look like outliers
         scale = float(np.quantile(np.abs(np.diff(values)), HELD_QUANTILE)) or np.inf
     around = ndimage.median_filter(off, OUTLIER_WINDOW, mode="nearest") / NORMAL_MAD

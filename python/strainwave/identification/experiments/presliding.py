@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.analysis.branches import noise, thinned, turning_points
+from strainwave.analysis.branches import thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import changing, sensible
+from strainwave.statistics.scale import noise_sigma
 
 Array = NDArray[np.float64]
 
@@ -133,7 +134,7 @@ def _smallest_motion(angle: Array) -> float:
     steps = np.abs(np.diff(angle))
     smallest = float(steps[steps > 0.0].min(initial=np.inf))
     quantised = np.mean(steps == 0.0) > 0.2  # an encoder that stands still repeats itself
-    return max(MIN_MOTION_SIGMA * noise(angle), 2.0 * smallest if quantised and np.isfinite(smallest) else 0.0, 1e-12)
+    return max(MIN_MOTION_SIGMA * noise_sigma(angle), 2.0 * smallest if quantised and np.isfinite(smallest) else 0.0, 1e-12)
 
 
 def _ramps(torque: Array) -> list[slice]:

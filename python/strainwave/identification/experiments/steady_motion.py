@@ -9,9 +9,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.analysis.branches import noise, thinned
-from strainwave.identification.fitting.covariance import posterior_of
-from strainwave.identification.fitting.noise import chance_of_gain, correlation_length
+from strainwave.analysis.branches import thinned
+from strainwave.statistics.covariance import posterior_of
+from strainwave.statistics.residuals import chance_of_gain, correlation_length
+from strainwave.statistics.scale import noise_sigma
 
 Array = NDArray[np.float64]
 
@@ -74,7 +75,7 @@ def constant_speeds(time: Array, angle: Array) -> list[slice]:
     ahead = np.arange(rows - apart)
     elapsed = np.maximum(time[ahead + apart] - time[ahead], 1e-300)
     speed = (angle[ahead + apart] - angle[ahead]) / elapsed
-    least = MIN_MOTION_SIGMA * noise(angle) / float(np.median(elapsed))
+    least = MIN_MOTION_SIGMA * noise_sigma(angle) / float(np.median(elapsed))
     moving = np.abs(speed) > max(MIN_MOVING_SPEED * float(np.abs(speed).max()), least)
     ways = np.where(moving, np.sign(speed), 0.0)
     there = np.flatnonzero(ways)

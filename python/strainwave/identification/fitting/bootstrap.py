@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.messages import listed, quoted
+from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 LENGTHS_PER_BLOCK = 4.0  # correlation lengths (assumed; bias of the variance falls with it, its scatter grows)

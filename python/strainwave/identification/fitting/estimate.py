@@ -8,8 +8,7 @@ import numpy as np
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
-
-ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
+from strainwave.statistics.student import ONE_SIGMA, student
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +54,3 @@ class Estimate(ComparedByFields):
         confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
         reach = self.sigma * student(confidence, self.freedom) / student(ONE_SIGMA, self.freedom)
         return self.value - reach, self.value + reach
-
-
-def student(confidence: float, freedom: float) -> float:
-    """Return half the width of the interval that contains Student's variable with this probability.
-
-    >>> round(student(0.95, 4.0), 3)
-    2.776
-    """
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.5 + 0.5 * confidence))

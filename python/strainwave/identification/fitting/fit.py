@@ -22,11 +22,11 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
+from strainwave.statistics.residuals import correlation_length
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.problem import MIN_NOISE
 from strainwave.parameters import Parameter, every
+from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,10 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.statistics.scale import robust_sigma
+
 Array = NDArray[np.float64]
 LossName = Literal["linear", "soft_l1"]
-NORMAL_MAD = 0.6744897501960817  # median of the absolute value of a standard normal variable
 
 
 class Loss(Protocol):
@@ -42,7 +43,7 @@ class SoftL1:
     """
 
     def sigma(self, residual: Array) -> Array:
-        return np.asarray(np.median(np.abs(residual), axis=1, keepdims=True) / NORMAL_MAD)
+        return robust_sigma(residual, axis=1)[:, np.newaxis]
 
     def cost(self, squares: Array) -> Array:
         root = np.sqrt(1.0 + squares)

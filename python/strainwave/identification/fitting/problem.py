@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
-from strainwave.identification.fitting.covariance import posterior_of
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
+from strainwave.statistics.covariance import posterior_of
+from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)

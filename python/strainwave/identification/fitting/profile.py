@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
-from strainwave.identification.fitting.estimate import ONE_SIGMA, student
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
+from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 MAX_TRIALS = 24  # values tried to each side

@@ -19,7 +19,6 @@ from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.prepared_log import PreparedLog
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
@@ -27,6 +26,7 @@ from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, Fi
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of
 from strainwave.identification.results.motor_inertia import MOTOR
 from strainwave.orders.two_encoders import TransmissionError
+from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 

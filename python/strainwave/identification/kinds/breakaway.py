@@ -13,7 +13,6 @@ from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.experiments.presliding import breakaways
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.at_rest import (
     SIGNIFICANCE_SIGMA,
     WITH_BREAKAWAY,
@@ -31,6 +30,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import first
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,6 @@ from strainwave.identification.checks.sizes import opposes_motion
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
-from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.names import Side
@@ -27,6 +26,7 @@ from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, 
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.messages import listed
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 Together = tuple[tuple[FileResult, ...], GearSoFar]  # the results of several files, and the gear with them

@@ -24,7 +24,6 @@ from strainwave.identification.checks.sizes import (
 from strainwave.identification.checks.unexplained import explained
 from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
-from strainwave.identification.fitting.noise import correlation_length, rms
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
 from strainwave.identification.reading.column import Column
@@ -48,6 +47,7 @@ from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.prediction import Prediction, judged, model_error
 from strainwave.messages import as_option
+from strainwave.statistics.residuals import correlation_length, rms
 
 Array = NDArray[np.float64]
 MAX_ROWS = 500  # of a table that was measured point by point

@@ -10,7 +10,6 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.motion import fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.along_motion import fit_along_motion
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
@@ -27,6 +26,7 @@ from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
 from strainwave.messages import as_option
+from strainwave.statistics.residuals import correlation_length
 
 
 class Log(Kind):

@@ -17,7 +17,6 @@ from strainwave.identification.candidates.motion import bands
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain, held_out_rms, moving
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
-from strainwave.identification.fitting.noise import rms
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.changes import (
@@ -44,6 +43,7 @@ from strainwave.identification.results.prediction import Prediction, judged, val
 from strainwave.messages import listed
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ripple import ripple
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

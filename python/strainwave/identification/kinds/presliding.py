@@ -13,7 +13,6 @@ from strainwave.identification.candidates.presliding import PreslidingCandidate,
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, only_if_explained, share_left
 from strainwave.identification.experiments.presliding import PreslidingLoop
-from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.at_rest import (
     BRISTLES,
     SIGNIFICANCE_SIGMA,
@@ -31,6 +30,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.statistics.residuals import correlation_length
 
 
 class Presliding(AtRest):

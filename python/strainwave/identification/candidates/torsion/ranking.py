@@ -27,7 +27,7 @@ from strainwave.identification.candidates.torsion.selection import asked, simple
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
-from strainwave.identification.fitting.noise import correlation_length
+from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 MIN_EXCESS = 0.01  # of the error of the best: a smaller difference is none

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from strainwave.orders.floor import floor_under, taper
+from strainwave.statistics.floor import floor_under, taper
 
 
 @pytest.mark.parametrize("count", [3000, 3001])

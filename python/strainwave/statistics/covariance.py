@@ -22,8 +22,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.fitting.estimate import ONE_SIGMA, student
-from strainwave.identification.fitting.noise import andrews_lags, correlation_length, spectrum
+from strainwave.statistics.residuals import andrews_lags, correlation_length, spectrum
+from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 MIN_SINGULAR = 1e-10  # singular values below this share of the largest carry no information

@@ -7,9 +7,9 @@ import pytest
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.fitting.covariance import covariance_of, posterior_of
-from strainwave.identification.fitting.estimate import ONE_SIGMA, student
-from strainwave.identification.fitting.noise import autoregression, correlation_length, spectrum
+from strainwave.statistics.covariance import covariance_of, posterior_of
+from strainwave.statistics.residuals import autoregression, correlation_length, spectrum
+from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 N = 600

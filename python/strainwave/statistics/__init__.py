@@ -1,0 +1,1 @@
+"""Linear fits with their rank, covariance under correlated noise, noise floors, robust scale."""

@@ -1,0 +1,185 @@
+"""Linear least squares that says what the data separate.
+
+Each column is scaled to length 1. Its own share is the part of it that no other column makes up. A direction in which the
+coefficients can change without a change of the prediction has a singular value of nearly zero: the coefficients in it are not
+separated, only their combination is determined. The covariance is that of correlated residuals (`covariance.covariance_of`).
+Terms that may act as well, but are not needed, are rivals: with each of them the coefficients differ, and by Akaike's weights
+that spread is part of their standard deviation (Buckland, Burnham and Augustin, Biometrics 53 (1997) 603-618, eq. 9).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.statistics.covariance import covariance_of
+from strainwave.statistics.residuals import correlation_length
+
+Array = NDArray[np.float64]
+
+MIN_SINGULAR = 1e-8  # of the largest singular value of columns of length 1: a smaller one is rounding
+MIN_PART = 0.02  # of the largest change in a direction: a coefficient that changes less takes no part in the words
+
+
+@dataclass(frozen=True, eq=False)
+class LinearFit(ComparedByFields):
+    """Result of `linear_fit`.
+
+    Attributes:
+        names: of the columns
+        values: coefficients, shape (n,); of those that are not separated, the ones of least norm in units of their columns
+        covariance: of them, shape (n, n); infinite variance if a coefficient is not separated
+        own_share: part of each column that no other column makes up [1], shape (n,)
+        rank: number of combinations that the columns separate
+        not_separated: sums that are determined while their terms are not, in words
+        residual: target less prediction, shape (samples,)
+        freedom: degrees of freedom of the covariance
+    """
+
+    names: tuple[str, ...]
+    values: Array
+    covariance: Array
+    own_share: Array
+    rank: int
+    not_separated: tuple[str, ...]
+    residual: Array
+    freedom: float
+
+    @cached_property
+    def sigma(self) -> Array:
+        """Standard deviation of each coefficient, shape (n,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residual."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+
+def linear_fit(
+    columns: Array,
+    target: Array,
+    *,
+    weights: Array | None = None,
+    names: Sequence[str] = (),
+    rivals: Array | None = None,
+) -> LinearFit:
+    """Return the coefficients of columns by least squares, with their covariance and what is not separated.
+
+    Args:
+        columns: shape (samples, n)
+        target: shape (samples,)
+        weights: of the samples, as over the standard deviation of their noise, shape (samples,)
+        names: of the columns, shape (n,)
+        rivals: further columns that may act too, one at a time, shape (samples, m): how far each moves the coefficients is part
+            of their standard deviation
+
+    >>> speed = np.array([10.0, 10.0, 10.0, -10.0, -10.0, -10.0])
+    >>> torque = 0.064 * np.sign(speed) + 1e-4 * np.array([1.0, -1.0, 0.0, 0.0, 1.0, -1.0])
+    >>> fit = linear_fit(np.stack([np.sign(speed), speed], axis=1), torque, names=("coulomb", "viscous"))
+    >>> fit.rank, fit.not_separated
+    (1, ('coulomb + 10 viscous = 0.064',))
+    """
+    rows = np.ones(len(target)) if weights is None else weights
+    names = tuple(names) or tuple(f"column {place}" for place in range(columns.shape[1]))
+    scaled, goal = columns * rows[:, np.newaxis], target * rows
+    size = np.linalg.norm(scaled, axis=0)
+    unit = scaled / np.where(size > 0.0, size, 1.0)
+    _, singular, directions = np.linalg.svd(unit, full_matrices=False)
+    values = solved(scaled, goal)
+    left = goal - scaled @ values
+    covariance, freedom = covariance_of(scaled, left[np.newaxis])
+    if rivals is not None:
+        covariance = covariance + _of_choice(scaled, goal, rivals * rows[:, np.newaxis], values, left)
+    live = singular > MIN_SINGULAR * singular.max(initial=0.0)
+    null = directions[~live] / np.where(size > 0.0, size, 1.0)
+    words = _in_words(null, directions[live], np.where(size > 0.0, size, 1.0), values, names)
+    return LinearFit(names, values, covariance, own_share(unit), int(live.sum()), words, target - columns @ values, freedom)
+
+
+def solved(columns: Array, target: Array) -> Array:
+    """Return the coefficients of columns, scaled so that small ones count alike, shape (n,) or (n, k) for k targets."""
+    size = np.linalg.norm(columns, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    coefficients = np.linalg.lstsq(columns / size, target, rcond=MIN_SINGULAR)[0]
+    return np.asarray((coefficients.T / size).T)
+
+
+def own_share(columns: Array, others: Array | None = None) -> Array:
+    """Return the part of each column's length that the other columns, and further ones, do not make up [1], shape (n,).
+
+    >>> own_share(np.array([[1.0, 1.0], [0.0, 1.0]])).round(3).tolist()
+    [0.707, 0.707]
+    """
+    beside = np.zeros((len(columns), 0)) if others is None else others
+    found = []
+    for place, column in enumerate(columns.T):
+        rest = np.column_stack([np.delete(columns, place, axis=1), beside])
+        left = column - rest @ solved(rest, column) if rest.shape[1] else column
+        found.append(float(np.linalg.norm(left)) / max(float(np.linalg.norm(column)), 1e-300))
+    return np.array(found)
+
+
+def _of_choice(columns: Array, target: Array, rivals: Array, values: Array, left: Array) -> Array:
+    """Return the covariance of the coefficients by the choice among models with one rival more, by Akaike's weights.
+
+    Samples count as often as they are independent of each other.
+    """
+    independent = len(target) / correlation_length(left)
+    squares = max(float(left @ left), 1e-300)
+    moved, gains = [], []
+    for rival in rivals.T:
+        more = np.column_stack([columns, rival])
+        found = solved(more, target)
+        rest = target - more @ found
+        moved.append(found[:-1] - values)
+        gains.append(0.5 * independent * np.log(squares / max(float(rest @ rest), 1e-300)) - 1.0)
+    evidence = np.exp(np.array([0.0, *gains]) - max(0.0, *gains))
+    shares = evidence[1:] / evidence.sum()
+    steps = np.array(moved)
+    return np.asarray((steps.T * shares) @ steps)
+
+
+def _in_words(null: Array, live: Array, size: Array, values: Array, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the sums that stay the same in every direction that changes nothing: reduced rows of the live ones."""
+    if not len(null):
+        return ()
+    rows = _reduced(live * size)  # combinations that are determined, per unit of the coefficients
+    words = []
+    for row in rows:
+        largest = np.abs(row / size).max()
+        places = [place for place in range(len(row)) if abs(row[place] / size[place]) > MIN_PART * largest]
+        if len(places) < 2:
+            continue
+        first, *others = places
+        terms = "".join(f" {'+' if row[k] > 0.0 else '-'} {_factor(abs(row[k] / row[first]))}{names[k]}" for k in others)
+        words.append(f"{names[first]}{terms} = {float(row @ values / row[first]):.4g}")
+    return tuple(words)
+
+
+def _factor(size: float) -> str:
+    return "" if abs(size - 1.0) < 1e-3 else f"{size:.3g} "
+
+
+def _reduced(rows: Array) -> Array:
+    """Return rows that span the same, in reduced echelon form with the largest pivots (Gauss and Jordan)."""
+    rows, done = rows.copy(), 0
+    scale = np.abs(rows).max(initial=0.0)
+    for column in range(rows.shape[1]):
+        if done == len(rows):
+            break
+        pivot = done + int(np.argmax(np.abs(rows[done:, column])))
+        if abs(rows[pivot, column]) <= 1e-9 * scale:
+            continue
+        rows[[done, pivot]] = rows[[pivot, done]]
+        rows[done] /= rows[done, column]
+        for other in range(len(rows)):
+            if other != done:
+                rows[other] -= rows[other, column] * rows[done]
+        done += 1
+    return rows[:done]
