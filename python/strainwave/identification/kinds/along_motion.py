@@ -11,7 +11,7 @@ import numpy as np
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT
+from strainwave.identification.candidates.motion_model import INPUT, sliding
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
 from strainwave.identification.checks.motion import checks_of_motion
@@ -65,7 +65,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
-    law = best.fit.parts[0].model.gear.friction_input
+    law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
     level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
@@ -194,17 +194,20 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
-        law = encoder if estimate.path == "load.gravity_phase" else ""
-        sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
-        found = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
-        offset = independent.get(estimate.path, 0.0)
-        found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
+        path = plain(estimate.path)
+        law = encoder if path == "load.gravity_phase" else ""
+        sigma = float(np.hypot(max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0)))
+        found = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
+        offset = independent.get(path, 0.0)
+        found = found.resting_on(taken.relative, offset + induced.get(path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
-        found = found.sharing(rotors.get(estimate.path, 0.0))
-        if estimate.path in DRY_TORQUES and not best.log.both_ways:
+        found = found.sharing(rotors.get(path, 0.0))
+        if path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
         elif not found.is_phase:
             found = found.unless_uncertain()
+        elif path != "load.gravity_phase":
+            found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
         yield found.in_current() if in_current else found

@@ -196,7 +196,9 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
 
 def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     """Return the set with bristles that bend at reversals, if its friction is that of a log which shows how they bend."""
-    source = whole.sources.get("gear.friction_input.coulomb", Entry("not given")).source
+    source = next(
+        (entry for path, entry in whole.sources.items() if plain(path) == "gear.friction_input.coulomb"), Entry("not given")
+    ).source
     log = next(
         (each for each in files if each.bend > 0.0 and source.startswith("identified from") and each.name in source), None
     )
@@ -209,11 +211,12 @@ def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     fitted = Entry(f"fitted to reversals of {log.name}; a presliding loop determines it")
     unused = Entry("assumed: friction does not fall at low speed")
     sources = {path: whole.sources.get(path, unused) for path in own_paths("gear.friction_input", law)}
-    sources |= {
+    of_bristle = {
         "gear.friction_input.bristle_stiffness": fitted,
         "gear.friction_input.bristle_damping": Entry("assumed: none, as sliding damps as well"),
         "gear.friction_input.damping_fading": Entry("assumed: none"),
     }
+    sources |= {path: of_bristle[plain(path)] for path in sources if plain(path) in of_bristle}
     kept = {path: entry for path, entry in whole.sources.items() if not is_of(path, {"friction_input"})}
     return replace(whole, gear=whole.gear.replace(friction_input=law), sources=kept | sources)
 
