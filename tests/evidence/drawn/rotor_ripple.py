@@ -152,9 +152,7 @@ def judged(joint: Joint, found: Identified) -> Outcome:
     if found.failed or file.refused:
         return Outcome("refused", "; ".join(check.message for check in found.failed) or file.refused)
     prefix = "gear.friction_input."
-    values = {
-        each.path.removeprefix(prefix): each for each in file.estimates if each.path.startswith(prefix) and not each.why
-    }
+    values = {each.path.removeprefix(prefix): each for each in file.estimates if each.path.startswith(prefix) and not each.why}
     law = found.gear_set.gear.friction_input
     truths = {"coulomb": joint.coulomb, "viscous": joint.viscous}
     for name, orders, (order, size, _) in (
@@ -162,13 +160,14 @@ def judged(joint: Joint, found: Identified) -> Outcome:
         ("detent_torque", getattr(law, "detent_order", ()), joint.detent),
     ):
         truths |= {f"{name}[{place}]": size if order == each else 0.0 for place, each in enumerate(orders)}
-    pairs = [
-        (name, values[name].value, values[name].sigma, truth) for name, truth in truths.items() if name in values
-    ]
+    pairs = [(name, values[name].value, values[name].sigma, truth) for name, truth in truths.items() if name in values]
     result = compared(pairs)
     if result.verdict == "wrong":
         return result
-    missed = [name for name, (_, size, _) in (("amplitude", joint.wave), ("detent", joint.detent)) if size > 0.0
-              and not any(each.startswith(name) for each in values)]
+    missed = [
+        name
+        for name, (_, size, _) in (("amplitude", joint.wave), ("detent", joint.detent))
+        if size > 0.0 and not any(each.startswith(name) for each in values)
+    ]
     missed += [name for name in ("coulomb", "viscous") if name not in values]
     return Outcome("refused", f"no {missed} in {file.model}") if missed else result

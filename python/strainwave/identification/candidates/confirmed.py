@@ -56,6 +56,7 @@ def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
         they are drawn, from the first motion to the last
     """
     log, last = best.log, best.folds[-1].stretch
+    best = best if best.before_last is None else replace(best, model=best.before_last)
     found = best.fitted_to(~last[log.motion.rows])
     residual = best.left(found.model, nuisances_of(found), ~last)
     left, rows = residual[last], moving(log)

@@ -42,7 +42,7 @@ from strainwave.identification.candidates.plain import (
     moving,
     stretches,
 )
-from strainwave.identification.candidates.ripple import settled, with_ripple
+from strainwave.identification.candidates.ripple import FastDetent, settled, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -95,7 +95,24 @@ def fit_motion(
         best = other if other.explains_more_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
     others = sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
-    return tuple(replace(each, model=settled(each.model)) for each in (best, *others))
+    return tuple(_settled(each) for each in (best, *others))
+
+
+def _settled(candidate: MotionCandidate) -> MotionCandidate:
+    """Return the candidate with all that varies over the angle in its gear; without the last stretch for the error there."""
+    model = settled(candidate.model)
+    if not candidate.rippled:
+        return replace(candidate, model=model)
+    last, log = candidate.folds[-1], candidate.log
+    nuisances = np.array([each.start for each in log.nuisances])
+    rows = moving(log) & ~log.motion.resting
+    whole = FastDetent.of(log, model.drive, log.residual(candidate.predicting(candidate.model.drive), nuisances), rows)
+    detent = whole.significant()
+    if not len(detent.orders):
+        return replace(candidate, model=model, rippled=False)
+    left = log.residual(candidate.predicting(last.drive), last.nuisances)
+    before = FastDetent.of(log, model.drive, left, rows & ~last.stretch).among(detent.orders)
+    return replace(candidate, model=detent.added_to(model), rippled=False, detent=detent, before_last=before.added_to(model))
 
 
 def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import friction
+from strainwave import Drive, friction
+from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.motion_model import INPUT, WITHIN, MotionModel
+from strainwave.identification.dynamics.log import ORDERS
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
-from strainwave.statistics.linear_fit import own_share, solved
+from strainwave.statistics.linear_fit import linear_fit, own_share, solved
 from strainwave.statistics.residuals import chance_of_gain, correlation_length
 
 Array = NDArray[np.float64]
@@ -28,6 +30,7 @@ MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
 MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
 MIN_PASSED_SHARE = 0.3  # of the size of a wave, that the pass band leaves [1]
 MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
+SIGNIFICANCE_SIGMA = 3.0  # of a wave in the full band: a smaller one is left out
 MAX_DEPTH = 0.95  # of dry friction, that its waves take in all: friction stays positive
 
 
@@ -117,7 +120,7 @@ def _possible(log: MotionLog, ratio: float) -> Iterator[Wave]:
 
 
 def _most_explaining(columns: Array, left: Array, waves: Mapping[Wave, Array]) -> tuple[Wave, Array] | None:
-    """Return the wave that leaves least of a residual besides the columns of a model, and that rest; None if none is separable."""
+    """Return the wave that leaves least of a residual beside the columns of a model, and that rest; None if none is left."""
     found = list[tuple[float, Wave, Array]]()
     for wave, pair in waves.items():
         if own_share(pair, columns).min() < MIN_OWN_SHARE:
@@ -137,8 +140,81 @@ def _in_words(waves: Sequence[Wave]) -> str:
     return " and ".join(names[kind] for kind in names if any(wave.kind == kind for wave in waves))
 
 
+@dataclass(frozen=True, eq=False)
+class FastDetent(ComparedByFields):
+    """A detent at orders that the pass band of a log does not contain, by what a model leaves in the full band.
+
+    Attributes:
+        orders: periods per turn of the input, shape (k,)
+        sizes: of the sine and, imaginary, of the cosine of the angle of the input [N.m], shape (k,)
+        sigmas: standard deviation of each size [N.m], shape (k,)
+    """
+
+    orders: Array
+    sizes: NDArray[np.complex128]
+    sigmas: Array
+
+    @classmethod
+    def of(cls, log: MotionLog, drive: Drive, residual: Array, rows: NDArray[np.bool_]) -> FastDetent:
+        """Return the detent that samples show, at orders that are no waves of the log, beside friction over the angle.
+
+        Args:
+            log: with the motion
+            drive: by which the effort rests on the torque
+            residual: measured less predicted effort, shape (m,)
+            rows: the samples, shape (m,)
+        """
+        known = {wave.order for wave in waves_of(log) if wave.kind == "detent"}
+        orders = [order for order in ORDERS if order not in known]
+        waves = [Wave("detent", order) for order in orders] + [Wave("friction", order) for order in orders]
+        columns = np.concatenate([wave.columns(log) for wave in waves])[:, rows].T
+        found = linear_fit(per_torque(drive, log.effort) * columns, residual[rows])
+        pairs, sigmas, shares = (each[: 2 * len(orders)].reshape(-1, 2) for each in (found.values, found.sigma, found.own_share))
+        sigma = np.where(shares.min(axis=1) > MIN_OWN_SHARE, sigmas.max(axis=1), np.inf)
+        return cls(np.array(orders), pairs[:, 0] + 1j * pairs[:, 1], sigma)
+
+    def significant(self) -> FastDetent:
+        """Return the same without waves that chance makes as large."""
+        shown = np.abs(self.sizes) > SIGNIFICANCE_SIGMA * self.sigmas
+        return FastDetent(self.orders[shown], self.sizes[shown], self.sigmas[shown])
+
+    def among(self, orders: Array) -> FastDetent:
+        """Return the same at some of its orders."""
+        shown = np.isin(self.orders, orders)
+        return FastDetent(self.orders[shown], self.sizes[shown], self.sigmas[shown])
+
+    def added_to(self, model: MotionModel) -> MotionModel:
+        """Return a model with this detent in its gear, as a number that is known."""
+        law: Any = model.drive.gear.friction_input
+        outer = law if isinstance(law, friction.Cyclic) else friction.Cyclic(law=law, viscous_share=0.0)
+        whole = outer.replace(
+            detent_order=[*outer.detent_order, *self.orders.tolist()],
+            detent_torque=[*outer.detent_torque, *np.abs(self.sizes).tolist()],
+            detent_phase=[*outer.detent_phase, *np.angle(self.sizes).tolist()],
+        )
+        drive = model.drive.replace(gear=model.drive.gear.replace(friction_input=whole))
+        if outer is law:
+            return replace(model, drive=drive)
+        ties = {_within(path): _within(other) for path, other in model.ties.items()}
+        return replace(model, drive=drive, free=tuple(map(_within, model.free)), ties=ties)
+
+    def estimates(self, model: MotionModel) -> Iterator[tuple[str, str, float, float]]:
+        """Yield path, unit, value and standard deviation of its numbers in a model that has them."""
+        places = list(sliding_detents(model))
+        for order, size, sigma in zip(self.orders.tolist(), self.sizes.tolist(), self.sigmas.tolist(), strict=True):
+            place = places.index(order)
+            yield f"{INPUT}detent_torque[{place}]", "N.m", abs(size), sigma
+            yield f"{INPUT}detent_phase[{place}]", "rad", float(np.angle(size)), sigma / abs(size)
+
+
+def sliding_detents(model: MotionModel) -> Sequence[float]:
+    """Return the orders of the detent in the gear of a model."""
+    law: Any = model.drive.gear.friction_input
+    return tuple(law.detent_order) if isinstance(law, friction.Cyclic) else ()
+
+
 def settled(model: MotionModel) -> MotionModel:
-    """Return the model with the waves of its log in the gear; the same without waves, or if friction would not stay positive."""
+    """Return the model with the waves of its log in the gear; the same if it has none, or friction would become negative."""
     values = {each.name: each.start for each in model.log.nuisances}
     waves = list(waves_of(model.log))
     law = model.law

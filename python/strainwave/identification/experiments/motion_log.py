@@ -328,7 +328,10 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
 
 
 def _hold(drive: Drive) -> float:
-    """Return the largest torque at the input that friction there balances at rest, on average over the angle [N.m]; a bristle's is its breakaway."""
+    """Return the largest torque at the input that friction there balances at rest, on average over the angle [N.m].
+
+    That of a bristle is its breakaway.
+    """
     law: Any = drive.gear.friction_input
     while hasattr(law, "law"):
         law = law.law

@@ -51,7 +51,10 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     of_model = [*_delay(best), *_other_laws(best, others, in_current)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
-    estimates, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
+    estimates, checks = (
+        [*_of_motion(best, others, taken), *_of_detent(best, taken)],
+        list(held_out_error(held_out, file.path.name, file.neighbours)),
+    )
     if not in_current:
         known = _with_friction(known, best, estimates, file.path.name)
     between = FileResult(file.path.name)
@@ -172,6 +175,13 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
         f"{given:.3g} with motor and gear",
         "see whether load_inertia, motor_inertia, ratio and torque constant are right",
     )  # fmt: skip
+
+
+def _of_detent(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:
+    """Yield the estimates of a detent that the full band alone shows."""
+    for path, unit, value, sigma in () if best.detent is None else best.detent.estimates(best.model):
+        found = FileEstimate(path, unit, value, sigma, "").resting_on(taken.relative).resting_on(taken.of_resistance)
+        yield found.in_current() if taken.in_current else found
 
 
 def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[FileEstimate]:
