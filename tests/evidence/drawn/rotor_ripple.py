@@ -19,7 +19,6 @@ from tests.evidence.drawn.outcome import Outcome, compared
 Array = NDArray[np.float64]
 
 RATIOS = (30.0, 50.0, 80.0, 100.0, 120.0, 160.0)
-MIN_ANGLE_RATIO = 20.0  # of the output's travel at the input over one turn
 
 
 @dataclass(frozen=True)
@@ -148,7 +147,7 @@ def outcome(seed: int) -> Outcome:
 
 def judged(joint: Joint, found: Identified) -> Outcome:
     """Return the outcome of what was identified of a joint."""
-    (file,) = found.files
+    file = found.files[0]
     if found.failed or file.refused:
         return Outcome("refused", "; ".join(check.message for check in found.failed) or file.refused)
     prefix = "gear.friction_input."

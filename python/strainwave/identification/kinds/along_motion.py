@@ -51,10 +51,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     of_model = [*_delay(best), *_other_laws(best, others, in_current)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
-    estimates, checks = (
-        [*_of_motion(best, others, taken), *_of_detent(best, taken)],
-        list(held_out_error(held_out, file.path.name, file.neighbours)),
-    )
+    estimates = [*_of_motion(best, others, taken), *_of_detent(best, taken)]
+    checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     if not in_current:
         known = _with_friction(known, best, estimates, file.path.name)
     between = FileResult(file.path.name)
