@@ -169,7 +169,8 @@ class FastDetent(ComparedByFields):
         waves = [Wave("detent", order) for order in orders] + [Wave("friction", order) for order in orders]
         columns = np.concatenate([wave.columns(log) for wave in waves])[:, rows].T
         found = linear_fit(per_torque(drive, log.effort) * columns, residual[rows])
-        pairs, sigmas, shares = (each[: 2 * len(orders)].reshape(-1, 2) for each in (found.values, found.sigma, found.own_share))
+        own = (each[: 2 * len(orders)].reshape(-1, 2) for each in (found.values, found.sigma, found.own_share))
+        pairs, sigmas, shares = own
         sigma = np.where(shares.min(axis=1) > MIN_OWN_SHARE, sigmas.max(axis=1), np.inf)
         return cls(np.array(orders), pairs[:, 0] + 1j * pairs[:, 1], sigma)
 

@@ -25,6 +25,7 @@ from strainwave.identification.results.file_result import IN_CURRENT, FileEstima
 from strainwave.identification.results.gear_so_far import is_of, plain, source_of
 from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
+from strainwave.parameters import gear_numbers
 
 Array = NDArray[np.float64]
 
@@ -210,7 +211,8 @@ def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
         return whole
     fitted = Entry(f"fitted to reversals of {log.name}; a presliding loop determines it")
     unused = Entry("assumed: friction does not fall at low speed")
-    sources = {path: whole.sources.get(path, unused) for path in own_paths("gear.friction_input", law)}
+    gear = whole.gear.replace(friction_input=law)
+    sources = {path: whole.sources.get(path, unused) for path in gear_numbers(gear) if is_of(path, {"friction_input"})}
     of_bristle = {
         "gear.friction_input.bristle_stiffness": fitted,
         "gear.friction_input.bristle_damping": Entry("assumed: none, as sliding damps as well"),
@@ -218,7 +220,7 @@ def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     }
     sources |= {path: of_bristle[plain(path)] for path in sources if plain(path) in of_bristle}
     kept = {path: entry for path, entry in whole.sources.items() if not is_of(path, {"friction_input"})}
-    return replace(whole, gear=whole.gear.replace(friction_input=law), sources=kept | sources)
+    return replace(whole, gear=gear, sources=kept | sources)
 
 
 def _with_part(whole: GearSet, part: str, model: Any, sources: Mapping[str, Entry]) -> GearSet:
