@@ -15,6 +15,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
@@ -106,14 +107,13 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
     if not {"voltage", "current"} <= set(recording.names):
         return
     columns = np.stack([recording["current"], speed, np.ones_like(speed)], axis=1)
-    size = np.linalg.norm(columns, axis=0)
-    if not (size > 0.0).all():
+    if not columns.any(axis=0).all():
         return
-    found = np.linalg.lstsq(columns / size, recording["voltage"], rcond=1e-8)[0]
-    left = recording["voltage"] - columns / size @ found
-    blocks = [float(np.mean(each)) for each in np.array_split(left * columns[:, 1] / size[1], RECORD_BLOCKS)]
-    sigma = float(np.std(blocks, ddof=1)) * len(left) / np.sqrt(RECORD_BLOCKS) / size[1]
-    induced = float(found[1] / size[1])
+    found = solved(columns, recording["voltage"])
+    left = recording["voltage"] - columns @ found
+    scores = [float(np.mean(each)) for each in np.array_split(left * speed, RECORD_BLOCKS)]
+    sigma = float(np.std(scores, ddof=1)) * len(left) / np.sqrt(RECORD_BLOCKS) / float(speed @ speed)
+    induced = float(found[1])
     if not sigma < MAX_CONSTANT_SIGMA * abs(induced):
         return
     off = abs(abs(induced) / constant - 1.0)
