@@ -80,10 +80,11 @@ inline constexpr long long rounder_bits = 0x4338000000000000;
 template <class L, int n>
 constexpr L polynomial(const double (&c)[n], const L& x) {
     const L x2 = x * x, x4 = x2 * x2;
-    L sum[4]{};
-    for (int k = (n - 1) / 4 * 4; k >= 0; k -= 4)
-        for (int j = 0; j < 4; ++j)
-            if (k + j < n) sum[j] = sum[j] * x4 + c[k + j];
+    constexpr int top = (n - 1) / 4 * 4;
+    L sum[4];
+    for (int j = 0; j < 4; ++j) sum[j] = everywhere<L>(top + j < n ? c[top + j] : 0.0);
+    for (int k = top - 4; k >= 0; k -= 4)
+        for (int j = 0; j < 4; ++j) sum[j] = sum[j] * x4 + c[k + j];
     return (sum[0] + sum[1] * x) + (sum[2] + sum[3] * x) * x2;
 }
 
