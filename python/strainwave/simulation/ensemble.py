@@ -259,7 +259,7 @@ class _Plan(ComparedByFields):
         excitation.check_laid_out(min(dt, sample))
         time_grid = excitation.time_grid(dt, sample, instants)
         return cls(
-            drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid), recorded, threads,
+            drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid.instants), recorded, threads,
             backend,
         )  # fmt: skip
 
