@@ -81,6 +81,7 @@ inline void evaluate_together(const Signal& signal, const double* instants, Side
 using Evaluate = void(const Signal& signal, const double* instants, std::size_t count, Side side, double* values, double* rates);
 inline void evaluate_packs(const Signal& signal, const double* instants, std::size_t count, Side side, double* values,
                            double* rates) {
+    if (count == 0) return;
     const std::size_t whole = count / lanes * lanes, rest = count - whole;
     Line line(signal, *instants, side);
     for (std::size_t i = 0; i < whole; i += lanes) evaluate_together(signal, instants + i, side, line, values + i, rates + i);
@@ -91,8 +92,8 @@ inline void evaluate_packs(const Signal& signal, const double* instants, std::si
     std::copy(last_values, last_values + rest, values + whole);
     std::copy(last_rates, last_rates + rest, rates + whole);
 }
-// Vectors of AVX2 pass no call here: a function compiled without it would look for them elsewhere.
-#if defined(__x86_64__) && defined(__OPTIMIZE__)
+// GCC inlines all calls, Clang those of the first level alone: a vector of AVX2 must pass no call to a function compiled without.
+#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__clang__)
 [[gnu::target("avx2"), gnu::flatten]] void evaluate_by_avx2(const Signal& signal, const double* instants, std::size_t count,
                                                             Side side, double* values, double* rates) {
     evaluate_packs(signal, instants, count, side, values, rates);
@@ -102,8 +103,7 @@ Evaluate& evaluation() { return instruction_set() == "baseline" ? evaluate_packs
 Evaluate& evaluation() { return evaluate_packs; }
 #endif
 
-/// Ends of steps at which a piece of the signal begins: the left limits there go to every third of `inputs` from the end of a step
-/// on.
+/// Writes the left limits of a signal, and of its rate, at the ends of steps at which a piece begins.
 void lay_out_left_limits(const Signal& signal, const double* instants, std::size_t steps, double* values, double* rates) {
     const auto ends = instants + 1, last = ends + steps;
     const auto& starts = signal.start;  // of pieces, at which the left limits are others
