@@ -29,6 +29,7 @@ MIN_INPUT_TURNS = 2.0  # of a record that separates a wave over the input's turn
 MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
 MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
 MIN_PASSED_SHARE = 0.3  # of the size of a wave, that the pass band leaves [1]
+MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller ones of it
 MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
 SIGNIFICANCE_SIGMA = 3.0  # of a wave in the full band: a smaller one is left out
 MAX_DEPTH = 0.95  # of dry friction, that its waves take in all: friction stays positive
@@ -94,14 +95,21 @@ def with_ripple(model: MotionModel) -> MotionModel | None:
         chosen[wave] = passed[wave]
     if not chosen:
         return None
-    waves = sorted(chosen)
-    found = solved(np.column_stack([base, *(chosen[wave] for wave in waves)]), left)[base.shape[1] :]
+    sizes = np.hypot(*_sizes(base, chosen, left).reshape(-1, 2).T)
+    chosen = {wave: each for (wave, each), size in zip(chosen.items(), sizes, strict=True) if size > MIN_SIZE * sizes.max()}
+    chosen = dict(sorted(chosen.items(), key=lambda item: item[0]))
+    waves, found = list(chosen), _sizes(base, chosen, left)
     named = {name: row for wave in waves for name, row in zip(wave.names, series[wave], strict=True)}
     before = {each.name: each.start for each in log.nuisances} | dict(zip(named, found.tolist(), strict=True))
     rippled = log.with_waves(named)
     return replace(
         model, name=f"{model.name}, {_in_words(waves)}", log=rippled.starting([before[each.name] for each in rippled.nuisances])
     )
+
+
+def _sizes(base: Array, waves: Mapping[Wave, Array], left: Array) -> Array:
+    """Return the sizes of sine and cosine of waves besides other terms [N.m], shape (2 * waves,)."""
+    return solved(np.column_stack([base, *waves.values()]), left)[base.shape[1] :]
 
 
 def _possible(log: MotionLog, ratio: float) -> Iterator[Wave]:
