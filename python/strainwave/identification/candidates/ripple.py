@@ -30,6 +30,8 @@ MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
 MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
 MIN_PASSED_SHARE = 0.3  # of the size of a wave, that the pass band leaves [1]
 MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller ones of it
+MIN_FAST_SIZE = 0.1  # of the largest wave that the full band alone shows
+FAST_BIAS = 0.05  # of a wave in the full band: what numbers by the pass band and a smoothed angle make of it (assumed)
 MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
 SIGNIFICANCE_SIGMA = 3.0  # of a wave in the full band: a smaller one is left out
 MAX_DEPTH = 0.95  # of dry friction, that its waves take in all: friction stays positive
@@ -179,12 +181,14 @@ class FastDetent(ComparedByFields):
         found = linear_fit(per_torque(drive, log.effort) * columns, residual[rows])
         own = (each[: 2 * len(orders)].reshape(-1, 2) for each in (found.values, found.sigma, found.own_share))
         pairs, sigmas, shares = own
-        sigma = np.where(shares.min(axis=1) > MIN_OWN_SHARE, sigmas.max(axis=1), np.inf)
-        return cls(np.array(orders), pairs[:, 0] + 1j * pairs[:, 1], sigma)
+        sizes = pairs[:, 0] + 1j * pairs[:, 1]
+        sigma = np.hypot(sigmas.max(axis=1), FAST_BIAS * np.abs(sizes))
+        return cls(np.array(orders), sizes, np.where(shares.min(axis=1) > MIN_OWN_SHARE, sigma, np.inf))
 
     def significant(self) -> FastDetent:
         """Return the same without waves that chance makes as large."""
-        shown = np.abs(self.sizes) > SIGNIFICANCE_SIGMA * self.sigmas
+        sizes = np.abs(self.sizes)
+        shown = (sizes > SIGNIFICANCE_SIGMA * self.sigmas) & (sizes > MIN_FAST_SIZE * sizes.max(initial=0.0))
         return FastDetent(self.orders[shown], self.sizes[shown], self.sigmas[shown])
 
     def among(self, orders: Array) -> FastDetent:
