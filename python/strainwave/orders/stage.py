@@ -19,7 +19,7 @@ transient of the stage (PintelonSchoukens2012).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -36,6 +36,7 @@ SCORE_BLOCKS = 200  # of the record, over which scores are summed for the covari
 MIN_STAGE_GAIN = 30.0  # of the logarithm of the likelihood, from which the output stage is worth its two parameters
 STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
 DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
+MIN_SIGNAL_POWER = 30.0  # of a line over its noise [1], from which it counts for the output stage
 START_FREQUENCIES = 2.0 * pi * MAX_FREQUENCY * np.geomspace(0.004, 1.0, 12)  # initial natural frequencies [rad per sample]
 START_DAMPING = 0.1  # initial damping ratio [1]
 
@@ -97,8 +98,10 @@ class StageProblem:
         still = lines.fitted(None)
         if not dynamic:
             return lines.result(still)
-        moved = lines.fitted(lines.nearest(still.floor), still.floor)
-        return lines.result(moved if still.misfit - moved.misfit > MIN_STAGE_GAIN else still)
+        shown = lines.with_signal(still)
+        moved = shown.fitted(shown.nearest(still.floor), still.floor)
+        gain = lines.misfit(still, shown.counts) - lines.misfit(moved, shown.counts)
+        return shown.result(moved) if gain > MIN_STAGE_GAIN else lines.result(still)
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,6 @@ class _Fitted:
     stage: Stage | None
     values: Array  # in units in which each series has length 1
     floor: Array  # at each line
-    misfit: float  # minus the logarithm of the likelihood
 
 
 @dataclass(frozen=True)
@@ -119,6 +121,8 @@ class _Lines:
     error: Complex
     orders: Complex
     loads: Complex
+    counts: NDArray[np.bool_]  # lines that count
+    angle_noise: float  # power of a line
 
     @classmethod
     def of(cls, problem: StageProblem) -> _Lines:
@@ -133,7 +137,24 @@ class _Lines:
         straight = np.linspace(problem.angle[0], problem.angle[-1], count)
         s = (2j * pi * frequency[kept]).astype(np.complex128)
         error = problem.error - problem.error.mean()
-        return cls(count, s, lines(problem.angle - straight), lines(error), lines(problem.orders), lines(problem.loads))
+        noise = float(np.mean(np.diff(problem.angle, 4) ** 2)) / 70.0  # of white noise in fourth differences
+        series = (lines(problem.angle - straight), lines(error), lines(problem.orders), lines(problem.loads))
+        return cls(count, s, *series, np.ones(len(s), dtype=bool), noise)
+
+    def with_signal(self, still: _Fitted) -> _Lines:
+        """Return the problem with the lines alone in which the motion or an order stands out of its noise.
+
+        In the others the angle is the noise of its encoder. The error contains this noise too, and the output does not follow
+        it, as above a natural frequency: it would be taken for one.
+        """
+        moved = np.abs(self.angle) ** 2 > MIN_SIGNAL_POWER * self.angle_noise
+        waves = np.abs(self.orders @ still.values[: self.orders.shape[1]]) ** 2 > MIN_SIGNAL_POWER * still.floor
+        return replace(self, counts=moved | waves)
+
+    def misfit(self, fitted: _Fitted, counts: NDArray[np.bool_]) -> float:
+        """Return minus the logarithm of the likelihood of some lines."""
+        power = np.abs(self.left(fitted.stage, fitted.values)) ** 2
+        return float(np.sum((np.log(fitted.floor) + power / fitted.floor)[counts]))
 
     def nearest(self, floor: Array) -> Stage:
         """Return the best initial stage."""
@@ -158,8 +179,7 @@ class _Lines:
             values, _ = self.misses(stage, floor)
             left = self.left(stage, values)
             floor = floor_of(np.abs(left) ** 2, self.count).at(np.abs(self.s.imag) / (2.0 * pi))
-        misfit = float(np.sum(np.log(floor) + np.abs(left) ** 2 / floor))
-        return _Fitted(stage, values, floor, misfit)
+        return _Fitted(stage, values, floor)
 
     def design(self, stage: Stage | None) -> tuple[Complex, Complex]:
         """Return the series of the error, shape (lines, n), and the error compared with them, shape (lines,)."""
@@ -179,7 +199,7 @@ class _Lines:
         from scipy.linalg import lstsq
 
         series, compared = self.design(stage)
-        weight = np.sqrt(2.0 / floor)
+        weight = self.counts * np.sqrt(2.0 / floor)
         matrix, target = _stacked(series * weight[:, None]), _stacked(compared * weight)
         size = np.linalg.norm(matrix, axis=0)
         size[size == 0.0] = 1.0
@@ -191,7 +211,7 @@ class _Lines:
         return compared - series @ values
 
     def result(self, found: _Fitted) -> Regressed:
-        weight = np.sqrt(2.0 / found.floor)
+        weight = self.counts * np.sqrt(2.0 / found.floor)
         series, _ = self.design(found.stage)
         columns = [_stacked(series * weight[:, None])]
         if found.stage is not None:
