@@ -103,9 +103,13 @@ class StageProblem:
         shown = lines.with_signal(still)
         moved = shown.fitted(shown.nearest(still.floor), still.floor)
         gain = lines.misfit(still, shown.counts) - lines.misfit(moved, shown.counts)
-        is_shown = gain > MIN_STAGE_GAIN and lines.is_within_bounds(moved)
-        is_shown = is_shown and shown.own_share_of_frequency(moved) > MIN_OWN_SHARE
-        return shown.result(moved) if is_shown else lines.result(still)
+        if gain <= MIN_STAGE_GAIN or shown.own_share_of_frequency(moved) <= MIN_OWN_SHARE:
+            return lines.result(still)
+        if lines.is_within_bounds(moved):
+            return shown.result(moved)
+        measured = lines.result(still)
+        apart = moved.values[: len(measured.values)] - measured.values  # what the choice of the model leaves open
+        return replace(measured, covariance=measured.covariance + np.outer(apart, apart))
 
 
 @dataclass(frozen=True)
@@ -230,7 +234,7 @@ class _Lines:
         return compared - series @ values
 
     def result(self, found: _Fitted) -> Regressed:
-        weight = self.counts * np.sqrt(2.0 / found.floor)
+        weight: Array = self.counts * np.sqrt(2.0 / found.floor)
         series, _ = self.design(found.stage)
         columns = [_stacked(series * weight[:, None])]
         if found.stage is not None:
@@ -258,7 +262,7 @@ class _Lines:
 
         It is zero at one speed, one way: there another amplitude and phase of each order predict the same.
         """
-        weight = self.counts * np.sqrt(2.0 / found.floor)
+        weight: Array = self.counts * np.sqrt(2.0 / found.floor)
         linear = _stacked(self.design(found.stage)[0] * weight[:, None])
         return float(own_share(self._slope(found, 0, weight)[:, None], linear)[0])
 

@@ -21,7 +21,12 @@ def outcome(seed: int) -> Outcome:
     swing, top = random.uniform(0.3, 3.0), random.uniform(0.03, 0.3)  # rad, rad/s
     per_period = random.uniform(8.0, 40.0)  # samples
     step = tau / (order * top * per_period)
-    cycles = {"one way": 0.5, "there and back": 1.0, "triangle": float(random.integers(2, 5)), "sine": float(random.integers(1, 5))}
+    cycles = {
+        "one way": 0.5,
+        "there and back": 1.0,
+        "triangle": float(random.integers(2, 5)),
+        "sine": float(random.integers(1, 5)),
+    }
     length = cycles[motion] * 4.0 * swing / top
     time = np.arange(0.0, min(length, 40_000 * step), step)
     share = time * cycles[motion] / length
@@ -37,7 +42,8 @@ def outcome(seed: int) -> Outcome:
     columns = {"time": time, "output_angle": measured, "current": current}
     recording = sw.Recording(columns, {"time": "s", "output_angle": "rad", "current": "A"})
     what = (
-        f"{motion}, {len(time)} samples, {per_period:.0f} a period, ratio {ratio:g} {'given' if known else 'blind'}, order {order:g}, swing {swing:.2f}, "
+        f"{motion}, {len(time)} samples, {per_period:.0f} a period, ratio {ratio:g} {'given' if known else 'blind'}, "
+        f"order {order:g}, swing {swing:.2f}, "
         f"{1e3 * amplitude:.3g} mA in {1e3 * noise:.2g}, error {1e6 * error:.0f} µrad"
     )
     try:
@@ -50,7 +56,11 @@ def outcome(seed: int) -> Outcome:
     if line is None:
         verdict = "refused" if threshold > amplitude else "wrong"
         return Outcome(verdict, f"{what}: no line, threshold {1e3 * threshold:.3g}")
-    ghosts = [each for each in result.lines if each is not line and each.amplitude > MAX_GHOST_SHARE * amplitude and each.kind != "time"]
+    ghosts = [
+        each
+        for each in result.lines
+        if each is not line and each.amplitude > MAX_GHOST_SHARE * amplitude and each.kind != "time"
+    ]
     values = [each for each in (line.forward, line.backward) if not np.isnan(each)]
     found = compared([("line [mA]", 1e3 * each, 1e3 * line.sigma, 1e3 * amplitude) for each in values], floor=0.02)
     ghost = f"; ghosts {[(round(each.order, 1), round(1e3 * each.amplitude, 1)) for each in ghosts]}" if ghosts else ""

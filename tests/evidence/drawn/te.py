@@ -1,4 +1,4 @@
-"""Transmission error of two encoders: one speed, both ways, a sine, a ramp or steps; with and without an output that vibrates."""
+"""Transmission error of two encoders: one speed, both ways, a sine, a ramp or steps; the output may vibrate."""
 
 from __future__ import annotations
 
@@ -65,7 +65,11 @@ def outcome(seed: int) -> Outcome:
     frequency, damping, vibrates = random.uniform(0.1, 3.0) * 2.0 * top, random.uniform(0.02, 0.3), random.random() < 0.4
     output = vibrating(goal, float(time[1] - time[0]), frequency, damping) if vibrates else goal
     output = output + random.choice([0.0, 3e-4]) * np.sin(output + 1.0)  # a disc out of centre
-    output = output - 0.5 * random.choice([0.0, 2e-4]) * np.tanh(speed / (0.01 * top)) if motion in ("sine", "there and back") else output
+    output = (
+        output - 0.5 * random.choice([0.0, 2e-4]) * np.tanh(speed / (0.01 * top))
+        if motion in ("sine", "there and back")
+        else output
+    )
     kept = (time >= 0.0) & (np.arange(len(time)) % OVERSAMPLING == 0)
     time, theta, output = time[kept], theta[kept], output[kept]
     if random.random() < 0.3:
@@ -94,6 +98,7 @@ def outcome(seed: int) -> Outcome:
         pairs.append((f"order {order:g}", 1e6 * found.amplitude, 1e6 * found.amplitude_sigma, 1e6 * amplitude * gain))
     if not pairs:
         return Outcome("refused", "; ".join(result.remarks))
-    what = f"{motion}, {turns:.2g} turns, ratio {ratio:g}, {count} samples, vibrates {vibrates} at {frequency / 2.0 / top:.2f} of order 2"
+    what = f"{motion}, {turns:.2g} turns, ratio {ratio:g}, {count} samples"
+    what += f", vibrates at {frequency / 2.0 / top:.2f} of order 2" if vibrates else ""
     found = compared(pairs, floor=0.005)
     return Outcome(found.verdict, f"{what}; stage {result.natural_frequency}; {found.message}")

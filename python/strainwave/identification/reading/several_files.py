@@ -175,7 +175,7 @@ def _are_one_run(one: Recording, other: Recording) -> bool:
     time = np.linspace(max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1]), SAMPLES_COMPARED)
     if not time[-1] > time[0]:
         return False
-    a, b = (detrend(np.interp(time, log.time, angle)) for log, angle in zip((one, other), angles, strict=True))
+    a, b = detrend(np.interp(time, one.time, angles[0])), detrend(np.interp(time, other.time, angles[1]))
     return _are_proportional(a, b, MAX_OFF_RUN) and _may_be_one_effort(one, other, time)
 
 
