@@ -234,7 +234,7 @@ class _Lines:
         return compared - series @ values
 
     def result(self, found: _Fitted) -> Regressed:
-        weight: Array = self.counts * np.sqrt(2.0 / found.floor)
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
         series, _ = self.design(found.stage)
         columns = [_stacked(series * weight[:, None])]
         if found.stage is not None:
@@ -262,7 +262,7 @@ class _Lines:
 
         It is zero at one speed, one way: there another amplitude and phase of each order predict the same.
         """
-        weight: Array = self.counts * np.sqrt(2.0 / found.floor)
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
         linear = _stacked(self.design(found.stage)[0] * weight[:, None])
         return float(own_share(self._slope(found, 0, weight)[:, None], linear)[0])
 

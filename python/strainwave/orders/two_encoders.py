@@ -152,8 +152,8 @@ def transmission_error(
         ValueError: an angle is missing or does not turn, the two do not belong together, or the ratio given is not theirs
 
     Valid where the twist is small and the output stage close to linear. Each order is corrected for the vibration of the output
-    with 10 % of its stiffness and 30 % of its damping uncertain, if orders pass at several speeds and determine it. At one
-    speed the vibration and other amplitudes predict the same: the amplitudes are those measured at that speed.
+    with 10 % of its stiffness and 30 % of its damping uncertain, if the record determines it: by several speeds, or both ways.
+    At one speed, one way, the vibration and other amplitudes predict the same: the amplitudes are those measured at that speed.
 
     >>> import strainwave as sw
     >>> time = np.arange(0.0, 20.0, 0.002)
