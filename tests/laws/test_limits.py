@@ -381,6 +381,23 @@ def test_modulations_multiply(
     assert law.hold(**at) == pytest.approx(factor * abs(dry), rel=1e-12)
 
 
+@given(torques, st.floats(0.0, 1.0), speeds, st.floats(-1e2, 1e2), st.floats(0.0, 1.0), st.floats(0.0, 0.9))
+def test_a_detent_is_the_same_both_ways_and_adds_to_what_holds_at_rest(
+    level: float, viscous: float, speed: float, angle: float, share: float, depth: float
+) -> None:
+    wave, detent = {"order": 2.0, "amplitude": 0.1, "phase": 0.4}, depth * 0.9 * level
+    plain = Cyclic(law=Coulomb(coulomb=level, viscous=viscous), **wave, viscous_share=share)
+    law = plain.replace(detent_order=[3.0, 0.5], detent_torque=[0.7 * detent, 0.3 * detent], detent_phase=[0.2, -1.0])
+    stored = detent * (0.7 * math.sin(3.0 * angle + 0.2) + 0.3 * math.sin(0.5 * angle - 1.0))
+    factor = 0.1 * math.sin(2.0 * angle + 0.4)
+    sliding = (1.0 + factor) * level * math.copysign(1.0, speed) + (1.0 + share * factor) * viscous * speed
+    within = pytest.approx(0.0, abs=1e-12 * (level + viscous * abs(speed)))
+    assert law.steady(speed, angle=angle) - sliding - stored == within
+    forward, backward = law.hold([1.0, -1.0], angle=angle)
+    assert forward - (1.0 + factor) * level - stored == within
+    assert backward - (1.0 + factor) * level + stored == within
+
+
 # Kinematic error
 
 

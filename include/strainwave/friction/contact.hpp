@@ -68,7 +68,25 @@ struct Modulated {
     using State = typename Law::State;
 
     constexpr Contact<S> modulated(const Contact<S>& contact) const { return contact.scaled(modulator.factors(contact)); }
+    constexpr S detent(const Contact<S>& contact) const
+        requires requires { modulator.detent(contact); }
+    {
+        return modulator.detent(contact);
+    }
 };
+
+/// A modulation that adds a torque [N.m] over the angle, the same in both directions of motion.
+template <class Law, class S>
+concept Detaining = requires(const Law& law, const Contact<S>& contact) { law.detent(contact); };
+
+/// A torque of the law within a modulation, with the detent that the modulation adds.
+template <class Law, class S>
+constexpr S with_detent(const Law& law, const S& torque, const Contact<S>& contact) {
+    if constexpr (Detaining<Law, S>)
+        return torque + law.detent(contact);
+    else
+        return torque;
+}
 
 // The verbs of friction, for plain laws and modulated ones, with or without memory.
 
@@ -76,7 +94,7 @@ struct Modulated {
 template <class Law, class S>
 constexpr S torque(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)
-        return torque(law.law, x, law.modulated(contact));
+        return with_detent(law, S(torque(law.law, x, law.modulated(contact))), contact);
     else
         return law.torque(x, contact);
 }
@@ -93,7 +111,7 @@ template <class Law, class S>
 constexpr Response<S, typename Law::State> response(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>) {
         const auto [torque, rate] = response(law.law, x, law.modulated(contact));
-        return {torque, rate};
+        return {with_detent(law, S(torque), contact), rate};
     } else if constexpr (requires { law.response(x, contact); }) {
         return law.response(x, contact);
     } else if constexpr (requires { law.torque(x, contact, x); }) {
@@ -116,12 +134,15 @@ constexpr bool set_valued(const Law& law) {
         return SetValued<Law>;
 }
 
-/// The largest torque [N.m] balanced at rest; none by a law that is not set-valued.
+/// The largest torque [N.m] balanced at rest; none by a law that is not set-valued. A detent adds to what it resists.
 template <class Law, class S>
 constexpr S hold(const Law& law, const Contact<S>& contact) {
-    if constexpr (Modulation<Law>)
-        return hold(law.law, law.modulated(contact));
-    else if constexpr (SetValued<Law>)
+    if constexpr (Modulation<Law>) {
+        const S held = hold(law.law, law.modulated(contact));
+        if constexpr (Detaining<Law, S>)
+            if (set_valued(law)) return max(held + contact.sliding * law.detent(contact), S(0.0));
+        return held;
+    } else if constexpr (SetValued<Law>)
         return law.hold(contact);
     else
         return S(0.0);

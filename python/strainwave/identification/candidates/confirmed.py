@@ -15,6 +15,7 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import held_out_residuals, moving
 from strainwave.identification.fitting.fit import solved_problem
+from strainwave.identification.results.gear_so_far import plain
 from strainwave.identification.results.held_out import HeldOut
 
 Array = NDArray[np.float64]
@@ -55,6 +56,7 @@ def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
         they are drawn, from the first motion to the last
     """
     log, last = best.log, best.folds[-1].stretch
+    best = best if best.before_last is None else replace(best, model=best.before_last)
     found = best.fitted_to(~last[log.motion.rows])
     residual = best.left(found.model, nuisances_of(found), ~last)
     left, rows = residual[last], moving(log)
@@ -88,7 +90,7 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
     blocks = [(rows >= each[0]) & (rows <= each[-1]) for each in np.array_split(rows, JACKKNIFE_BLOCKS)]
     without = np.array(list(without_rows(problem, x, blocks, ())))
     spread = np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(without, axis=0))
-    return {each.path: float(sigma) for each, sigma in zip(problem.plan.unknowns, spread, strict=False)}
+    return {plain(each.path): float(sigma) for each, sigma in zip(problem.plan.unknowns, spread, strict=False)}
 
 
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
@@ -96,16 +98,16 @@ def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -
 
     Numbers of friction are compared within one law: those of another law have another meaning.
     """
-    values = dict(zip(best.model.free, best.values, strict=True))
+    values = dict(zip(map(plain, best.model.free), best.values, strict=True))
     found = dict.fromkeys(values, 0.0)
     for other in others:
         if not other.predicts_as_well_as(best):
             continue
         is_one_law = type(other.model.law) is type(best.model.law)
-        for path, value in zip(other.model.free, other.values, strict=True):
+        for path, value in zip(map(plain, other.model.free), other.values, strict=True):
             if path in found and (is_one_law or not path.startswith(INPUT)):
                 off = abs(value - values[path])
-                turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if path.endswith("_phase") else off
+                turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if "phase" in path else off
                 found[path] = max(found[path], float(turned))
     return found
 

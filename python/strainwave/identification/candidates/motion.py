@@ -42,6 +42,7 @@ from strainwave.identification.candidates.plain import (
     moving,
     stretches,
 )
+from strainwave.identification.candidates.ripple import FastDetent, settled, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -93,7 +94,25 @@ def fit_motion(
         other = _completed(search, min(found, key=lambda each: each.error_in_band))
         best = other if other.explains_more_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
-    return best, *sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
+    others = sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
+    return tuple(_settled(each) for each in (best, *others))
+
+
+def _settled(candidate: MotionCandidate) -> MotionCandidate:
+    """Return the candidate with all that varies over the angle in its gear; without the last stretch for the error there."""
+    model = settled(candidate.model)
+    if not candidate.rippled:
+        return replace(candidate, model=model)
+    last, log = candidate.folds[-1], candidate.log
+    nuisances = np.array([each.start for each in log.nuisances])
+    rows = moving(log) & ~log.motion.resting
+    whole = FastDetent.of(log, model.drive, log.residual(candidate.predicting(candidate.model.drive), nuisances), rows)
+    detent = whole.significant()
+    if not len(detent.orders):
+        return replace(candidate, model=model, rippled=False)
+    left = log.residual(candidate.predicting(last.drive), last.nuisances)
+    before = FastDetent.of(log, model.drive, left, rows & ~last.stretch).among(detent.orders)
+    return replace(candidate, model=detent.added_to(model), rippled=False, detent=detent, before_last=before.added_to(model))
 
 
 def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
@@ -104,9 +123,10 @@ def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
 
 def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     """Return the model without the parts that the record does not show, and with those that make it predict better."""
+    best = search.grown(best, [with_ripple])  # first, as what varies over the angle hides smaller parts
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
-    best = search.grown(best, list(PARTS))
+    best = search.grown(best, [*PARTS, with_ripple])
     return _with(best, _with_ripple(best))
 
 

@@ -14,6 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.leave_out import SHAPES, without_rows
 from strainwave.identification.candidates.motion_model import MotionModel, bristled
 from strainwave.identification.candidates.plain import MAX_RELATIVE_ERROR, moving
+from strainwave.identification.candidates.ripple import FastDetent
 from strainwave.identification.dynamics.log import ORDERS
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
@@ -62,6 +63,8 @@ class MotionCandidate(ComparedByFields):
         folds: the model without each stretch
         bend: angle of the input in which bristles bend at reversals [rad]; 0 for none
         rippled: True if a torque that repeats with the input's rotation is part of the prediction
+        detent: that torque, once it is in the gear of the model
+        before_last: the model with that torque by what comes before the last stretch
     """
 
     model: MotionModel
@@ -70,10 +73,13 @@ class MotionCandidate(ComparedByFields):
     folds: tuple[Fold, ...]
     bend: float = 0.0
     rippled: bool = False
+    detent: FastDetent | None = None
+    before_last: MotionModel | None = None
 
     @property
     def name(self) -> str:
-        more = [", bristles that bend at reversals"] * (self.bend > 0.0) + [", ripple"] * self.rippled
+        is_rippled = self.rippled or self.detent is not None
+        more = [", bristles that bend at reversals"] * (self.bend > 0.0) + [", a fast detent"] * is_rippled
         return "".join([self.model.name, *more])
 
     @property

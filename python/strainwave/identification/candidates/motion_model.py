@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from strainwave import Drive, friction
+from strainwave import Drive, _core, friction
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.steady_shapes import QUADRANTS
 from strainwave.identification.experiments.motion_log import MotionLog
 
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
+WITHIN = f"{INPUT}law."  # where friction stands that varies over the angle
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
 
 
@@ -38,13 +39,24 @@ class MotionModel(ComparedByFields):
 
     @property
     def law(self) -> Any:
-        """The friction at the input."""
-        return self.drive.gear.friction_input
+        """The friction at the input as it slides, without what varies it over the angle."""
+        return sliding(self.drive)
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of all numbers of the drive."""
+        return [path for path, *_ in _core.parameters(self.drive)]
 
     def having(self, what: str, *free: str, **parts: Any) -> MotionModel:
         """Return the same with other parts of the gear, and further numbers free."""
         drive = self.drive.replace(gear=self.drive.gear.replace(**parts))
         return replace(self, name=f"{self.name}, {what}", drive=drive, free=(*self.free, *free))
+
+
+def sliding(drive: Drive) -> Any:
+    """Return the friction at the input of a drive, without what varies it over the angle."""
+    law: Any = drive.gear.friction_input
+    return law.law if isinstance(law, friction.Cyclic) else law
 
 
 def without(free: Sequence[str], name: str) -> tuple[str, ...]:
@@ -103,7 +115,8 @@ def bristled(drive: Drive, bend: float) -> Drive:
         drive: with friction that slides, of Coulomb or Stribeck
         bend: angle of the input in which they bend [rad]
     """
-    law: Any = drive.gear.friction_input
+    outer: Any = drive.gear.friction_input
+    law = sliding(drive)
     if not isinstance(law, friction.Coulomb | friction.Stribeck) or min(law.coulomb, law.breakaway) <= 0.0:
         return drive
     speed = law.stribeck_speed if isinstance(law, friction.Stribeck) else 1.0
@@ -111,4 +124,5 @@ def bristled(drive: Drive, bend: float) -> Drive:
         coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=speed,
         bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
     )  # fmt: skip
-    return drive.replace(gear=drive.gear.replace(friction_input=bristle))
+    whole = outer.replace(law=bristle) if isinstance(outer, friction.Cyclic) else bristle
+    return drive.replace(gear=drive.gear.replace(friction_input=whole))

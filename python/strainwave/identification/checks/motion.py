@@ -254,6 +254,6 @@ def _determined(best: MotionCandidate, rows: NDArray[np.bool_]) -> Mapping[str, 
     return {
         each.path: each
         for each in found.estimates
-        if each.path not in nuisances and each.path not in best.model.ties and not each.path.endswith("_phase")
+        if each.path not in nuisances and each.path not in best.model.ties and "phase" not in each.path
         and not is_uncertain(each.value, each.sigma)
     }  # fmt: skip

@@ -11,7 +11,7 @@ import numpy as np
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT
+from strainwave.identification.candidates.motion_model import INPUT, sliding
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.logs import (
     held_out_error,
@@ -57,7 +57,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     of_model = [*_delay(best), *_other_laws(best, others, in_current), *_one_encoder(taken)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
-    estimates, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
+    estimates = [*_of_motion(best, others, taken), *_of_detent(best, taken)]
+    checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     if not in_current:
         known = _with_friction(known, best, estimates, file.path.name)
     between = FileResult(file.path.name)
@@ -71,7 +72,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
-    law = best.fit.parts[0].model.gear.friction_input
+    law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
     level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
@@ -197,6 +198,13 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     )  # fmt: skip
 
 
+def _of_detent(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:
+    """Yield the estimates of a detent that the full band alone shows."""
+    for path, unit, value, sigma in () if best.detent is None else best.detent.estimates(best.model):
+        found = FileEstimate(path, unit, value, sigma, "").resting_on(taken.relative).resting_on(taken.of_resistance)
+        yield found.in_current() if taken.in_current else found
+
+
 def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[FileEstimate]:
     """Yield the estimates of a log; each is as uncertain as the torque constant too, and inertia as that of the rotor."""
     drive, in_current = taken.drive, taken.in_current
@@ -217,17 +225,20 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
-        law = encoder if estimate.path == "load.gravity_phase" else ""
-        sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
-        found = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
-        offset = independent.get(estimate.path, 0.0)
-        found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
+        path = plain(estimate.path)
+        law = encoder if path == "load.gravity_phase" else ""
+        sigma = float(np.hypot(max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0)))
+        found = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
+        offset = independent.get(path, 0.0)
+        found = found.resting_on(taken.relative, offset + induced.get(path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
-        found = found.sharing(rotors.get(estimate.path, 0.0))
-        if estimate.path in DRY_TORQUES and not best.log.both_ways:
+        found = found.sharing(rotors.get(path, 0.0))
+        if path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
         elif not found.is_phase:
             found = found.unless_uncertain()
+        elif path != "load.gravity_phase":
+            found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
         yield found.in_current() if in_current else found

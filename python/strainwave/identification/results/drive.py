@@ -25,6 +25,7 @@ from strainwave.identification.results.file_result import IN_CURRENT, FileEstima
 from strainwave.identification.results.gear_so_far import is_of, plain, source_of
 from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
+from strainwave.parameters import gear_numbers
 
 Array = NDArray[np.float64]
 
@@ -196,7 +197,9 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
 
 def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     """Return the set with bristles that bend at reversals, if its friction is that of a log which shows how they bend."""
-    source = whole.sources.get("gear.friction_input.coulomb", Entry("not given")).source
+    source = next(
+        (entry for path, entry in whole.sources.items() if plain(path) == "gear.friction_input.coulomb"), Entry("not given")
+    ).source
     log = next(
         (each for each in files if each.bend > 0.0 and source.startswith("identified from") and each.name in source), None
     )
@@ -208,14 +211,16 @@ def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
         return whole
     fitted = Entry(f"fitted to reversals of {log.name}; a presliding loop determines it")
     unused = Entry("assumed: friction does not fall at low speed")
-    sources = {path: whole.sources.get(path, unused) for path in own_paths("gear.friction_input", law)}
-    sources |= {
+    gear = whole.gear.replace(friction_input=law)
+    sources = {path: whole.sources.get(path, unused) for path in gear_numbers(gear) if is_of(path, {"friction_input"})}
+    of_bristle = {
         "gear.friction_input.bristle_stiffness": fitted,
         "gear.friction_input.bristle_damping": Entry("assumed: none, as sliding damps as well"),
         "gear.friction_input.damping_fading": Entry("assumed: none"),
     }
+    sources |= {path: of_bristle[plain(path)] for path in sources if plain(path) in of_bristle}
     kept = {path: entry for path, entry in whole.sources.items() if not is_of(path, {"friction_input"})}
-    return replace(whole, gear=whole.gear.replace(friction_input=law), sources=kept | sources)
+    return replace(whole, gear=gear, sources=kept | sources)
 
 
 def _with_part(whole: GearSet, part: str, model: Any, sources: Mapping[str, Entry]) -> GearSet:

@@ -104,7 +104,7 @@ class FileEstimate:
     @property
     def is_phase(self) -> bool:
         """True for an angle that begins anew with each turn, so that its size means nothing."""
-        return ".phase" in self.path or self.path.endswith("_phase")
+        return "phase" in self.path.rpartition(".")[2]
 
 
 @dataclass(frozen=True, eq=False)

@@ -91,9 +91,10 @@ class GearSoFar:
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, laws)}
         for path in (path for path in numbers if is_of(path, laws)):
             old = by_plain_path.get(plain(path), "")
-            if path in entries:
-                sources[path] = entries[path]
-                determined_by |= {path: name} if path in determined else {}
+            named = path if path in entries else plain(path)
+            if named in entries:
+                sources[path] = entries[named]
+                determined_by |= {path: name} if named in determined else {}
             elif old and values.get(old) == numbers[path]:
                 sources[path] = before[old]
                 determined_by |= {path: self.determined_by[old]} if old in self.determined_by else {}

@@ -1,0 +1,73 @@
+"""Torque over the angle of a log: found where the record separates it, and the same in the gear as in the terms of the log."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identification.candidates.motion import fit_motion
+from strainwave.identification.candidates.motion_model import INPUT, MotionModel
+from strainwave.identification.candidates.ripple import Wave, settled, waves_of, with_ripple
+from strainwave.identification.experiments.motion_log import MotionLog
+
+RATIO, COULOMB, VISCOUS, NOISE = 50.0, 0.084, 4e-4, 2e-3
+DRIVE = sw.Drive(
+    gear=sw.Gear(
+        kinematics=sw.kinematics.PlainRatio(reduction=RATIO),
+        friction_input=sw.friction.Coulomb(coulomb=COULOMB, breakaway=COULOMB, viscous=VISCOUS),
+    ),
+    motor=sw.motor.TorqueSource(inertia=1e-5),
+    load=sw.loads.Inertia(inertia=0.05),
+)
+
+
+@cache
+def log(wave: float, detent: float, size: float = 2.0) -> MotionLog:
+    """Return a log with friction of order 1 that varies by a share, and a detent of order 2 [N.m]."""
+    time = np.arange(0.0, 40.0, 0.01)
+    angle = size * (np.sin(0.25 * time) + 0.4 * np.sin(0.61 * time))
+    speed = size * (0.25 * np.cos(0.25 * time) + 0.244 * np.cos(0.61 * time))
+    theta = RATIO * angle
+    torque = COULOMB * (1.0 + wave * np.cos(theta)) * np.sign(speed) + VISCOUS * RATIO * speed
+    torque += detent * np.sin(2.0 * theta - 0.4) + NOISE * np.random.default_rng(1).normal(size=len(time))
+    columns = {"time": time, "input_angle": theta, "input_torque": torque}
+    return MotionLog.of(sw.Recording(columns, {"time": "s", "input_angle": "rad", "input_torque": "N.m"}), DRIVE)
+
+
+def model(of: MotionLog) -> MotionModel:
+    return MotionModel("Coulomb and viscous", of, DRIVE, (f"{INPUT}coulomb", f"{INPUT}viscous"), {})
+
+
+def test_waves_are_those_of_the_record() -> None:
+    found = with_ripple(model(log(0.25, 0.02)))
+    assert found is not None
+    assert list(waves_of(found.log)) == [Wave("detent", 2.0), Wave("friction", 1.0)]
+
+
+def test_a_record_without_waves_or_of_little_motion_has_none() -> None:
+    assert with_ripple(model(log(0.0, 0.0))) is None
+    assert with_ripple(model(log(0.25, 0.02, size=0.05))) is None  # less than a turn of the input
+
+
+def test_the_gear_has_the_torque_of_the_terms() -> None:
+    found = with_ripple(model(log(0.25, 0.02)))
+    assert found is not None
+    gear = settled(found)
+    law = gear.drive.gear.friction_input
+    assert law.amplitude[0] == pytest.approx(0.25, abs=0.01)
+    assert law.detent_torque[0] == pytest.approx(0.02, abs=4e-4)
+    terms, moving = (np.array([each.start for each in one.log.nuisances]) for one in (found, gear)), ~found.log.motion.resting
+    before, after = (one.log.whole(one.drive, own)[moving] for one, own in zip((found, gear), terms, strict=True))
+    assert after == pytest.approx(before, abs=1e-12)
+
+
+@pytest.mark.slow("identification")
+def test_coulomb_and_viscous_friction_are_right_beside_them() -> None:
+    best = fit_motion([log(0.25, 0.02)], DRIVE)[0]
+    found = {each.path: each for each in best.fit.estimates}
+    truths = {"law.coulomb": COULOMB, "law.viscous": VISCOUS, "amplitude[0]": 0.25, "detent_torque[0]": 0.02}
+    for name, truth in truths.items():
+        each = found[f"{INPUT}{name}"]
+        assert abs(each.value - truth) < 3.0 * each.sigma < 0.1 * truth
