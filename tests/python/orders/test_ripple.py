@@ -269,7 +269,7 @@ def test_samples_that_follow_no_gear_of_a_large_ratio_are_named() -> None:
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_a_line_remains_where_the_measured_angle_swings_with_the_gear(seed: int) -> None:
-    """To and fro at one speed, the measured speed varies with the error of the gear alone, and friction over it took the line."""
+    """To and fro at one speed, the measured speed varies by the error of the gear alone: friction over it took the line."""
     random = np.random.default_rng(seed)
     time = np.arange(0.0, 40.0, 0.01)
     q = 0.05 * np.abs((time % 40.0) - 20.0)

@@ -236,5 +236,5 @@ def test_at_one_speed_the_measured_amplitude_stands(seed: int) -> None:
 @pytest.mark.slow("orders")
 @pytest.mark.parametrize("seed", [102, 104, 201, 210, 225, 302])
 def test_a_vibration_is_fitted_where_the_record_determines_it(seed: int) -> None:
-    """102, 104, 210: none, with noise of the input encoder and friction; the others: one, at one speed both ways and in a ramp."""
+    """102, 104, 210: none, with noise of the input encoder and friction; 201, 225, 302: one, both ways and in a ramp."""
     assert te.outcome(seed).verdict == "right"
