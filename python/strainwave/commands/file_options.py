@@ -87,7 +87,7 @@ class FileOptions:
 
 def paths_in(files: MeasurementFiles) -> list[Path]:
     """Return the paths of all files that a command reads, those of a measurement in several files one by one."""
-    return [part.path for file in files.files for part in file.parts or (file,)]
+    return list(dict.fromkeys(part.path for file in files.files for part in file.parts or (file,)))
 
 
 def _has(file: MeasurementFile, column: str) -> bool:

@@ -13,6 +13,7 @@ from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
 
 if TYPE_CHECKING:
+    from strainwave.identification.reading.source import MeasurementFile
     from strainwave.orders.measured import OrdersFound
 
 
@@ -35,6 +36,7 @@ def orders(
     from strainwave.files.gear_set import catalogue
     from strainwave.files.writing import write_folder
     from strainwave.identification.reading.mapping import check_constant
+    from strainwave.identification.reading.source import MeasurementFile
     from strainwave.messages import one_line
     from strainwave.orders.ripple import MAX_ORDER
     from strainwave.report.orders import orders_files, orders_summary
@@ -49,14 +51,15 @@ def orders(
         raise ValueError(
             f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
         )
-    with progress(len(paths)) as turn:
+    runs = [run for path in paths for run in MeasurementFile(path).runs]
+    with progress(len(runs)) as turn:
         found = []
-        for path in paths:
-            turn(path.name)
+        for run in runs:
+            turn(run.path.name)
             try:
-                found.append(_of_file(path, given, ratio, rate, highest))
+                found.append(_of_file(run, given, ratio, rate, highest))
             except ValueError as error:
-                raise ValueError(one_line(str(error) if str(path) in str(error) else f"{path}: {error}")) from None
+                raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
         turn("report")
         files = orders_files(found, Provenance.of_this_command(paths))
         write_folder(out, files)
@@ -64,17 +67,17 @@ def orders(
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
 
 
-def _of_file(path: Path, given: FileOptions, ratio: float | None, rate: float | None, highest: float | None) -> OrdersFound:
+def _of_file(
+    file: MeasurementFile, given: FileOptions, ratio: float | None, rate: float | None, highest: float | None
+) -> OrdersFound:
     from strainwave.identification.reading.recognise import recognise
-    from strainwave.identification.reading.source import measurement_file
     from strainwave.orders.measured import orders_found
 
-    file = measurement_file(path)
-    mapping = given.mapping_of([file])(path)
+    mapping = given.mapping_of([file])(file.path)
     constants = mapping.constants if rate is None else {**mapping.constants, "rate": rate}
     read = recognise(file, replace(mapping, constants=constants))
     ratio = read.constants.get("ratio") if ratio is None else ratio
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
     side: Any = mapping.side
-    found = orders_found(read.recording, path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
+    found = orders_found(read.recording, file.path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

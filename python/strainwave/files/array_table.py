@@ -17,7 +17,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ArrayTable:
-    """Columns by their names in the file, all of one length; the columns left out, in words; and single numbers."""
+    """Columns by their names in the file, all of one length; the columns left out, in words; and single numbers.
+
+    Attributes:
+        runs: tables of several recordings in the file, of which this one is the longest; empty if it has one
+    """
 
     file: str
     title: str
@@ -25,6 +29,7 @@ class ArrayTable:
     columns: Sequence[Array]
     left_out: Sequence[str] = ()
     singles: Mapping[str, float] = field(default_factory=dict)
+    runs: Sequence[ArrayTable] = ()
 
     @property
     def contents(self) -> list[Content]:

@@ -43,8 +43,9 @@ def _variables(path: Path, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
 
 ABOUT = (
     "version 4 to 7.3. A series is a variable or a field of a structure, as `data.joint2.q`. A matrix contains several, "
-    "`q_1`, `q_2` …. The most frequent length is read; of an array or a cell of structures, the longest; of a Simulink "
-    "scope, its signals by their labels. Only MATLAB can read its objects (timetable, timeseries, Simulink data set): save "
-    "their values, as `s = struct('t', x.Time, 'q', x.Data)`. Version 7.3 needs h5py: `pip install 'strainwave[formats]'`."
+    "`q_1`, `q_2` …. The most frequent length is read; an array or a cell of structures is a recording each, as "
+    "`bench.mat(2)`; of a Simulink scope, its signals by their labels. Only MATLAB can read its objects (timetable, "
+    "timeseries, Simulink data set): save their values, as `s = struct('t', x.Time, 'q', x.Data)`. Version 7.3 needs h5py: "
+    "`pip install 'strainwave[formats]'`."
 )
 FORMAT = Format((".mat",), open_mat, "MAT", IN_THE_NAME, about=ABOUT)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,12 +39,42 @@ def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: ReadBudget
     """The series that are of the length most of them have.
 
     A series is a variable, or a field of a structure, as `data.q`; a matrix holds several, `q_1`, `q_2` …, and one without a
-    name `column_1`, `column_2` … Of structures that are alike, as of several runs, the longest is taken. Series of another
-    length are left out with a remark.
+    name `column_1`, `column_2` … Arrays of structures that are alike are several runs: the longest is this table, and each is
+    one of its `runs`. Of such arrays within structures the longest run is taken. Series of another length are left out with a
+    remark.
 
     Raises:
         ValueError: there is no series of numbers, or the series take more than the budget allows
     """
+    variables = list(variables)
+    counts = {name: len(value) for name, value in variables if _are_runs(value)}
+    if not counts:
+        return _table_of_one(file, variables, budget)
+    count = max(counts.values())
+    runs = [
+        _table_of_one(
+            f"{file}({number + 1})",
+            [(name, value[number] if counts.get(name) == count else value) for name, value in variables],
+            budget,
+        )
+        for number in range(count)
+    ]
+    longest = max(range(count), key=lambda number: len(runs[number].columns[0]))
+    first = next(name for name, number in counts.items() if number == count)
+    return replace(runs[longest], left_out=[*runs[longest].left_out, _taken(first, count, longest)], runs=runs)
+
+
+def _are_runs(value: Any) -> bool:
+    """True for several structures that are alike and contain series, as of several runs; signals of a scope are one run."""
+    if not isinstance(value, list) or len(value) < 2 or not all(isinstance(each, Mapping) for each in value):
+        return False
+    if len({tuple(each) for each in value}) > 1 or "values" in value[0]:
+        return False
+    return all(any(isinstance(part, np.ndarray) and part.size > 1 for part in each.values()) for each in value)
+
+
+def _table_of_one(file: str, variables: Iterable[tuple[str, Any]], budget: ReadBudget) -> ArrayTable:
+    """Return the table of one recording; see `table_of`."""
     series: dict[str, Array] = {}
     singles: dict[str, float] = {}
     left_out: list[str] = []
@@ -93,8 +124,7 @@ def _several(
     if len(structures) > 1 and len({tuple(each) for each in structures}) == 1 and "values" not in structures[0]:
         read = [list(_series(name, each, [], budget, depth)) for each in structures]
         longest = max(range(len(read)), key=lambda place: max((len(found) for _, found in read[place]), default=0))
-        taken = f"of which number {longest + 1} is taken, the first of the longest"
-        left_out.append(f"{name} holds {len(read)} recordings, {taken}; save each in a file of its own")
+        left_out.append(_taken(name, len(read), longest))
         yield from read[longest]
         return
     for number, each in enumerate(values, start=1):
@@ -103,6 +133,11 @@ def _several(
             yield from _matrix(label if isinstance(label, str) and label else f"{name}_{number}", each["values"], budget)
         else:
             yield from _series(name if len(values) == 1 else f"{name}_{number}", each, left_out, budget, depth)
+
+
+def _taken(name: str, count: int, place: int) -> str:
+    taken = f"of which number {place + 1} is taken, the first of the longest"
+    return f"{name} holds {count} recordings, {taken}; save each in a file of its own"
 
 
 def _matrix(name: str, value: Any, budget: ReadBudget) -> Iterator[tuple[str, Array]]:

@@ -180,11 +180,13 @@ def _spectra(moving: Moving, left: Array, lowest: float, highest: float, floor: 
     weighted, weight = left * moving.weight, moving.weight
     floor = _spectra_floor(moving, left) if floor is None else floor
     weighed = floor.weighed(weighted)
-    over_angle = [order_spectrum_of(weighed, weight, floor, moving.own, lowest, highest)]
+    weighed = moving.fitted.left(weighed)
+    over_angle = [order_spectrum_of(weighed, weight, floor, moving.own, lowest, highest, moving.fitted)]
     for other in moving.shafts[1:]:
-        over_angle.append(order_spectrum_of(weighed, weight, floor, other, MIN_PERIODS / other.revolutions, highest))
+        slow = MIN_PERIODS / other.revolutions
+        over_angle.append(order_spectrum_of(weighed, weight, floor, other, slow, highest, moving.fitted))
     slowest = max(lowest * float(np.quantile(np.abs(moving.own.speed), 0.95)) / tau, MIN_PERIODS / len(left))
-    return _Spectra(floor, tuple(over_angle), time_spectrum_of(weighted, weight, floor, slowest))
+    return _Spectra(floor, tuple(over_angle), time_spectrum_of(weighted, weight, floor, slowest, moving.fitted))
 
 
 def _strongest(moving: Moving, spectra: _Spectra) -> SpectrumLine | None:
@@ -290,9 +292,9 @@ def waves(moving: Moving, line: SpectrumLine) -> list[Array]:
 
 
 def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tuple[list[SpectrumLine], Array]:
-    """Fit all lines together. Return them with their amplitudes, and the series without them."""
+    """Fit all lines together, and the smooth part with them. Return them with their amplitudes, and the series without them."""
     shapes = [waves(moving, line) for line in lines]
-    flat = np.stack([wave for each in shapes for wave in each], axis=1)
+    flat = moving.fitted.left(np.stack([wave for each in shapes for wave in each], axis=1))  # Frisch and Waugh (1933)
     values, covariance = weighed_fit(flat, moving.series * moving.weight, floor)
     done, first = [], 0
     left = moving.series.copy()

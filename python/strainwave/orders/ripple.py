@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import tau
 from typing import Literal
 
@@ -13,7 +14,7 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed
-from strainwave.orders.comb import RATIOS, RatioCandidate, candidates, conclusive, lowest_usable, usable_lines
+from strainwave.orders.comb import MIN_LINE_ORDER, RATIOS, RatioCandidate, candidates, conclusive, lowest_usable, usable_lines
 from strainwave.orders.lines import (
     MERGE_PERIODS,
     MIN_PERIODS,
@@ -24,7 +25,7 @@ from strainwave.orders.lines import (
     waves,
     weighed_fit,
 )
-from strainwave.orders.smooth_part import Moving, shaft_of
+from strainwave.orders.smooth_part import SMOOTH_SHARE, Moving, shaft_of
 from strainwave.orders.turning import Evenly
 
 Side = Literal["input", "output"]
@@ -144,12 +145,14 @@ def ripple(
     false_alarm = arguments.probability("false_alarm", false_alarm)
     size = None if ratio is None else abs(arguments.ratio("ratio", ratio))
     per_input = 1.0 if side == "input" else size or np.nan
-    record, shaft = shaft_of(
-        recording, column, angle, others=other_angles or {}, rate=rate, per_input=per_input, count=MAX_SAMPLES
-    )
+    taken_of = partial(shaft_of, recording, column, angle, others=other_angles or {}, rate=rate, count=MAX_SAMPLES)
+    record, shaft = taken_of(per_input=per_input)
     lowest, top = _range(shaft, side, size, highest)
     _check_sampled(shaft, record, side, size, top, angle)
     found = find_lines(shaft, lowest, top, false_alarm)
+    if np.isnan(per_input) and (line := _line_in_the_motion(shaft, found)):
+        record, shaft = taken_of(per_input=0.5 * line.order)  # order 2 of the input, the main one of a gear
+        found = find_lines(shaft, lowest, top, false_alarm)
     revolutions = shaft.own.revolutions
     lines = tuple(_line(each, shaft, found, record, side, size) for each in found.lines)
     blind = side == "output" and size is None
@@ -173,6 +176,16 @@ def ripple(
         curves=_curves(shaft, found, record, recording.unit(column)),
         remarks=tuple(remarks),
     )
+
+
+def _line_in_the_motion(shaft: Moving, found: LineSearch) -> SpectrumLine | None:
+    """Return the strongest order of a gear if the speed contains it too, so that friction over speed takes a part of it."""
+    line = next((each for each in found.lines if each.kind in ("order", "either") and each.order >= MIN_LINE_ORDER), None)
+    if line is None:
+        return None
+    shapes = np.stack(waves(shaft, line), axis=1)
+    left = np.linalg.norm(shaft.fitted.left(shapes), axis=0) / np.linalg.norm(shapes, axis=0)
+    return line if left.min() < SMOOTH_SHARE else None
 
 
 def _range(shaft: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:

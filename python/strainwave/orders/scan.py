@@ -19,7 +19,7 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.orders.smooth_part import Shaft
+from strainwave.orders.smooth_part import FittedColumns, Shaft
 from strainwave.statistics.floor import Floor
 
 Array = NDArray[np.float64]
@@ -30,6 +30,7 @@ LINES_PER_RESOLUTION = 4  # lines of the spectrum for each that is independent
 SPEED_BINS = 128  # bins of the speed, for the information of an order
 FLOOR_LINES = 100  # independent lines whose median is the floor of one
 MEDIAN_VARIANCE = 2.08  # variance of a median of exponential numbers, over that of their mean: 1 / log(2)²
+MIN_OWN_INFORMATION = 1e-3  # share of a line [1], that columns fitted before must leave for its amplitude
 MAX_SPECTRUM_LINES = 2**23  # of a spectrum
 
 
@@ -71,7 +72,9 @@ class Spectrum:
         return self.parts * float(f.isf(false_alarm / tested, 2 * self.parts, 2.0 * self.floors))
 
 
-def order_spectrum_of(weighed: Array, weight: Array, floor: Floor, shaft: Shaft, lowest: float, highest: float) -> Spectrum:
+def order_spectrum_of(
+    weighed: Array, weight: Array, floor: Floor, shaft: Shaft, lowest: float, highest: float, fitted: FittedColumns
+) -> Spectrum:
     """Return the spectrum over the angle of a shaft.
 
     Args:
@@ -80,6 +83,7 @@ def order_spectrum_of(weighed: Array, weight: Array, floor: Floor, shaft: Shaft,
         floor: of the series
         shaft: over whose angle
         lowest, highest: order
+        fitted: columns that were fitted to the series before
 
     Raises:
         ValueError: the spectrum has too many lines to hold
@@ -101,28 +105,51 @@ def order_spectrum_of(weighed: Array, weight: Array, floor: Floor, shaft: Shaft,
     cells = ((angle - angle.min()) / width).astype(int)
     for each in senses:
         there = shaft.sense == each
-        binned = np.bincount(cells[there], (weighed * weight)[there], bins)
-        filtered = np.fft.rfft(binned, length)[kept]
+
+        def over_angle(series: Array, there: NDArray[np.bool_] = there) -> Complex:
+            binned = np.bincount(cells[there], (series * weight)[there], bins)
+            return np.asarray(np.fft.rfft(binned, length)[kept])
+
         information = _information(order, np.abs(shaft.speed[there]), weight[there], floor)
-        found = np.abs(filtered)
-        evidence += found**2 / information
-        larger = 2.0 * found / information
-        noise = np.where(larger > amplitude, np.sqrt(2.0 / information), noise)
-        amplitude = np.maximum(amplitude, larger)
+        taken = fitted.taken((shaft.name, each, lowest, highest), over_angle, float(weight[there] @ weight[there]))
+        own, size, sigma = _beside(over_angle(weighed), information, taken)
+        evidence += own
+        noise = np.where(size > amplitude, sigma, noise)
+        amplitude = np.maximum(amplitude, size)
     return _levelled(Spectrum(order, evidence, amplitude, noise, len(senses), 0.0))
 
 
-def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float) -> Spectrum:
+def _beside(filtered: Complex, information: Array, taken: tuple[Array, Complex]) -> tuple[Array, Array, Array]:
+    """Return evidence, amplitude and its standard deviation of each line, fitted together with columns.
+
+    The series is without what the columns take of it. Of a line they take a share, of one phase more than of another: a speed
+    that swings with the order of a gear takes the ripple of one phase. The two parts of the line are solved for beside them.
+
+    Args:
+        filtered: amount of each line in the series
+        information: of each line without the columns
+        taken: by the columns, as of `FittedColumns.taken`
+    """
+    share, turned = taken
+    left = np.maximum(1.0 - share, np.abs(turned) + MIN_OWN_INFORMATION)
+    whole = left**2 - np.abs(turned) ** 2
+    part = (left * filtered + turned * np.conj(filtered)) / whole / information
+    return np.real(np.conj(filtered) * part), 2.0 * np.abs(part), np.sqrt(2.0 / information * left / whole)
+
+
+def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float, fitted: FittedColumns) -> Spectrum:
     """Return the spectrum over time, from the lowest frequency [cycles per sample] to half the sampling rate."""
     length = _good(LINES_PER_RESOLUTION * len(series))
     place: Array = np.fft.rfftfreq(length).astype(np.float64)
     kept = (place >= lowest) & (place < 0.5)
     place = place[kept]
-    filtered = np.abs(np.fft.rfft(series * weight, length)[kept])
-    level = floor.at(place)
-    squared = float(weight @ weight)
-    evidence, amplitude = filtered**2 / (squared * level), 2.0 * filtered / squared
-    return _levelled(Spectrum(place, evidence, amplitude, np.sqrt(2.0 * level / squared), 1, 0.0))
+    squared, level = float(weight @ weight), floor.at(place)
+
+    def over_time(each: Array) -> Complex:
+        return np.asarray(np.fft.rfft(each * weight, length)[kept])
+
+    taken = fitted.taken(("time", lowest), over_time, squared)
+    return _levelled(Spectrum(place, *_beside(over_time(series) / level, squared / level, taken), 1, 0.0))
 
 
 def _levelled(spectrum: Spectrum) -> Spectrum:

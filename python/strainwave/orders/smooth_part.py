@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import nan, tau
 
 import numpy as np
@@ -12,8 +13,10 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
 from strainwave.statistics.floor import Floor, floor_of, taper
+from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 CONSTANT_SPEED_SPREAD = 1e-3  # relative spread of the speed [1], below which friction over speed is not determined
 FRICTION_KNOTS = 6  # of the friction over speed, in each direction
@@ -76,6 +79,40 @@ class Shaft:
         return [s for s in BOTH_SENSES if float(np.sum(weight[self.sense == s] ** 2)) > MIN_SENSE_SHARE * whole]
 
 
+@dataclass(frozen=True, eq=False)
+class FittedColumns:
+    """Orthonormal columns that were fitted to a series.
+
+    Attributes:
+        basis: the columns, shape (n, k)
+        known: what they take of the lines of spectra, by the spectrum
+    """
+
+    basis: Array
+    known: dict[object, tuple[Array, Complex]] = field(default_factory=dict)
+
+    def left(self, series: Array) -> Array:
+        """Return series without what the columns take of them, shape (n,) or (n, m)."""
+        return np.asarray(series - self.basis @ (self.basis.T @ series))
+
+    def taken(self, spectrum: object, transform: Callable[[Array], Complex], squared: float) -> tuple[Array, Complex]:
+        """Return the share of each line that the columns take [1], and by how much more of one phase than of the other.
+
+        Args:
+            spectrum: in which the lines are
+            transform: gives the amount of each line in a series
+            squared: sum of the squared weight of the samples
+        """
+        if spectrum not in self.known:
+            share: Array = np.zeros(1)
+            turned: Complex = np.zeros(1, complex)
+            for amount in map(transform, self.basis.T):
+                share = share + np.abs(amount) ** 2 / squared
+                turned = turned + amount**2 / squared
+            self.known[spectrum] = share, turned
+        return self.known[spectrum]
+
+
 @dataclass(frozen=True)
 class Moving:
     """A shaft, what drives it, and other joints that move, evenly in time.
@@ -97,6 +134,11 @@ class Moving:
     weight: Array
     outliers: int
     basis: Array
+
+    @cached_property
+    def fitted(self) -> FittedColumns:
+        """The weighted basis, orthonormal."""
+        return FittedColumns(orthonormal(self.basis * self.weight[:, None])[0])
 
     @property
     def own(self) -> Shaft:
@@ -274,11 +316,15 @@ def _coupling(own: Shaft, other: Shaft) -> Array:
 
 
 def _outliers(left: Array, weight: Array) -> NDArray[np.bool_]:
-    """Return samples far out of the bulk around them, compared with the median of five, so that a fast change is none."""
-    from scipy.ndimage import median_filter
+    """Return samples far out of the bulk around them, compared with the median of five and with a cubic through four.
 
-    off = left - median_filter(left, 5, mode="nearest")
+    A fast change is far from no median, and the peak of a line near a cubic.
+    """
+    from scipy.ndimage import convolve1d, median_filter
+
     swift = weight > 0.5  # elsewhere friction turns over
-    bulk = 1.4826 * float(np.median(np.abs(off[swift]))) if swift.any() else 0.0
-    found: NDArray[np.bool_] = swift & (np.abs(off) > OUTLIER_SIGMA * bulk) if bulk > 0.0 else np.zeros(len(left), dtype=bool)
+    found: NDArray[np.bool_] = swift.copy()
+    for off in (left - median_filter(left, 5, mode="nearest"), convolve1d(left, np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 6.0)):
+        bulk = float(robust_sigma(off[swift])) if swift.any() else 0.0
+        found &= (np.abs(off) > OUTLIER_SIGMA * bulk) & (bulk > 0.0)
     return found

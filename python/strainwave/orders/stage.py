@@ -19,13 +19,14 @@ transient of the stage (PintelonSchoukens2012).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.statistics.floor import floor_of
+from strainwave.statistics.linear_fit import own_share
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -36,8 +37,10 @@ SCORE_BLOCKS = 200  # of the record, over which scores are summed for the covari
 MIN_STAGE_GAIN = 30.0  # of the logarithm of the likelihood, from which the output stage is worth its two parameters
 STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
 DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
+MIN_OWN_SHARE = 0.1  # of what the natural frequency changes [1], that no other amplitudes of orders and loads make up
+MIN_SIGNAL_POWER = 30.0  # of a line over its noise [1], from which it counts for the output stage
 START_FREQUENCIES = 2.0 * pi * MAX_FREQUENCY * np.geomspace(0.004, 1.0, 12)  # initial natural frequencies [rad per sample]
-START_DAMPING = 0.1  # initial damping ratio [1]
+START_DAMPINGS = (0.1, 0.5)  # initial damping ratios [1]: a narrow resonance is met by few starts
 
 
 @dataclass(frozen=True)
@@ -97,8 +100,16 @@ class StageProblem:
         still = lines.fitted(None)
         if not dynamic:
             return lines.result(still)
-        moved = lines.fitted(lines.nearest(still.floor), still.floor)
-        return lines.result(moved if still.misfit - moved.misfit > MIN_STAGE_GAIN else still)
+        shown = lines.with_signal(still)
+        moved = shown.fitted(shown.nearest(still.floor), still.floor)
+        gain = lines.misfit(still, shown.counts) - lines.misfit(moved, shown.counts)
+        if gain <= MIN_STAGE_GAIN or shown.own_share_of_frequency(moved) <= MIN_OWN_SHARE:
+            return lines.result(still)
+        if lines.is_within_bounds(moved):
+            return shown.result(moved)
+        measured = lines.result(still)
+        apart = moved.values[: len(measured.values)] - measured.values  # what the choice of the model leaves open
+        return replace(measured, covariance=measured.covariance + np.outer(apart, apart))
 
 
 @dataclass(frozen=True)
@@ -106,7 +117,6 @@ class _Fitted:
     stage: Stage | None
     values: Array  # in units in which each series has length 1
     floor: Array  # at each line
-    misfit: float  # minus the logarithm of the likelihood
 
 
 @dataclass(frozen=True)
@@ -119,6 +129,8 @@ class _Lines:
     error: Complex
     orders: Complex
     loads: Complex
+    counts: NDArray[np.bool_]  # lines that count
+    angle_noise: float  # power of a line
 
     @classmethod
     def of(cls, problem: StageProblem) -> _Lines:
@@ -133,11 +145,28 @@ class _Lines:
         straight = np.linspace(problem.angle[0], problem.angle[-1], count)
         s = (2j * pi * frequency[kept]).astype(np.complex128)
         error = problem.error - problem.error.mean()
-        return cls(count, s, lines(problem.angle - straight), lines(error), lines(problem.orders), lines(problem.loads))
+        noise = float(np.mean(np.diff(problem.angle, 4) ** 2)) / 70.0  # of white noise in fourth differences
+        series = (lines(problem.angle - straight), lines(error), lines(problem.orders), lines(problem.loads))
+        return cls(count, s, *series, np.ones(len(s), dtype=bool), noise)
+
+    def with_signal(self, still: _Fitted) -> _Lines:
+        """Return the problem with the lines alone in which the motion or an order stands out of its noise.
+
+        In the others the angle is the noise of its encoder. The error contains this noise too, and the output does not follow
+        it, as above a natural frequency: it would be taken for one.
+        """
+        moved = np.abs(self.angle) ** 2 > MIN_SIGNAL_POWER * self.angle_noise
+        waves = np.abs(self.orders @ still.values[: self.orders.shape[1]]) ** 2 > MIN_SIGNAL_POWER * still.floor
+        return replace(self, counts=moved | waves)
+
+    def misfit(self, fitted: _Fitted, counts: NDArray[np.bool_]) -> float:
+        """Return minus the logarithm of the likelihood of some lines."""
+        power = np.abs(self.left(fitted.stage, fitted.values)) ** 2
+        return float(np.sum((np.log(fitted.floor) + power / fitted.floor)[counts]))
 
     def nearest(self, floor: Array) -> Stage:
         """Return the best initial stage."""
-        tried = [Stage(float(frequency), START_DAMPING) for frequency in START_FREQUENCIES]
+        tried = [Stage(float(frequency), damping) for frequency in START_FREQUENCIES for damping in START_DAMPINGS]
         return min(tried, key=lambda each: float(np.sum(self.misses(each, floor)[1] ** 2)))
 
     def fitted(self, stage: Stage | None, floor: Array | None = None) -> _Fitted:
@@ -149,8 +178,8 @@ class _Lines:
         for _ in range(FIT_ROUNDS):
             if stage is not None:
                 start = np.log([stage.frequency, stage.damping])
-                bounds = ([np.log(4.0 * pi / self.count), np.log(1e-3)], [np.log(2.0 * pi), np.log(3.0)])
-                start = np.clip(start, np.add(bounds[0], 1e-6), np.subtract(bounds[1], 1e-6))
+                bounds = self.bounds
+                start = np.clip(start, bounds[0] + 1e-6, bounds[1] - 1e-6)
                 found = least_squares(
                     self._missed, start, args=(floor,), bounds=bounds, x_scale=[0.1, 0.3], xtol=1e-5, ftol=1e-7
                 )
@@ -158,8 +187,19 @@ class _Lines:
             values, _ = self.misses(stage, floor)
             left = self.left(stage, values)
             floor = floor_of(np.abs(left) ** 2, self.count).at(np.abs(self.s.imag) / (2.0 * pi))
-        misfit = float(np.sum(np.log(floor) + np.abs(left) ** 2 / floor))
-        return _Fitted(stage, values, floor, misfit)
+        return _Fitted(stage, values, floor)
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Bounds of the logarithms of the natural frequency [rad per sample] and the damping ratio [1]."""
+        return np.log([4.0 * pi / self.count, 1e-3]), np.log([2.0 * pi, 3.0])
+
+    def is_within_bounds(self, fitted: _Fitted) -> bool:
+        """True if the stage lies within its bounds: one on a bound is no vibration, but stands for something else."""
+        assert fitted.stage is not None
+        at = np.log([fitted.stage.frequency, fitted.stage.damping])
+        low, high = self.bounds
+        return bool(np.all((at > low + 1e-3) & (at < high - 1e-3)))
 
     def design(self, stage: Stage | None) -> tuple[Complex, Complex]:
         """Return the series of the error, shape (lines, n), and the error compared with them, shape (lines,)."""
@@ -175,12 +215,15 @@ class _Lines:
         return self.misses(_stage(logarithms), floor)[1]
 
     def misses(self, stage: Stage | None, floor: Array) -> tuple[Array, Array]:
-        """Return the best coefficients and the residual, real over imaginary parts, each of variance 1 if it is noise."""
+        """Return the best coefficients and the residual of the lines that count.
+
+        Real parts stand over imaginary ones, each of variance 1 if it is noise.
+        """
         from scipy.linalg import lstsq
 
         series, compared = self.design(stage)
-        weight = np.sqrt(2.0 / floor)
-        matrix, target = _stacked(series * weight[:, None]), _stacked(compared * weight)
+        weight = np.sqrt(2.0 / floor[self.counts])
+        matrix, target = _stacked(series[self.counts] * weight[:, None]), _stacked(compared[self.counts] * weight)
         size = np.linalg.norm(matrix, axis=0)
         size[size == 0.0] = 1.0
         values = lstsq(matrix / size, target, cond=1e-9, lapack_driver="gelsy", check_finite=False)[0] / size
@@ -191,7 +234,7 @@ class _Lines:
         return compared - series @ values
 
     def result(self, found: _Fitted) -> Regressed:
-        weight = np.sqrt(2.0 / found.floor)
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
         series, _ = self.design(found.stage)
         columns = [_stacked(series * weight[:, None])]
         if found.stage is not None:
@@ -213,6 +256,15 @@ class _Lines:
         whole[1 : len(left) + 1] = left * np.sqrt(self.count)
         residual = np.fft.irfft(whole, self.count)
         return Regressed(found.values[:kept], covariance[:kept, :kept], freedom, found.stage, spread, residual)
+
+    def own_share_of_frequency(self, found: _Fitted) -> float:
+        """Return the share of what the natural frequency changes [1] that no other amplitudes of orders and loads make up.
+
+        It is zero at one speed, one way: there another amplitude and phase of each order predict the same.
+        """
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
+        linear = _stacked(self.design(found.stage)[0] * weight[:, None])
+        return float(own_share(self._slope(found, 0, weight)[:, None], linear)[0])
 
     def _slope(self, found: _Fitted, which: int, weight: Array) -> Array:
         """Return the slope of the model over the logarithm of the stage's frequency or damping."""

@@ -35,7 +35,7 @@ MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow o
 MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
 MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
 LOADS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
-MAX_SPEED_RATIO = 1.5  # of a fast to a slow part of the record [1], up to which it is a record at one speed
+MAX_SPEED_RATIO = 1.5  # of a fast to a slow part of the record [1], up to which its amplitudes are those of one speed
 MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
 
@@ -152,8 +152,8 @@ def transmission_error(
         ValueError: an angle is missing or does not turn, the two do not belong together, or the ratio given is not theirs
 
     Valid where the twist is small and the output stage close to linear. Each order is corrected for the vibration of the output
-    with 10 % of its stiffness and 30 % of its damping uncertain, if orders pass at several speeds and determine it. At one
-    speed the vibration and other amplitudes predict the same: the amplitudes are those measured at that speed.
+    with 10 % of its stiffness and 30 % of its damping uncertain, if the record determines it: by several speeds, or both ways.
+    At one speed, one way, the vibration and other amplitudes predict the same: the amplitudes are those measured at that speed.
 
     >>> import strainwave as sw
     >>> time = np.arange(0.0, 20.0, 0.002)
@@ -176,7 +176,7 @@ def transmission_error(
     size = measured.used
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
-    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed and not _at_one_speed(pair))
+    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
     lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")

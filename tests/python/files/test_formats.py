@@ -18,6 +18,7 @@ from strainwave import Recording
 from strainwave.files.labels import ColumnSource
 from strainwave.files.matlab_table import open_mat
 from strainwave.files.tables import open_table
+from strainwave.identification.reading.source import measurement_files
 
 asammdf = pytest.importorskip("asammdf")
 h5py = pytest.importorskip("h5py")
@@ -114,6 +115,9 @@ def test_structures_of_structures_cells_and_scopes(tmp_path: Path) -> None:
         assert values == [TIME.tolist(), np.sin(TIME).tolist()]
         told = "runs holds 3 recordings, of which number 2 is taken, the first of the longest; save each in a file of its own"
         assert remarks == [told]
+        each = measurement_files([tmp_path / "log.mat"]).files
+        assert [file.path.name for file in each] == ["log.mat(1)", "log.mat(2)", "log.mat(3)"]
+        assert [len(file.table.numbers([ColumnSource(0, "t", "t", "s")])["t"]) for file in each] == [20, 50, 50]
     savemat(tmp_path / "log.mat", {"data": {"joint2": {"meas": {"q": TIME}}, "t": TIME}})
     assert read(tmp_path / "log.mat", "data.joint2.meas.q", "data.t")[0] == [TIME.tolist()] * 2
     signals = structures([{"values": np.sin(TIME), "label": "q"}, {"values": np.cos(TIME), "label": "tau"}])

@@ -265,3 +265,17 @@ def test_a_direction_with_hardly_any_motion_has_no_amplitude() -> None:
 def test_samples_that_follow_no_gear_of_a_large_ratio_are_named() -> None:
     result = found(rippled(joint("to and fro", step=0.02), 100.0, 0.4))
     assert any("lies beyond; record faster" in each for each in result.remarks)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_line_remains_where_the_measured_angle_swings_with_the_gear(seed: int) -> None:
+    """To and fro at one speed, the measured speed varies by the error of the gear alone: friction over it took the line."""
+    random = np.random.default_rng(seed)
+    time = np.arange(0.0, 40.0, 0.01)
+    q = 0.05 * np.abs((time % 40.0) - 20.0)
+    angle = q + 150e-6 * np.sin(200.0 * q + 0.3) + random.normal(0.0, 1e-6, len(time))
+    current = 0.3 * np.sign(np.gradient(q)) + 0.1 * np.gradient(q, time) + 0.03 * np.cos(200.0 * q + random.uniform(0.0, 6.0))
+    result = found({"time": time, "output_angle": angle, "torque": current + random.normal(0.0, 0.01, len(time))})
+    assert [round(line.order) for line in result.lines] == [200]
+    assert result.lines[0].forward == pytest.approx(0.03, abs=3.0 * result.lines[0].sigma)
+    assert result.lines[0].sigma < 0.001

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.orders.two_encoders import ErrorOrder
 
+from tests.evidence.drawn import te
 from tests.support.samples import sample
 
 Array = NDArray[np.float64]
@@ -230,3 +231,10 @@ def test_at_one_speed_the_measured_amplitude_stands(seed: int) -> None:
     assert abs(order(result, 2.0).amplitude - amplitude) < 3.0 * order(result, 2.0).amplitude_sigma
     assert order(result, 2.0).amplitude_sigma < 2e-7
     assert any("amplitudes are those measured at" in remark for remark in result.remarks)
+
+
+@pytest.mark.slow("orders")
+@pytest.mark.parametrize("seed", [102, 104, 201, 210, 225, 302])
+def test_a_vibration_is_fitted_where_the_record_determines_it(seed: int) -> None:
+    """102, 104, 210: none, with noise of the input encoder and friction; 201, 225, 302: one, both ways and in a ramp."""
+    assert te.outcome(seed).verdict == "right"

@@ -156,7 +156,7 @@ def _with_ways(source: MeasurementFile, ways: Sequence[FileMapping], question: s
 
 def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
     table, remarks = source.table, list[str]()
-    if source.parts:
+    if source.parts and source.run is None:
         remarks = [f"one recording in files of one quantity each: {listed(part.path.name for part in source.parts)}"]
     given, singles = _with_single_numbers(table, given)
     given, by_joint = _with_joint(source, given)

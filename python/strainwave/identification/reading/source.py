@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # of a quantity in a name
 MAX_PARTS = 20  # files of one recording
 SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
+FILES_OF_RUNS = {".mat", ".npz", ".npy", ".json"}  # that may contain an array of recordings
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
@@ -39,15 +40,27 @@ class MeasurementFile:
 
     Args:
         path: of the file; of several files of one recording the first
-        parts: all files of a recording that has one for each quantity; empty for a recording in one file
+        parts: all files of a recording that has one for each quantity, the file of a run; empty for a recording in one file
         recording: in place of the file; then the path is the name by which results call it
         kind: of measurement, if a person gave it
+        run: table of one of several recordings in a file; then the path ends with its number, as `bench.mat(2)`
     """
 
     path: Path
     parts: tuple[MeasurementFile, ...] = ()
     recording: Recording | None = None
     kind: str | None = None
+    run: OpenTable | None = None
+
+    @property
+    def runs(self) -> list[MeasurementFile]:
+        """The recordings in it, each as a file; itself if it has one, or cannot be read."""
+        try:
+            tables = self.raw.runs if isinstance(self.raw, ArrayTable) else ()
+        except (ValueError, OSError):
+            return [self]
+        named = ((self.path.with_name(f"{self.path.name}({number})"), each) for number, each in enumerate(tables, start=1))
+        return [replace(self, path=path, parts=(self,), run=table) for path, table in named] or [self]
 
     @cached_property
     def raw(self) -> OpenTable:
@@ -56,6 +69,8 @@ class MeasurementFile:
         Raises:
             ValueError: the file cannot be read
         """
+        if self.run is not None:
+            return self.run
         if self.recording is not None:
             return _table_of(self.recording, str(self.path))
         return _together(self.parts) if self.parts else open_table(self.path)
@@ -125,10 +140,11 @@ def measurement_files(paths: Sequence[str | Path] | Mapping[str, Measurement] | 
     if isinstance(paths, MeasurementFiles):
         return paths
     if isinstance(paths, Mapping):
-        return MeasurementFiles([_of_kind(kind, each) for kind, each in paths.items()], [])
+        return MeasurementFiles([run for kind, each in paths.items() for run in _with_runs(_of_kind(kind, each))], [])
     folders = [_below(Path(path)) for path in paths]
     files = [MeasurementFile(path) for path in dict.fromkeys(file for folder in folders for file in folder.files)]
-    return MeasurementFiles(with_parts(files), [link for folder in folders for link in folder.links])
+    files = [run for file in with_parts(files) for run in _with_runs(file)]
+    return MeasurementFiles(files, [link for folder in folders for link in folder.links])
 
 
 def distinct_names(files: Sequence[MeasurementFile]) -> dict[Path, str]:
@@ -159,6 +175,11 @@ def _below(path: Path) -> FolderFiles:
 def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
     """Return a file of measurements, itself if it is one."""
     return file if isinstance(file, MeasurementFile) else MeasurementFile(Path(file))
+
+
+def _with_runs(file: MeasurementFile) -> list[MeasurementFile]:
+    """Return the recordings in a file of a format that can contain several."""
+    return file.runs if file.path.suffix.lower() in FILES_OF_RUNS else [file]
 
 
 def _of_kind(kind: str, given: Measurement) -> MeasurementFile:
