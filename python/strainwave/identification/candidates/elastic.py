@@ -8,7 +8,7 @@ determines it, as gravity or inertia of the load (`candidates.motion`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
+from strainwave import Drive, _core, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.elastic_starts import ElasticStart, elastic_starts
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
@@ -37,17 +38,14 @@ MAX_TIME = 40.0  # s, of a log to which the chosen model is fitted
 MAX_STEP = 1e-3  # s, of the simulation
 MAX_PHASE_STEP = 0.25  # rad, of the vibration of the output in a step, which changes its period by 3e-5 (RK4)
 MIN_TWIST_SIGMA = 3.0  # standard deviations of the twist under load
-START_ELEMENT_SHARE = 0.5  # of the stiffness: initial stiffness of an element of the hysteresis (assumed)
-START_DAMPING_RATIO = 0.05  # initial, of critical damping (assumed)
-FIRST_ELEMENT_SHARE = 0.7  # of the stiffness of an element, for the first of the two that it becomes (assumed)
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
 MAX_TRIALS = 15  # steps of a fit
+MAX_START_ERROR = 1.3  # times the smallest held-out error of the regressions: models beyond are not simulated
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
-THIRD_SEGMENT_SHARE = 0.75  # of the largest torque: initial beginning of a third segment (assumed)
-UNREACHED_KNEE = 10.0  # times the largest torque: a knee there does nothing
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
+GRAVITY = "load.gravity_torque"
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 
 
@@ -106,10 +104,12 @@ def _fitted(
     recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier, *, delayed: bool
 ) -> ElasticCandidate:
     """Return the simplest model that predicts as well as any; `delayed`: a delay of the output angle is an unknown."""
-    stiff, reach = _stiffness(recording, log, drive, law)
-    start = _start(drive, stiff, reach, law)
-    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), start, delayed=delayed)
-    best, rivals = _chosen(compared, start, drive.gear.stiffness, scale, reach)
+    reach = _reach(recording, log, drive, law)
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
+    blocks, torque = _training_blocks(log.motion.time), transmitted_torque(log, drive)
+    starts = elastic_starts(recording, log, drive.replace(gear=gear), torque, blocks, by_gravity=scale == GRAVITY)
+    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), starts[0].drive, delayed=delayed)
+    best, rivals = _chosen(compared, starts, scale, reach)
     whole = _compared(_stretch(recording, log, drive, MAX_TIME), best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
     found = fit_of(problem, x, problem.weights(x))
@@ -120,8 +120,8 @@ def _fitted(
     return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
 
 
-def _stiffness(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
-    """Return the approximate stiffness of the gear [N.m/rad], and the largest torque along the rigid motion [N.m].
+def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> float:
+    """Return the largest torque along the rigid motion [N.m].
 
     The angle between the shafts is regressed on that torque, with orders, direction and speed, in the pass band of the log.
 
@@ -149,7 +149,7 @@ def _stiffness(recording: Recording, log: MotionLog, drive: Drive, law: kinemati
             f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {late:.3g} ms behind: "
             "load it more, or measure the angles better"
         )
-    return float(1.0 / softness), reach
+    return reach
 
 
 def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
@@ -207,37 +207,19 @@ class _TriedModel(ComparedByFields):
         return sum(path.startswith(f"{MEMORY}breakaway") for path in self.free)
 
 
-def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourier) -> Drive:
-    """Return the drive with a linear spring, one element of hysteresis, and no friction but that of the output."""
-    inertia = inertia_of(drive)
-    gear = drive.gear.replace(
-        stiffness=stiffness.Linear(k=stiff / (1.0 + START_ELEMENT_SHARE)),
-        hysteresis=hysteresis.MaxwellSlip(stiffness=[START_ELEMENT_SHARE * stiff], breakaway=[0.05 * reach]),
-        damping=2.0 * START_DAMPING_RATIO * float(np.sqrt(stiff * inertia)),
-        friction_input=FRICTIONLESS,
-        friction_mesh=FRICTIONLESS,
-        kinematic_error=law,
-    )
-    return drive.replace(gear=gear)
+def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: float) -> tuple[_TriedModel, list[_TriedModel]]:
+    """Return the model with the fewest numbers of those that predict best, and those that predict as well.
 
-
-def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) -> tuple[_TriedModel, list[_TriedModel]]:
-    """Return the model that no further part improves, and those that predict as well.
-
-    The part that predicts best is added next: a bend of the spring and a further element of hysteresis can imitate each other,
-    so that neither comes first.
+    Springs and counts of elements are compared together, as a bend of the spring and an element can imitate each other.
     """
-    best, left = _tried(log, start, scale, reach), [_bent, _with_element, _bent_twice]
-    every = [best]
-    while left:
-        reach = float(np.abs(log.gear_torque(best.drive)).max())
-        tried = {more: other for more in left if (other := _with(more, log, best, law, scale, reach)) is not None}
-        every += tried.values()
-        more = min(tried, key=lambda each: tried[each].error, default=None)
-        if more is None or tried[more].error > MAX_RELATIVE_ERROR * best.error:
-            break
-        best, left = tried[more], [each for each in left if each is not more]
-    return best, [each for each in every if each is not best and MAX_RELATIVE_ERROR * each.error < best.error]
+    near = [each for each in starts if each.error < MAX_START_ERROR * starts[0].error]
+    tried = [model for each in near if (model := _with(log, each.drive, scale, reach)) is not None]
+    if not tried:
+        raise ValueError("no spring and hysteresis moves the output as it was measured")
+    least = min(each.error for each in tried)
+    good = [each for each in tried if MAX_RELATIVE_ERROR * each.error <= least]
+    best = min(good, key=lambda each: (len(each.free), each.error))
+    return best, [each for each in good if each is not best]
 
 
 def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
@@ -252,15 +234,11 @@ def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
     return abs(one.values[path] - there) if path in one.values and there is not None else 0.0
 
 
-def _with(
-    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _TriedModel, law: Any, scale: str, reach: float
-) -> _TriedModel | None:
-    """Return the model with one part more, from its fit without; None if the part does not apply."""
-    if (grown := more(best.drive, law, reach)) is None:
-        return None
+def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel | None:
+    """Return the model fitted from a start; None if it leaves what its law allows."""
     try:
-        return _tried(log, grown, scale, reach)
-    except (ValueError, FloatingPointError):  # out of what its law allows, from its start
+        return _tried(log, drive, scale, reach)
+    except (ValueError, FloatingPointError):
         return None
 
 
@@ -295,39 +273,6 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
     for path, *_ in _core.parameters(drive):
         if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
             yield path
-
-
-def _bent(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """Return the drive with the law of the initial gear, as stiff; with two segments if that is linear, or has three."""
-    stiff = drive.gear.stiffness.tangent(0.0)
-    if isinstance(law, stiffness.Linear | stiffness.ThreeSegment):
-        knee = min(getattr(law, "t1", np.inf), 0.5 * reach)
-        bent: Any = stiffness.ThreeSegment(k1=0.8 * stiff, k2=1.2 * stiff, k3=1.2 * stiff, t1=knee, t2=UNREACHED_KNEE * reach)
-        return drive.replace(gear=drive.gear.replace(stiffness=bent))
-    softer = stiff / law.tangent(0.0) if law.tangent(0.0) > 0.0 else 1.0
-    numbers = {
-        field["name"]: softer * getattr(law, field["name"]) for field in law.fields if field.get("unit", "").startswith("N.m/")
-    }
-    return drive.replace(gear=drive.gear.replace(stiffness=law.replace(**numbers)))
-
-
-def _with_element(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """Return the drive with the last element of hysteresis split in two, of which one slides later."""
-    elements: Any = drive.gear.hysteresis
-    *stiffs, stiff = elements.stiffness
-    *limits, limit = elements.breakaway
-    split = [FIRST_ELEMENT_SHARE * stiff, (1.0 - FIRST_ELEMENT_SHARE) * stiff]
-    more = hysteresis.MaxwellSlip(stiffness=[*stiffs, *split], breakaway=[*limits, 0.5 * limit, 0.5 * limit])
-    return drive.replace(gear=drive.gear.replace(hysteresis=more))
-
-
-def _bent_twice(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """Return the drive with a third segment, if the second is determined and the torque goes far beyond its beginning."""
-    spring: Any = drive.gear.stiffness
-    knee = THIRD_SEGMENT_SHARE * reach
-    if not isinstance(spring, stiffness.ThreeSegment) or spring.t1 > knee:
-        return None
-    return drive.replace(gear=drive.gear.replace(stiffness=spring.replace(t2=knee, k3=1.1 * spring.k2)))
 
 
 def _name(drive: Drive) -> str:
