@@ -23,6 +23,7 @@ from strainwave.identification.candidates.elastic_starts import ElasticStart, el
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
+from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
@@ -41,11 +42,12 @@ MIN_TWIST_SIGMA = 3.0  # standard deviations of the twist under load
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
 MAX_TRIALS = 15  # steps of a fit
-MAX_START_ERROR = 1.3  # times the smallest held-out error of the regressions: models beyond are not simulated
+MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 GRAVITY = "load.gravity_torque"
+FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 
 
@@ -108,9 +110,9 @@ def _fitted(
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
     blocks, torque = _training_blocks(log.motion.time), transmitted_torque(log, drive)
     starts = elastic_starts(recording, log, drive.replace(gear=gear), torque, blocks, by_gravity=scale == GRAVITY)
-    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), starts[0].drive, delayed=delayed)
+    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), log, starts[0].drive, delayed=delayed)
     best, rivals = _chosen(compared, starts, scale, reach)
-    whole = _compared(_stretch(recording, log, drive, MAX_TIME), best.drive, delayed=delayed)
+    whole = _compared(_stretch(recording, log, drive, MAX_TIME), log, best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
     found = fit_of(problem, x, problem.weights(x))
     sigmas = sigma_by_blocks(problem, x, found.estimates)
@@ -160,12 +162,18 @@ def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
     return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
-def _compared(recording: Recording, drive: Drive, *, delayed: bool) -> DrivenLog:
-    """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates."""
+def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bool) -> DrivenLog:
+    """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates.
+
+    It begins under the torque of the measured motion: any other one would make an output without damping vibrate for ever.
+    """
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
     step = min(MAX_STEP, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
-    compared = DrivenLog.of(recording, drive, ["output_angle"], step)
+    torque = float(np.interp(recording.time[0], log.motion.time, transmitted_torque(log, drive)))
+    output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
+    initial = {"torque": torque, "output_speed": float(output.speed[0])}
+    compared = DrivenLog.of(recording, drive, ["output_angle"], step, initial)
     return compared.with_delays("output_angle") if delayed else compared
 
 
@@ -202,6 +210,11 @@ class _TriedModel(ComparedByFields):
         return {path: value for path, value, *_ in _core.parameters(self.drive) if path in self.free}
 
     @property
+    def springs(self) -> tuple[str, ...]:
+        """Paths of the numbers of the spring."""
+        return tuple(path for path in self.free if path.startswith(SPRING))
+
+    @property
     def elements(self) -> int:
         """Count of the elements of hysteresis."""
         return sum(path.startswith(f"{MEMORY}breakaway") for path in self.free)
@@ -223,14 +236,18 @@ def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: f
 
 
 def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
-    """Return the distance of a number of the gear in two models that predict alike; 0 if the other model lacks it.
+    """Return the distance of a number of the gear in two models that predict alike; 0 if the other model has none alike.
 
-    Elements of hysteresis are compared if both models have as many.
+    Numbers of elements are compared if both models have as many, those of a spring but its stiffness at zero twist if both have
+    that kind.
     """
     if path.startswith(MEMORY) and one.elements != other.elements:
         return 0.0
-    alias = {"gear.stiffness.k": "gear.stiffness.k1", "gear.stiffness.k1": "gear.stiffness.k"}
-    there = other.values.get(path, other.values.get(alias.get(path, "")))
+    if path not in FIRST_STIFFNESS:
+        alike = not path.startswith(SPRING) or one.springs == other.springs
+        there = other.values.get(path) if alike else None
+    else:
+        there = next((other.values[each] for each in FIRST_STIFFNESS if each in other.values), None)
     return abs(one.values[path] - there) if path in one.values and there is not None else 0.0
 
 

@@ -31,6 +31,7 @@ Rows = NDArray[np.bool_]
 MAX_ELEMENTS = 2
 SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
 MAX_ROWS = 3000  # of the regression
+MIN_START_DAMPING = 1e-3  # of critical damping: from where a fit can start
 UNREACHED = 1e6  # N.m: a knee there does nothing
 MIN_TORQUE_SHARE = 2e-3  # of the largest torque: an element that carries less is none
 
@@ -86,14 +87,17 @@ def elastic_starts(
         for spring in SPRINGS:
             libraries = [elements, spring.library(twist[rows], half, drive.gear)]
             try:
-                (answer, *_) = solve(needed[rows][training], [_of_rows(each, training) for each in libraries], always[rows][training])
+                (answer, *_) = solve(
+                    needed[rows][training], [_of_rows(each, training) for each in libraries], always[rows][training]
+                )
             except ValueError:
                 continue
             gear: Any = answer.put(drive.gear)
             if len(pairs(gear)) < count:
                 continue  # the same with fewer elements
             error = float(np.std((needed[rows] - _predicted(answer, libraries, always[rows]))[~training]))
-            gear = gear.replace(damping=float(answer.weights[-1][0]))
+            critical = 2.0 * float(np.sqrt(gear.stiffness.tangent(0.0) * load))
+            gear = gear.replace(damping=max(float(answer.weights[-1][0]), MIN_START_DAMPING * critical))
             begun = drive.replace(gear=gear, load=_load(drive, answer.weights[-1], scaled, free, by_gravity))
             found.append(ElasticStart(begun, error))
     return sorted(found, key=lambda each: each.error)
@@ -112,8 +116,9 @@ class _TwoSegments(Piecewise):
 def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array], Gear]:
     def put_as_three(gear: Gear, weights: Array) -> Gear:
         spring: Any = put(gear, weights).stiffness
-        t1 = spring.k1 * spring.knee
-        return gear.replace(stiffness=stiffness.ThreeSegment(k1=spring.k1, k2=spring.k2, k3=spring.k2, t1=t1, t2=UNREACHED))
+        k2 = spring.k1 + spring.k2
+        bent = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=spring.k1 * spring.knee, t2=UNREACHED)
+        return gear.replace(stiffness=bent)
 
     return put_as_three
 

@@ -34,6 +34,8 @@ SIGNIFICANT_DELAY_SIGMA = 2.5  # standard deviations, beyond which a delay is th
 MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the inertia: beyond, torques count from inertia
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
 PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
+MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
+MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
@@ -163,6 +165,10 @@ def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_curr
         if own.is_of_torque:
             own = replace(own, sigma=float(np.hypot(sigma, scale.own * own.value))).resting_on(scale.common)
         own = own.unless_uncertain()
+        if path.startswith(MAY_BE_ABSENT) and own.value < MIN_PART_SIGMA * own.sigma:
+            own = replace(
+                own, why=f"no larger than {MIN_PART_SIGMA:g} standard deviations: the record does not show that it is there"
+            )
         yield own.in_current() if in_current else own
 
 
