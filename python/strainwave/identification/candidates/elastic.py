@@ -95,22 +95,25 @@ def fit_elastic(
         ValueError: noise hides the twist under load, or no model moves as the output does
         FloatingPointError: no model could be simulated
     """
-    found = _fitted(recording, log, drive, scale, law, delayed=True)
-    delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
-    if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
-        return found
-    return _fitted(recording, log, drive, scale, law, delayed=False)
+    reach, late = _reach(recording, log, drive, law)
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
+    rigid = transmitted_torque(log, drive), late * log.motion.speed / gear.kinematics.ratio
+    blocks = _training_blocks(log.motion.time)
+    starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY)
+    if abs(late) < MAX_DELAY_SAMPLES * log.motion.step:
+        found = _fitted(recording, log, starts, scale, reach, delayed=True)
+        delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
+        if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
+            return found
+    return _fitted(recording, log, starts, scale, reach, delayed=False)
 
 
 def _fitted(
-    recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier, *, delayed: bool
+    recording: Recording, log: MotionLog, starts: Sequence[ElasticStart], scale: str, reach: float, *, delayed: bool
 ) -> ElasticCandidate:
     """Return the simplest model that predicts as well as any; `delayed`: a delay of the output angle is an unknown."""
-    reach = _reach(recording, log, drive, law)
-    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
-    blocks, torque = _training_blocks(log.motion.time), transmitted_torque(log, drive)
-    starts = elastic_starts(recording, log, drive.replace(gear=gear), torque, blocks, by_gravity=scale == GRAVITY)
-    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), log, starts[0].drive, delayed=delayed)
+    drive = starts[0].drive
+    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), log, drive, delayed=delayed)
     best, rivals = _chosen(compared, starts, scale, reach)
     whole = _compared(_stretch(recording, log, drive, MAX_TIME), log, best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
@@ -122,8 +125,8 @@ def _fitted(
     return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
 
 
-def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> float:
-    """Return the largest torque along the rigid motion [N.m].
+def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
+    """Return the largest torque along the rigid motion [N.m], and the delay of the output angle [s].
 
     The angle between the shafts is regressed on that torque, with orders, direction and speed, in the pass band of the log.
 
@@ -144,14 +147,14 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
     covariance, _ = covariance_of(columns / size, left[np.newaxis])
     softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
     reach = float(np.abs(torque[motion.compared]).max())
+    late = ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
     if not softness > MIN_TWIST_SIGMA * sigma:
-        late = 1e3 * ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
-            f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {late:.3g} ms behind: "
+            f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {1e3 * late:.3g} ms behind: "
             "load it more, or measure the angles better"
         )
-    return reach
+    return reach, float(late)
 
 
 def transmitted_torque(log: MotionLog, drive: Drive) -> Array:

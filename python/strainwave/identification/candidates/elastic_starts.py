@@ -50,7 +50,7 @@ class ElasticStart(ComparedByFields):
 
 
 def elastic_starts(
-    recording: Recording, log: MotionLog, drive: Drive, torque: Array, blocks: Rows, *, by_gravity: bool
+    recording: Recording, log: MotionLog, drive: Drive, torque: Array, late: Array, blocks: Rows, *, by_gravity: bool
 ) -> list[ElasticStart]:
     """Return the best spring of each kind with each count of Maxwell elements, the smallest error first.
 
@@ -59,13 +59,14 @@ def elastic_starts(
         log: the same along its motion
         drive: with the load by the log along its motion
         torque: that a rigid gear transmits along the motion [N.m], shape (m,)
+        late: angle by which a delay of the output shifts the twist [rad], shape (m,)
         blocks: instants of the motion that take part, shape (m,); the others validate
         by_gravity: True if the torque counts from gravity, so that the inertia of the load is unknown; else gravity is
     """
     motion, ratio, load = log.motion, drive.gear.kinematics.ratio, inertia_of(drive)
     output = motion_of(recording.time, recording.values("output_angle", "rad"), motion.cutoff)
     angle, acceleration = (np.interp(motion.time, output.time, each) for each in (output.angle, output.acceleration))
-    twist = motion.angle / ratio - angle - np.asarray(drive.gear.kinematic_error.error(motion.angle))
+    twist = motion.angle / ratio - angle - late - np.asarray(drive.gear.kinematic_error.error(motion.angle))
     used = motion.known & np.isfinite(twist)
     twist = twist - 0.5 * (twist[used].max() + twist[used].min())
     half = float(np.abs(twist[used]).max())
