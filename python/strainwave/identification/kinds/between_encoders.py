@@ -15,7 +15,7 @@ from strainwave.identification.candidates.confirmed import spread_by_blocks
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
-from strainwave.identification.checks.logs import inertias_of_load
+from strainwave.identification.checks.logs import RECORDER_BIAS, inertias_of_load
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.estimate import Estimate
@@ -64,7 +64,7 @@ def between_encoders(
     result = FileResult(
         source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
         remarks=tuple(_remarks(found, scale, taken)),
-        checks=tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source)),
+        checks=tuple(_inertias(found, scale, estimates, taken, source)),
         pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),), between=found.fit,
     )  # fmt: skip
     parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
@@ -242,18 +242,23 @@ def _law_of(path: str, found: ElasticCandidate) -> str:
 
 
 def _inertias(
-    found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, taken: PreparedLog, source: str
+    found: ElasticCandidate, scale: _Scale, by_motor: Mapping[str, Estimate], taken: PreparedLog, source: str
 ) -> Iterator[Check]:
     """Yield the check of the inertia of the load by how it winds the gear up and by the torque of the motor.
 
-    The first is taken: it needs neither the inertia of the motor nor a current that is a mean.
+    The first is taken: it needs neither the inertia of the motor nor a current that is a mean. If both count from gravity, a
+    wrong torque constant changes both alike but for the rotor.
     """
-    if scale.path != GRAVITY or rigid is None or not taken.motor_known:
+    if scale.path != GRAVITY or INERTIA not in by_motor or not taken.motor_known:
         return
     places = {each.path: place for place, each in enumerate(found.fit.estimates)}
     own, sigma = found.fit.estimates[places[INERTIA]].value, float(found.sigmas[places[INERTIA]])
-    by_torque = rigid.value, float(np.hypot(rigid.sigma, taken.rotor))
-    yield inertias_of_load((own, sigma), by_torque, "A·s²/rad" if taken.in_current else "kg·m²", source)
+    drive, rigid = taken.drive, by_motor[INERTIA]
+    rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
+    of_torque = [rigid.sigma, taken.rotor, RECORDER_BIAS * rotor, taken.relative * rotor]
+    by_torque = rigid.value, float(np.linalg.norm(of_torque))
+    unit = "A·s²/rad" if taken.in_current else "kg·m²"
+    yield inertias_of_load((own, float(np.hypot(sigma, scale.own * own))), by_torque, unit, source)
 
 
 def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iterator[str]:
