@@ -27,7 +27,6 @@ MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by
 MAX_CONSTANT_DIFFERENCE = 0.1  # relative, of a torque constant by the voltage: a resistance changes as much as a motor warms up
 MAX_CONSTANT_SIGMA = 0.03  # relative: a voltage that determines the constant less well is no check of it
 MAX_INERTIA_SIGMA = 3.0  # standard deviations between the inertias of a load by its winding up and by the torque of the motor
-RECORDER_BIAS = 0.05  # of the rotor's inertia: a current recorded where a controller has just acted shows it larger (assumed)
 OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
 MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]

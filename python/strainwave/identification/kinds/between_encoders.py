@@ -15,11 +15,11 @@ from strainwave.identification.candidates.confirmed import spread_by_blocks
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
-from strainwave.identification.checks.logs import RECORDER_BIAS, inertias_of_load
+from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.kinds.prepared_log import PreparedLog
+from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
@@ -205,7 +205,8 @@ def _motor(
     of_load = 0.0 if load is None else load.own / ratio**2
     sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR]), of_load))
     estimate = FileEstimate(MOTOR, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
-    estimate = estimate.sharing(taken.rotor / ratio**2).unless_uncertain()
+    of_recorder = RECORDER_BIAS * (own.value + input_inertia) if taken.log.effort == "current" else 0.0
+    estimate = estimate.sharing(float(np.hypot(taken.rotor / ratio**2, of_recorder))).unless_uncertain()
     yield estimate.in_current() if taken.in_current else estimate
 
 
@@ -255,7 +256,7 @@ def _inertias(
     own, sigma = found.fit.estimates[places[INERTIA]].value, float(found.sigmas[places[INERTIA]])
     drive, rigid = taken.drive, by_motor[INERTIA]
     rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
-    of_torque = [rigid.sigma, taken.rotor, RECORDER_BIAS * rotor, taken.relative * rotor]
+    of_torque = [rigid.sigma, taken.rotor, taken.relative * rotor]
     by_torque = rigid.value, float(np.linalg.norm(of_torque))
     unit = "A·s²/rad" if taken.in_current else "kg·m²"
     yield inertias_of_load((own, float(np.hypot(sigma, scale.own * own))), by_torque, unit, source)
