@@ -19,11 +19,13 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic_starts import ElasticStart, elastic_starts
+from strainwave.identification.candidates.elastic_starts import UNREACHED, ElasticStart, elastic_starts
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
-from strainwave.identification.experiments.driven_log import DrivenLog
+from strainwave.identification.candidates.torsion.candidate import merged
+from strainwave.identification.candidates.torsion.dissipation import maxwell
+from strainwave.identification.experiments.driven_log import MAX_CUTOFF_SHARE, DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
-from strainwave.identification.experiments.motion import motion_of
+from strainwave.identification.experiments.motion import motion_of, spectra
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
@@ -43,6 +45,9 @@ MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends wh
 MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
 MAX_TRIALS = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
+MAX_STARTS = 4  # of the regressions that are simulated
+MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
+CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
@@ -176,8 +181,22 @@ def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bo
     torque = float(np.interp(recording.time[0], log.motion.time, transmitted_torque(log, drive)))
     output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
     initial = {"torque": torque, "output_speed": float(output.speed[0])}
-    compared = DrivenLog.of(recording, drive, ["output_angle"], step, initial)
+    compared = DrivenLog.of(recording, drive, ["output_angle"], step, initial, _cutoff_of_signal(recording))
     return compared.with_delays("output_angle") if delayed else compared
+
+
+def _cutoff_of_signal(recording: Recording) -> float | None:
+    """Return the cut-off above which the input angle is noise [Hz]; None if motion fills the band that samples can follow.
+
+    Noise of the input makes a simulated output vibrate: a fit makes up for it by damping and hysteresis that are not there.
+    """
+    step = float(np.median(np.diff(recording.time)))
+    grid = np.arange(recording.time[0], recording.time[-1], step)
+    angle = np.interp(grid, recording.time, recording.values("input_angle", "rad"))
+    frequency, acceleration, noise, _ = spectra(angle, step)
+    signal = frequency[acceleration > MIN_SIGNAL * noise]
+    cutoff = CUTOFF_MARGIN * float(signal.max(initial=0.0))
+    return cutoff if 0.0 < cutoff < MAX_CUTOFF_SHARE / step else None
 
 
 def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) -> Recording:
@@ -228,14 +247,36 @@ def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: f
 
     Springs and counts of elements are compared together, as a bend of the spring and an element can imitate each other.
     """
-    near = [each for each in starts if each.error < MAX_START_ERROR * starts[0].error]
+    near = [each for each in starts if each.error < MAX_START_ERROR * starts[0].error][:MAX_STARTS]
     tried = [model for each in near if (model := _with(log, each.drive, scale, reach)) is not None]
     if not tried:
         raise ValueError("no spring and hysteresis moves the output as it was measured")
-    least = min(each.error for each in tried)
-    good = [each for each in tried if MAX_RELATIVE_ERROR * each.error <= least]
-    best = min(good, key=lambda each: (len(each.free), each.error))
-    return best, [each for each in good if each is not best]
+    best = min(tried, key=lambda each: each.error)
+    while True:
+        simpler = [model for drive in _simpler(best.drive, reach) if (model := _with(log, drive, scale, reach)) is not None]
+        tried += simpler
+        least = min(each.error for each in tried)
+        good = [each for each in tried if MAX_RELATIVE_ERROR * each.error <= least]
+        before, best = best, min(good, key=lambda each: (len(each.free), each.error))
+        if best is before or not any(best is each for each in simpler):
+            return best, [each for each in good if each is not best]
+
+
+def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:
+    """Yield the drive with one bend of its spring less, and with one element less."""
+    gear: Any = drive.gear
+    spring = gear.stiffness
+    if isinstance(spring, stiffness.ThreeSegment) and spring.t2 < reach:
+        first = abs(spring.k2 - spring.k1) > abs(spring.k3 - spring.k2)  # the larger bend stays
+        t1, k2 = (spring.t1, spring.k2) if first else (spring.t2, spring.k3)
+        two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED)
+        yield drive.replace(gear=gear.replace(stiffness=two))
+    elif not isinstance(spring, stiffness.Linear):
+        yield drive.replace(gear=gear.replace(stiffness=stiffness.Linear(k=float(spring.tangent(0.0)))))
+    if len(gear.hysteresis.stiffness) > 1:
+        yield drive.replace(gear=merged(gear))
+    elif len(gear.hysteresis.stiffness):
+        yield drive.replace(gear=gear.replace(hysteresis=maxwell([])))
 
 
 def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
@@ -265,9 +306,12 @@ def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel
 def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel:
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
+    fitted: Any = problem.records[0].model(x)
+    if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
+        raise ValueError("the bend of the spring lies beyond the torque of the log")
     ((predicted, _),) = problem.predict(x)
     error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
-    return _TriedModel(_name(drive), free, problem.records[0].model(x), error)
+    return _TriedModel(_name(drive), free, fitted, error)
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:

@@ -79,6 +79,7 @@ class DrivenLog(ComparedByFields):
         channels: Sequence[str] | None = None,
         dt: float | None = None,
         initial: Mapping[str, float] | None = None,
+        cutoff: float | None = None,
     ) -> DrivenLog:
         """Return the experiment of columns time, input_angle and those to compare: `channels`, or all that can be.
 
@@ -90,6 +91,7 @@ class DrivenLog(ComparedByFields):
             channels: columns to compare
             dt: largest step of the simulation [s]; 0.5 ms, or as short as the drive needs, if not given
             initial: initial values other than the motion of the input, as for `simulate`
+            cutoff: of the filter on the input angle [Hz]; by default up to a quarter of the sample rate
 
         Raises:
             ValueError: a column is missing, nothing can be compared, or the angle does not determine the motion
@@ -105,7 +107,7 @@ class DrivenLog(ComparedByFields):
                 f"the log contains how the input moved, and nothing to compare: record one of {listed(CHANNEL_UNITS)} besides; "
                 f"it has {listed(recording.names)}"
             )
-        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), highest=MAX_CUTOFF_SHARE)
+        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), cutoff, highest=MAX_CUTOFF_SHARE)
         time = recording.time - recording.time[0]
         grid = smoothed.time - smoothed.time[0]
         step = fine_enough(driven(drive), MAX_STEP, MIN_STEP) if dt is None else arguments.seconds("dt", dt)

@@ -17,7 +17,7 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion import motion_of
-from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.check import Check
@@ -35,6 +35,7 @@ MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the 
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
 PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
 MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
+DAMPING_RATIO_SIGMA = 2e-3  # of critical damping (assumed): noise of the input that passes its filter looks like damping
 MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
@@ -161,6 +162,9 @@ def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_curr
         if estimate.path in nuisances or estimate.path.startswith(("gear.kinematic_error.phase", "load.gravity")):
             continue
         path = _path(estimate.path, orders, found, law)
+        if path == "gear.damping":
+            stiff = gear.stiffness.tangent(0.0) * inertia_of(found.drive)
+            sigma = np.hypot(sigma, 2.0 * DAMPING_RATIO_SIGMA * np.sqrt(stiff))
         own = FileEstimate(path, estimate.unit, estimate.value, float(sigma), _law_of(path, found))
         if own.is_of_torque:
             own = replace(own, sigma=float(np.hypot(sigma, scale.own * own.value))).resting_on(scale.common)
