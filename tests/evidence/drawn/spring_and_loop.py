@@ -1,12 +1,13 @@
 """Logs of two encoders and the current of the motor between a spring of three kinds with no, one or two Maxwell elements.
 
-The input moves as it is prescribed; the output is integrated in steps of 0.1 ms. Springs are linear, cubic or of three segments,
-damping is there or not, noise, ratio, load and amplitude vary. What `identify` lists as identified of stiffness, hysteresis,
+The input moves as it is prescribed; the output is integrated in steps of 0.1 ms. Springs are linear, cubic or of three
+segments, damping is there or not, noise, ratio, load and amplitude vary. What `identify` lists as identified of stiffness, hysteresis,
 damping and load must lie within 2.5 standard deviations of the truth, or within 1 %.
 """
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +24,6 @@ Array = NDArray[np.float64]
 
 STEP, EVERY = 1e-4, 20  # s of the integration; steps a sample
 FLOOR = 0.01  # relative: the motor's encoder, which is smoothed and noisy, moves the simulated input
-SHARE_OF_NOISE = 3.0  # times the noise of the twist in torque: an element below is in the noise
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,9 @@ def drawn(random: np.random.Generator, kind: str, count: int, damped: bool) -> J
         numbers = (stiff, 1.6 * stiff, 2.2 * stiff, 0.3 * reach, 0.75 * reach)
     shares = (0.3, 0.12)[:count] if count == 2 else (0.25,) * count
     slips = (0.15, 0.4)[:count] if count == 2 else (0.3,) * count
-    elements = tuple((s * stiff, s * stiff * slip * half * float(random.uniform(0.8, 1.2))) for s, slip in zip(shares, slips))
+    elements = tuple(
+        (s * stiff, s * stiff * slip * half * float(random.uniform(0.8, 1.2))) for s, slip in zip(shares, slips, strict=False)
+    )
     damping = 0.06 * float(np.sqrt(stiff * inertia)) if damped else 0.0
     ratio = int(random.choice([50, 80, 100, 120]))
     rotor = float(random.uniform(0.3, 1.2)) * inertia / ratio**2
@@ -139,8 +141,6 @@ def outcome(seed: int) -> Outcome:
 
 def identified(logs: Sequence[dict[str, Array]], constants: Sequence[dict[str, float]]) -> Identified:
     """Return what `identify` makes of logs, from a set whose rotor is that of the motor."""
-    import tempfile
-
     start = sw.GearSet.read("csg-25-100")
     start = start.replace(gear=start.gear.replace(input_inertia=0.0))
     with tempfile.TemporaryDirectory() as folder:

@@ -271,7 +271,7 @@ def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:
         t1, k2 = (spring.t1, spring.k2) if first else (spring.t2, spring.k3)
         two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED)
         yield drive.replace(gear=gear.replace(stiffness=two))
-    elif not isinstance(spring, stiffness.Linear):
+    if not isinstance(spring, stiffness.Linear):
         yield drive.replace(gear=gear.replace(stiffness=stiffness.Linear(k=float(spring.tangent(0.0)))))
     if len(gear.hysteresis.stiffness) > 1:
         yield drive.replace(gear=merged(gear))

@@ -34,9 +34,14 @@ FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")
 SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
 MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
-# Standard deviation of a part from run to run, in logarithms: friction changes with temperature and running-in.
-REPEATABILITY = dict.fromkeys(("friction_input", "steady_friction"), 0.2)
-REPEATABILITY_OF_OTHERS = 0.01  # gain of two sensors or recorders of one bench (assumed): the number itself stays
+# Standard deviation of a part from run to run, in logarithms.
+REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
+REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
+CHANGING = (
+    "gear.friction_input.",
+    "steady_friction",
+)  # with temperature and running-in: two files need not agree to their sigmas
+GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench (assumed)
 
 
 @dataclass(frozen=True)
@@ -184,11 +189,11 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
         off, sigma = (np.array([each[place] for each in pairs]) for place in (1, 2))
         weight = sigma**-2 / np.sum(sigma**-2)
         factor = float(weight @ off)
-        differs = bool(np.all(np.abs(off) > MAX_DISTANCE * sigma)) and abs(factor) > MAX_DISTANCE * REPEATABILITY_OF_OTHERS
+        differs = bool(np.all(np.abs(off) > MAX_DISTANCE * sigma)) and abs(factor) > MAX_DISTANCE * GAIN_SIGMA
         is_one = bool(np.all(np.abs(off - factor) < MAX_DISTANCE * sigma))
         if differs and is_one:
             yield Check(
-                SCALE, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * REPEATABILITY_OF_OTHERS, "1", True,
+                SCALE, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * GAIN_SIGMA, "1", True,
                 f"{listed(path for path, *_ in pairs)} of the first are all {float(np.exp(factor)):.4g} times those of the "
                 "second: another load changes no friction, and another temperature no load",
                 "see whether torque constant, current scale and unit are the same in both files",
@@ -273,7 +278,7 @@ class _Contradiction(NamedTuple):
 
 def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     best = min(one, other, key=lambda each: each.sigma)
-    spread = repeatability(best.path) * abs(best.value)
+    spread = (repeatability(best.path) if best.path.startswith(CHANGING) else GAIN_SIGMA) * abs(best.value)
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     words = (
         f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}, "
