@@ -1,8 +1,8 @@
 """Logs of two encoders and the current of the motor between a spring of three kinds with no, one or two Maxwell elements.
 
 The input moves as it is prescribed; the output is integrated in steps of 0.1 ms. Springs are linear, cubic or of three
-segments, damping is there or not, noise, ratio, load and amplitude vary. What `identify` lists as identified of stiffness, hysteresis,
-damping and load must lie within 2.5 standard deviations of the truth, or within 1 %.
+segments, damping is there or not, noise, ratio, load and amplitude vary. What `identify` lists as identified of stiffness,
+hysteresis, damping and load must lie within 2.5 standard deviations of the truth, or within 1 %.
 """
 
 from __future__ import annotations
@@ -64,10 +64,11 @@ def drawn(random: np.random.Generator, kind: str, count: int, damped: bool) -> J
         numbers = (stiff, float(random.uniform(0.3, 1.0)) * stiff / half**2)
     if kind == "three_segment":
         numbers = (stiff, 1.6 * stiff, 2.2 * stiff, 0.3 * reach, 0.75 * reach)
-    shares = (0.3, 0.12)[:count] if count == 2 else (0.25,) * count
-    slips = (0.15, 0.4)[:count] if count == 2 else (0.3,) * count
+    shares = (0.3, 0.12) if count == 2 else (0.25,) * count
+    slips = (0.15, 0.4) if count == 2 else (0.3,) * count
+    breakaways = [share * stiff * slip * half for share, slip in zip(shares, slips, strict=True)]
     elements = tuple(
-        (s * stiff, s * stiff * slip * half * float(random.uniform(0.8, 1.2))) for s, slip in zip(shares, slips, strict=False)
+        (share * stiff, torque * float(random.uniform(0.8, 1.2))) for share, torque in zip(shares, breakaways, strict=True)
     )
     damping = 0.06 * float(np.sqrt(stiff * inertia)) if damped else 0.0
     ratio = int(random.choice([50, 80, 100, 120]))

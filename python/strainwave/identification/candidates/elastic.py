@@ -45,6 +45,8 @@ MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends wh
 MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
 MAX_TRIALS = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
+GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
+MIN_GAIN_SIGMA = 2.5  # standard deviations of the gain that a further part must have
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
 CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
@@ -219,12 +221,23 @@ def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) 
 
 @dataclass(frozen=True, eq=False)
 class _TriedModel(ComparedByFields):
-    """A model fitted to a part of the log: its name, free paths, drive, and error on data held out [rad]."""
+    """A model fitted to a part of the log: its name, free paths, drive, and residuals on data held out [rad]."""
 
     name: str
     free: tuple[str, ...]
     drive: Drive
-    error: float
+    left: Array
+
+    @cached_property
+    def error(self) -> float:
+        """Root mean square error on data held out [rad]."""
+        return float(np.sqrt(np.mean(self.left**2)))
+
+    def predicts_as_well_as(self, other: _TriedModel) -> bool:
+        """True if the squares of its residuals are larger by no more than chance over the record makes, or by nearly nothing."""
+        gains = [float(each.mean()) for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)]
+        chance = MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) / np.sqrt(GAIN_BLOCKS)
+        return MAX_RELATIVE_ERROR * self.error <= other.error or float(np.mean(gains)) < chance
 
     @cached_property
     def values(self) -> dict[str, float]:
@@ -255,8 +268,8 @@ def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: f
     while True:
         simpler = [model for drive in _simpler(best.drive, reach) if (model := _with(log, drive, scale, reach)) is not None]
         tried += simpler
-        least = min(each.error for each in tried)
-        good = [each for each in tried if MAX_RELATIVE_ERROR * each.error <= least]
+        least = min(tried, key=lambda each: each.error)
+        good = [each for each in tried if each.predicts_as_well_as(least)]
         before, best = best, min(good, key=lambda each: (len(each.free), each.error))
         if best is before or not any(best is each for each in simpler):
             return best, [each for each in good if each is not best]
@@ -310,8 +323,7 @@ def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedMode
     if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
         raise ValueError("the bend of the spring lies beyond the torque of the log")
     ((predicted, _),) = problem.predict(x)
-    error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
-    return _TriedModel(_name(drive), free, fitted, error)
+    return _TriedModel(_name(drive), free, fitted, (log.measured - predicted)[0, ~training])
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
