@@ -57,7 +57,7 @@ class Joint:
 def drawn(random: np.random.Generator, kind: str, count: int, damped: bool) -> Joint:
     """Return a joint whose spring is bent within its torque, and whose elements slip within its twist."""
     gravity, inertia = float(random.uniform(8.0, 40.0)), float(random.uniform(0.5, 2.5))
-    stiff, reach = float(random.uniform(8e3, 3e4)), 0.9 * gravity
+    stiff, reach = float(random.uniform(2e4, 3.5e4)), 0.9 * gravity
     half = reach / stiff
     numbers: tuple[float, ...] = (stiff,)
     if kind == "cubic":

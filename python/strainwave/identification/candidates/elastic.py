@@ -234,7 +234,7 @@ class _TriedModel(ComparedByFields):
         return float(np.sqrt(np.mean(self.left**2)))
 
     def predicts_as_well_as(self, other: _TriedModel) -> bool:
-        """True if the squares of its residuals are larger by no more than chance over the record makes, or by nearly nothing."""
+        """True if its squared residuals are larger by no more than chance over the record makes, or by nearly nothing."""
         gains = [float(each.mean()) for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)]
         chance = MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) / np.sqrt(GAIN_BLOCKS)
         return MAX_RELATIVE_ERROR * self.error <= other.error or float(np.mean(gains)) < chance
