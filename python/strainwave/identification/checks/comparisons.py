@@ -37,10 +37,7 @@ MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings;
 # Standard deviation of a part from run to run, in logarithms.
 REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
 REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
-CHANGING = (
-    "gear.friction_input.",
-    "steady_friction",
-)  # with temperature and running-in: two files need not agree to their sigmas
+CHANGING = ("gear.friction_input.", "steady_friction", "load.")  # with temperature, running-in and pose
 GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench (assumed)
 
 
