@@ -14,7 +14,13 @@ from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS
-from strainwave.identification.checks.comparisons import between_files, gravity_in_ratings, other_loads, with_start_set
+from strainwave.identification.checks.comparisons import (
+    between_files,
+    gravity_in_ratings,
+    other_loads,
+    torque_scales,
+    with_start_set,
+)
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
@@ -180,7 +186,7 @@ def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[
     return (
         *(check for each in results for check in each.checks), *_nothing_determined(results),
         *with_start_set(start, parameters, failed), *gravity_in_ratings(start, parameters, failed),
-        *between_files(parameters, results),
+        *between_files(parameters, results), *torque_scales(results),
     )  # fmt: skip
 
 

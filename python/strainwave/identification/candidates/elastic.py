@@ -8,7 +8,7 @@ determines it, as gravity or inertia of the load (`candidates.motion`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,12 +16,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
+from strainwave import Drive, _core, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.elastic_starts import UNREACHED, ElasticStart, elastic_starts
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
-from strainwave.identification.experiments.driven_log import DrivenLog
+from strainwave.identification.candidates.torsion.candidate import merged
+from strainwave.identification.candidates.torsion.dissipation import maxwell
+from strainwave.identification.experiments.driven_log import MAX_CUTOFF_SHARE, DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
+from strainwave.identification.experiments.motion import motion_of, spectra
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
@@ -37,17 +41,20 @@ MAX_TIME = 40.0  # s, of a log to which the chosen model is fitted
 MAX_STEP = 1e-3  # s, of the simulation
 MAX_PHASE_STEP = 0.25  # rad, of the vibration of the output in a step, which changes its period by 3e-5 (RK4)
 MIN_TWIST_SIGMA = 3.0  # standard deviations of the twist under load
-START_ELEMENT_SHARE = 0.5  # of the stiffness: initial stiffness of an element of the hysteresis (assumed)
-START_DAMPING_RATIO = 0.05  # initial, of critical damping (assumed)
-FIRST_ELEMENT_SHARE = 0.7  # of the stiffness of an element, for the first of the two that it becomes (assumed)
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
 MAX_TRIALS = 15  # steps of a fit
+MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
+GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
+MIN_GAIN_SIGMA = 2.5  # standard deviations of the gain that a further part must have
+MAX_STARTS = 4  # of the regressions that are simulated
+MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
+CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
-THIRD_SEGMENT_SHARE = 0.75  # of the largest torque: initial beginning of a third segment (assumed)
-UNREACHED_KNEE = 10.0  # times the largest torque: a knee there does nothing
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
+GRAVITY = "load.gravity_torque"
+FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 
 
@@ -95,22 +102,27 @@ def fit_elastic(
         ValueError: noise hides the twist under load, or no model moves as the output does
         FloatingPointError: no model could be simulated
     """
-    found = _fitted(recording, log, drive, scale, law, delayed=True)
-    delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
-    if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
-        return found
-    return _fitted(recording, log, drive, scale, law, delayed=False)
+    reach, late = _reach(recording, log, drive, law)
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
+    rigid = transmitted_torque(log, drive), late * log.motion.speed / gear.kinematics.ratio
+    blocks = _training_blocks(log.motion.time)
+    starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY)
+    if abs(late) < MAX_DELAY_SAMPLES * log.motion.step:
+        found = _fitted(recording, log, starts, scale, reach, delayed=True)
+        delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
+        if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
+            return found
+    return _fitted(recording, log, starts, scale, reach, delayed=False)
 
 
 def _fitted(
-    recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier, *, delayed: bool
+    recording: Recording, log: MotionLog, starts: Sequence[ElasticStart], scale: str, reach: float, *, delayed: bool
 ) -> ElasticCandidate:
     """Return the simplest model that predicts as well as any; `delayed`: a delay of the output angle is an unknown."""
-    stiff, reach = _stiffness(recording, log, drive, law)
-    start = _start(drive, stiff, reach, law)
-    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), start, delayed=delayed)
-    best, rivals = _chosen(compared, start, drive.gear.stiffness, scale, reach)
-    whole = _compared(_stretch(recording, log, drive, MAX_TIME), best.drive, delayed=delayed)
+    drive = starts[0].drive
+    compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), log, drive, delayed=delayed)
+    best, rivals = _chosen(compared, starts, scale, reach)
+    whole = _compared(_stretch(recording, log, drive, MAX_TIME), log, best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
     found = fit_of(problem, x, problem.weights(x))
     sigmas = sigma_by_blocks(problem, x, found.estimates)
@@ -120,8 +132,8 @@ def _fitted(
     return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
 
 
-def _stiffness(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
-    """Return the approximate stiffness of the gear [N.m/rad], and the largest torque along the rigid motion [N.m].
+def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
+    """Return the largest torque along the rigid motion [N.m], and the delay of the output angle [s].
 
     The angle between the shafts is regressed on that torque, with orders, direction and speed, in the pass band of the log.
 
@@ -142,14 +154,14 @@ def _stiffness(recording: Recording, log: MotionLog, drive: Drive, law: kinemati
     covariance, _ = covariance_of(columns / size, left[np.newaxis])
     softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
     reach = float(np.abs(torque[motion.compared]).max())
+    late = ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
     if not softness > MIN_TWIST_SIGMA * sigma:
-        late = 1e3 * ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
-            f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {late:.3g} ms behind: "
+            f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {1e3 * late:.3g} ms behind: "
             "load it more, or measure the angles better"
         )
-    return float(1.0 / softness), reach
+    return reach, float(late)
 
 
 def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
@@ -160,13 +172,33 @@ def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
     return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
-def _compared(recording: Recording, drive: Drive, *, delayed: bool) -> DrivenLog:
-    """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates."""
+def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bool) -> DrivenLog:
+    """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates.
+
+    It begins under the torque of the measured motion: any other one would make an output without damping vibrate for ever.
+    """
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
     step = min(MAX_STEP, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
-    compared = DrivenLog.of(recording, drive, ["output_angle"], step)
+    torque = float(np.interp(recording.time[0], log.motion.time, transmitted_torque(log, drive)))
+    output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
+    initial = {"torque": torque, "output_speed": float(output.speed[0])}
+    compared = DrivenLog.of(recording, drive, ["output_angle"], step, initial, _cutoff_of_signal(recording))
     return compared.with_delays("output_angle") if delayed else compared
+
+
+def _cutoff_of_signal(recording: Recording) -> float | None:
+    """Return the cut-off above which the input angle is noise [Hz]; None if motion fills the band that samples can follow.
+
+    Noise of the input makes a simulated output vibrate: a fit makes up for it by damping and hysteresis that are not there.
+    """
+    step = float(np.median(np.diff(recording.time)))
+    grid = np.arange(recording.time[0], recording.time[-1], step)
+    angle = np.interp(grid, recording.time, recording.values("input_angle", "rad"))
+    frequency, acceleration, noise, _ = spectra(angle, step)
+    signal = frequency[acceleration > MIN_SIGNAL * noise]
+    cutoff = CUTOFF_MARGIN * float(signal.max(initial=0.0))
+    return cutoff if 0.0 < cutoff < MAX_CUTOFF_SHARE / step else None
 
 
 def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) -> Recording:
@@ -189,12 +221,23 @@ def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) 
 
 @dataclass(frozen=True, eq=False)
 class _TriedModel(ComparedByFields):
-    """A model fitted to a part of the log: its name, free paths, drive, and error on data held out [rad]."""
+    """A model fitted to a part of the log: its name, free paths, drive, and residuals on data held out [rad]."""
 
     name: str
     free: tuple[str, ...]
     drive: Drive
-    error: float
+    left: Array
+
+    @cached_property
+    def error(self) -> float:
+        """Root mean square error on data held out [rad]."""
+        return float(np.sqrt(np.mean(self.left**2)))
+
+    def predicts_as_well_as(self, other: _TriedModel) -> bool:
+        """True if its squared residuals are larger by no more than chance over the record makes, or by nearly nothing."""
+        gains = [float(each.mean()) for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)]
+        chance = MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) / np.sqrt(GAIN_BLOCKS)
+        return MAX_RELATIVE_ERROR * self.error <= other.error or float(np.mean(gains)) < chance
 
     @cached_property
     def values(self) -> dict[str, float]:
@@ -202,74 +245,85 @@ class _TriedModel(ComparedByFields):
         return {path: value for path, value, *_ in _core.parameters(self.drive) if path in self.free}
 
     @property
+    def springs(self) -> tuple[str, ...]:
+        """Paths of the numbers of the spring."""
+        return tuple(path for path in self.free if path.startswith(SPRING))
+
+    @property
     def elements(self) -> int:
         """Count of the elements of hysteresis."""
         return sum(path.startswith(f"{MEMORY}breakaway") for path in self.free)
 
 
-def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourier) -> Drive:
-    """Return the drive with a linear spring, one element of hysteresis, and no friction but that of the output."""
-    inertia = inertia_of(drive)
-    gear = drive.gear.replace(
-        stiffness=stiffness.Linear(k=stiff / (1.0 + START_ELEMENT_SHARE)),
-        hysteresis=hysteresis.MaxwellSlip(stiffness=[START_ELEMENT_SHARE * stiff], breakaway=[0.05 * reach]),
-        damping=2.0 * START_DAMPING_RATIO * float(np.sqrt(stiff * inertia)),
-        friction_input=FRICTIONLESS,
-        friction_mesh=FRICTIONLESS,
-        kinematic_error=law,
-    )
-    return drive.replace(gear=gear)
+def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: float) -> tuple[_TriedModel, list[_TriedModel]]:
+    """Return the model with the fewest numbers of those that predict best, and those that predict as well.
 
-
-def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) -> tuple[_TriedModel, list[_TriedModel]]:
-    """Return the model that no further part improves, and those that predict as well.
-
-    The part that predicts best is added next: a bend of the spring and a further element of hysteresis can imitate each other,
-    so that neither comes first.
+    Springs and counts of elements are compared together, as a bend of the spring and an element can imitate each other.
     """
-    best, left = _tried(log, start, scale, reach), [_bent, _with_element, _bent_twice]
-    every = [best]
-    while left:
-        reach = float(np.abs(log.gear_torque(best.drive)).max())
-        tried = {more: other for more in left if (other := _with(more, log, best, law, scale, reach)) is not None}
-        every += tried.values()
-        more = min(tried, key=lambda each: tried[each].error, default=None)
-        if more is None or tried[more].error > MAX_RELATIVE_ERROR * best.error:
-            break
-        best, left = tried[more], [each for each in left if each is not more]
-    return best, [each for each in every if each is not best and MAX_RELATIVE_ERROR * each.error < best.error]
+    near = [each for each in starts if each.error < MAX_START_ERROR * starts[0].error][:MAX_STARTS]
+    tried = [model for each in near if (model := _with(log, each.drive, scale, reach)) is not None]
+    if not tried:
+        raise ValueError("no spring and hysteresis moves the output as it was measured")
+    best = min(tried, key=lambda each: each.error)
+    while True:
+        simpler = [model for drive in _simpler(best.drive, reach) if (model := _with(log, drive, scale, reach)) is not None]
+        tried += simpler
+        least = min(tried, key=lambda each: each.error)
+        good = [each for each in tried if each.predicts_as_well_as(least)]
+        before, best = best, min(good, key=lambda each: (len(each.free), each.error))
+        if best is before or not any(best is each for each in simpler):
+            return best, [each for each in good if each is not best]
+
+
+def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:
+    """Yield the drive with one bend of its spring less, and with one element less."""
+    gear: Any = drive.gear
+    spring = gear.stiffness
+    if isinstance(spring, stiffness.ThreeSegment) and spring.t2 < reach:
+        first = abs(spring.k2 - spring.k1) > abs(spring.k3 - spring.k2)  # the larger bend stays
+        t1, k2 = (spring.t1, spring.k2) if first else (spring.t2, spring.k3)
+        two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED)
+        yield drive.replace(gear=gear.replace(stiffness=two))
+    if not isinstance(spring, stiffness.Linear):
+        yield drive.replace(gear=gear.replace(stiffness=stiffness.Linear(k=float(spring.tangent(0.0)))))
+    if len(gear.hysteresis.stiffness) > 1:
+        yield drive.replace(gear=merged(gear))
+    elif len(gear.hysteresis.stiffness):
+        yield drive.replace(gear=gear.replace(hysteresis=maxwell([])))
 
 
 def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
-    """Return the distance of a number of the gear in two models that predict alike; 0 if the other model lacks it.
+    """Return the distance of a number of the gear in two models that predict alike; 0 if the other model has none alike.
 
-    Elements of hysteresis are compared if both models have as many.
+    Numbers of elements are compared if both models have as many, those of a spring but its stiffness at zero twist if both have
+    that kind.
     """
     if path.startswith(MEMORY) and one.elements != other.elements:
         return 0.0
-    alias = {"gear.stiffness.k": "gear.stiffness.k1", "gear.stiffness.k1": "gear.stiffness.k"}
-    there = other.values.get(path, other.values.get(alias.get(path, "")))
+    if path not in FIRST_STIFFNESS:
+        alike = not path.startswith(SPRING) or one.springs == other.springs
+        there = other.values.get(path) if alike else None
+    else:
+        there = next((other.values[each] for each in FIRST_STIFFNESS if each in other.values), None)
     return abs(one.values[path] - there) if path in one.values and there is not None else 0.0
 
 
-def _with(
-    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _TriedModel, law: Any, scale: str, reach: float
-) -> _TriedModel | None:
-    """Return the model with one part more, from its fit without; None if the part does not apply."""
-    if (grown := more(best.drive, law, reach)) is None:
-        return None
+def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel | None:
+    """Return the model fitted from a start; None if it leaves what its law allows."""
     try:
-        return _tried(log, grown, scale, reach)
-    except (ValueError, FloatingPointError):  # out of what its law allows, from its start
+        return _tried(log, drive, scale, reach)
+    except (ValueError, FloatingPointError):
         return None
 
 
 def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel:
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
+    fitted: Any = problem.records[0].model(x)
+    if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
+        raise ValueError("the bend of the spring lies beyond the torque of the log")
     ((predicted, _),) = problem.predict(x)
-    error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
-    return _TriedModel(_name(drive), free, problem.records[0].model(x), error)
+    return _TriedModel(_name(drive), free, fitted, (log.measured - predicted)[0, ~training])
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
@@ -295,39 +349,6 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
     for path, *_ in _core.parameters(drive):
         if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
             yield path
-
-
-def _bent(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """Return the drive with the law of the initial gear, as stiff; with two segments if that is linear, or has three."""
-    stiff = drive.gear.stiffness.tangent(0.0)
-    if isinstance(law, stiffness.Linear | stiffness.ThreeSegment):
-        knee = min(getattr(law, "t1", np.inf), 0.5 * reach)
-        bent: Any = stiffness.ThreeSegment(k1=0.8 * stiff, k2=1.2 * stiff, k3=1.2 * stiff, t1=knee, t2=UNREACHED_KNEE * reach)
-        return drive.replace(gear=drive.gear.replace(stiffness=bent))
-    softer = stiff / law.tangent(0.0) if law.tangent(0.0) > 0.0 else 1.0
-    numbers = {
-        field["name"]: softer * getattr(law, field["name"]) for field in law.fields if field.get("unit", "").startswith("N.m/")
-    }
-    return drive.replace(gear=drive.gear.replace(stiffness=law.replace(**numbers)))
-
-
-def _with_element(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """Return the drive with the last element of hysteresis split in two, of which one slides later."""
-    elements: Any = drive.gear.hysteresis
-    *stiffs, stiff = elements.stiffness
-    *limits, limit = elements.breakaway
-    split = [FIRST_ELEMENT_SHARE * stiff, (1.0 - FIRST_ELEMENT_SHARE) * stiff]
-    more = hysteresis.MaxwellSlip(stiffness=[*stiffs, *split], breakaway=[*limits, 0.5 * limit, 0.5 * limit])
-    return drive.replace(gear=drive.gear.replace(hysteresis=more))
-
-
-def _bent_twice(drive: Drive, law: Any, reach: float) -> Drive | None:
-    """Return the drive with a third segment, if the second is determined and the torque goes far beyond its beginning."""
-    spring: Any = drive.gear.stiffness
-    knee = THIRD_SEGMENT_SHARE * reach
-    if not isinstance(spring, stiffness.ThreeSegment) or spring.t1 > knee:
-        return None
-    return drive.replace(gear=drive.gear.replace(stiffness=spring.replace(t2=knee, k3=1.1 * spring.k2)))
 
 
 def _name(drive: Drive) -> str:

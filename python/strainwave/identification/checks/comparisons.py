@@ -25,6 +25,8 @@ from strainwave.identification.results.friction_of_file import friction_of, has_
 from strainwave.messages import listed
 
 AGREEMENT = "agreement of files"  # name of the check of two files
+SCALE = "torques of two files"  # likewise, of all their torques together
+COULOMB = "gear.friction_input.coulomb"
 GRAVITY = "load.gravity_torque"
 OF_LOAD = ("load.inertia", GRAVITY)
 MAX_CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
@@ -35,6 +37,8 @@ MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings;
 # Standard deviation of a part from run to run, in logarithms.
 REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
 REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
+CHANGING = ("gear.friction_input.", "steady_friction", "load.")  # with temperature, running-in and pose
+GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench (assumed)
 
 
 @dataclass(frozen=True)
@@ -169,6 +173,46 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
         )  # fmt: skip
 
 
+def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
+    """Yield a check for each two logs that differ in load and friction by one factor, as by another torque constant.
+
+    Another load changes no friction, and another temperature no load. Files with a failed check take no part.
+    """
+    logs = [each for each in files if not each.failed and not each.same_as and not each.refused]
+    for one, other in combinations(logs, 2):
+        pairs = [_log_ratio(mine, its) for mine, its in _same_numbers(one, other)]
+        if not any(path in OF_LOAD for path, *_ in pairs) or all(path in OF_LOAD for path, *_ in pairs):
+            continue
+        off, sigma = (np.array([each[place] for each in pairs]) for place in (1, 2))
+        weight = sigma**-2 / np.sum(sigma**-2)
+        factor = float(weight @ off)
+        differs = bool(np.all(np.abs(off) > MAX_DISTANCE * sigma)) and abs(factor) > MAX_DISTANCE * GAIN_SIGMA
+        is_one = bool(np.all(np.abs(off - factor) < MAX_DISTANCE * sigma))
+        if differs and is_one:
+            yield Check(
+                SCALE, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * GAIN_SIGMA, "1", True,
+                f"{listed(path for path, *_ in pairs)} of the first are all {float(np.exp(factor)):.4g} times those of the "
+                "second: another load changes no friction, and another temperature no load",
+                "see whether torque constant, current scale and unit are the same in both files",
+            )  # fmt: skip
+
+
+def _same_numbers(one: FileResult, other: FileResult) -> Iterator[tuple[FileEstimate, FileEstimate]]:
+    """Yield the torques that two logs both determine: load, and Coulomb friction of one law."""
+    compared = (*OF_LOAD, *([COULOMB] if one.friction == other.friction else []))
+    there = {(each.path, each.law): each for each in other.estimates if not each.why}
+    for each in one.estimates:
+        its = there.get((each.path, each.law))
+        if each.path in compared and not each.why and its is not None and min(each.value, its.value) > 0.0:
+            yield each, its
+
+
+def _log_ratio(one: FileEstimate, other: FileEstimate) -> tuple[str, float, float]:
+    """Return the path of a number, the logarithm of one value over the other, and its standard deviation."""
+    sigma = float(np.hypot(one.own / one.value, other.own / other.value))
+    return one.path, float(np.log(one.value / other.value)), max(sigma, 1e-300)
+
+
 def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
     """Return a remark on each log whose load is not that of the first log that determines it, by file name.
 
@@ -231,7 +275,7 @@ class _Contradiction(NamedTuple):
 
 def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     best = min(one, other, key=lambda each: each.sigma)
-    spread = repeatability(best.path) * abs(best.value)
+    spread = (repeatability(best.path) if best.path.startswith(CHANGING) else GAIN_SIGMA) * abs(best.value)
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     words = (
         f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}, "

@@ -26,8 +26,7 @@ MIN_RATIO_SIGMA = 3.0  # standard deviations beyond which a measured ratio is an
 MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by less
 MAX_CONSTANT_DIFFERENCE = 0.1  # relative, of a torque constant by the voltage: a resistance changes as much as a motor warms up
 MAX_CONSTANT_SIGMA = 0.03  # relative: a voltage that determines the constant less well is no check of it
-MAX_INERTIA_FACTOR = 1.4  # between the inertias of a load by its winding up and by the torque of the motor
-MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
+MAX_INERTIA_SIGMA = 3.0  # standard deviations between the inertias of a load by its winding up and by the torque of the motor
 OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
 MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
@@ -168,10 +167,9 @@ def inertias_of_load(by_spring: tuple[float, float], by_torque: tuple[float, flo
     """
     (one, of_one), (other, of_other) = by_spring, by_torque
     apart = abs(one - other) / max(float(np.hypot(of_one, of_other)), 1e-300)
-    factor = max(one, other) / max(min(one, other), 1e-300)
     return Check(
-        "inertia of the load in two ways", source, factor, MAX_INERTIA_FACTOR, "1",
-        factor > MAX_INERTIA_FACTOR and apart > MIN_INERTIA_SIGMA,
-        f"the load has an inertia of {one:.3g} {unit} by how it winds the gear up, and {other:.3g} by the torque of the motor",
+        "inertia of the load in two ways", source, apart, MAX_INERTIA_SIGMA, "1", apart > MAX_INERTIA_SIGMA,
+        f"the load has an inertia of {one:.3g} ± {of_one:.1g} {unit} by how it winds the gear up, and {other:.3g} ± "
+        f"{of_other:.1g} by the torque of the motor: {apart:.2g} standard deviations apart",
         "see whether torque constant, ratio, motor_inertia and the side of the torque are right",
     )  # fmt: skip

@@ -28,6 +28,7 @@ CHANNEL_UNITS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_e
 MAX_STEP = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
 VIBRATION_TIME = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
 MAX_CUTOFF_SHARE = 0.24  # of the sample rate: bristles and the order of teeth are fast, and above a quarter noise is measured
+PLACES = {"output_angle", "twist"}  # initial quantities by which the output begins where it was
 END_PERIODS = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
 
 
@@ -78,6 +79,7 @@ class DrivenLog(ComparedByFields):
         channels: Sequence[str] | None = None,
         dt: float | None = None,
         initial: Mapping[str, float] | None = None,
+        cutoff: float | None = None,
     ) -> DrivenLog:
         """Return the experiment of columns time, input_angle and those to compare: `channels`, or all that can be.
 
@@ -89,6 +91,7 @@ class DrivenLog(ComparedByFields):
             channels: columns to compare
             dt: largest step of the simulation [s]; 0.5 ms, or as short as the drive needs, if not given
             initial: initial values other than the motion of the input, as for `simulate`
+            cutoff: of the filter on the input angle [Hz]; by default up to a quarter of the sample rate
 
         Raises:
             ValueError: a column is missing, nothing can be compared, or the angle does not determine the motion
@@ -104,7 +107,7 @@ class DrivenLog(ComparedByFields):
                 f"the log contains how the input moved, and nothing to compare: record one of {listed(CHANNEL_UNITS)} besides; "
                 f"it has {listed(recording.names)}"
             )
-        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), highest=MAX_CUTOFF_SHARE)
+        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), cutoff, highest=MAX_CUTOFF_SHARE)
         time = recording.time - recording.time[0]
         grid = smoothed.time - smoothed.time[0]
         step = fine_enough(driven(drive), MAX_STEP, MIN_STEP) if dt is None else arguments.seconds("dt", dt)
@@ -112,7 +115,7 @@ class DrivenLog(ComparedByFields):
         moving = abs(float(smoothed.speed[0])) > MAX_REST_SPEED * float(np.abs(smoothed.speed).max())
         moved = InputMotion.through(grid[:steps], smoothed.angle[:steps], from_rest=not moving)
         moved = replace(moved, initial={**moved.initial, **(initial or {})})
-        begin = VIBRATION_TIME if moving and initial is None else 0.0
+        begin = VIBRATION_TIME if moving and PLACES.isdisjoint(initial or {}) else 0.0
         end = moved.command.duration - END_PERIODS / smoothed.cutoff
         rows = np.flatnonzero((time >= begin) & (time <= end))
         rows = rows[:: max(1, -(-len(rows) // MAX_COMPARED))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,12 @@ from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT, sliding
 from strainwave.identification.candidates.plain import fit_plain
+from strainwave.identification.candidates.rotor import (
+    SHARE_OF_UNKNOWN_ROTOR,
+    inertia_at_input,
+    slopes_by_rotor,
+    with_rotor,
+)
 from strainwave.identification.checks.logs import (
     held_out_error,
     ratio_of_encoders,
@@ -43,6 +49,10 @@ FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB = f"{INPUT}coulomb"
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
+OF_ROTOR = (
+    "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
+    "--constant motor_inertia=…"
+)
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -57,20 +67,26 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     of_model = [*_delay(best), *_other_laws(best, others, in_current), *_one_encoder(taken)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
-    estimates = [*_of_motion(best, others, taken), *_of_detent(best, taken)]
+    apart = spread_by_models(best, others)
+    estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
-    if not in_current:
-        known = _with_friction(known, best, estimates, file.path.name)
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
         errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
         between, known = between_encoders(taken, best, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
+        if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
+            best = with_rotor(best, rotor.value)
+            squared = drive.gear.kinematics.ratio**2
+            taken = replace(taken, drive=drive.replace({MOTOR: rotor.value}), rotor=rotor.sigma * squared)
+            estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
+    if not in_current:
+        known = _with_friction(known, best, estimates, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
@@ -205,8 +221,14 @@ def _of_detent(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstima
         yield found.in_current() if taken.in_current else found
 
 
-def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[FileEstimate]:
-    """Yield the estimates of a log; each is as uncertain as the torque constant too, and inertia as that of the rotor."""
+def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: PreparedLog) -> Iterator[FileEstimate]:
+    """Yield the estimates of a log; each is as uncertain as the torque constant too, inertia and loss as that of the rotor.
+
+    Args:
+        best: the model
+        apart: how far estimates lie apart in models that predict as well, by path
+        taken: the log
+    """
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
     squared = drive.gear.kinematics.ratio**2
@@ -220,21 +242,26 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
         induced["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
-    spread, apart = spread_by_blocks(best), spread_by_models(best, others)
+    spread, by_rotor = spread_by_blocks(best), slopes_by_rotor(best)
+    unknown = 0.0 if taken.motor_known else SHARE_OF_UNKNOWN_ROTOR * inertia_at_input(best)
     gravity = next(((each.value, each.sigma) for each in best.fit.estimates if each.path == "load.gravity_torque"), (0.0, 0.0))
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
         path = plain(estimate.path)
         law = encoder if path == "load.gravity_phase" else ""
-        sigma = float(np.hypot(max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0)))
+        turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
+        own = max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0), turned * unknown
+        sigma = float(np.linalg.norm(own))
         found = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
         offset = independent.get(path, 0.0)
         found = found.resting_on(taken.relative, offset + induced.get(path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
-        found = found.sharing(rotors.get(path, 0.0))
+        found = found.sharing(rotors.get(path, abs(turned) * taken.rotor / squared))
         if path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
+        elif is_uncertain(found.value, abs(turned) * unknown):
+            found = replace(found, why=OF_ROTOR)
         elif not found.is_phase:
             found = found.unless_uncertain()
         elif path != "load.gravity_phase":

@@ -17,9 +17,9 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.motion import motion_of
-from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.kinds.prepared_log import PreparedLog
+from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
@@ -34,6 +34,9 @@ SIGNIFICANT_DELAY_SIGMA = 2.5  # standard deviations, beyond which a delay is th
 MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the inertia: beyond, torques count from inertia
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
 PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
+MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
+DAMPING_RATIO_SIGMA = 2e-3  # of critical damping (assumed): noise of the input that passes its filter looks like damping
+MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
@@ -62,7 +65,7 @@ def between_encoders(
     result = FileResult(
         source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
         remarks=tuple(_remarks(found, scale, taken)),
-        checks=tuple(_inertias(found, scale, estimates.get(INERTIA), taken, source)),
+        checks=tuple(_inertias(found, scale, estimates, taken, source)),
         pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),), between=found.fit,
     )  # fmt: skip
     parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
@@ -159,10 +162,17 @@ def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_curr
         if estimate.path in nuisances or estimate.path.startswith(("gear.kinematic_error.phase", "load.gravity")):
             continue
         path = _path(estimate.path, orders, found, law)
+        if path == "gear.damping":
+            stiff = gear.stiffness.tangent(0.0) * inertia_of(found.drive)
+            sigma = np.hypot(sigma, 2.0 * DAMPING_RATIO_SIGMA * np.sqrt(stiff))
         own = FileEstimate(path, estimate.unit, estimate.value, float(sigma), _law_of(path, found))
         if own.is_of_torque:
             own = replace(own, sigma=float(np.hypot(sigma, scale.own * own.value))).resting_on(scale.common)
         own = own.unless_uncertain()
+        if path.startswith(MAY_BE_ABSENT) and own.value < MIN_PART_SIGMA * own.sigma:
+            own = replace(
+                own, why=f"no larger than {MIN_PART_SIGMA:g} standard deviations: the record does not show that it is there"
+            )
         yield own.in_current() if in_current else own
 
 
@@ -199,7 +209,8 @@ def _motor(
     of_load = 0.0 if load is None else load.own / ratio**2
     sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR]), of_load))
     estimate = FileEstimate(MOTOR, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
-    estimate = estimate.sharing(taken.rotor / ratio**2).unless_uncertain()
+    of_recorder = RECORDER_BIAS * (own.value + input_inertia) if taken.log.effort == "current" else 0.0
+    estimate = estimate.sharing(float(np.hypot(taken.rotor / ratio**2, of_recorder))).unless_uncertain()
     yield estimate.in_current() if taken.in_current else estimate
 
 
@@ -236,18 +247,23 @@ def _law_of(path: str, found: ElasticCandidate) -> str:
 
 
 def _inertias(
-    found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, taken: PreparedLog, source: str
+    found: ElasticCandidate, scale: _Scale, by_motor: Mapping[str, Estimate], taken: PreparedLog, source: str
 ) -> Iterator[Check]:
     """Yield the check of the inertia of the load by how it winds the gear up and by the torque of the motor.
 
-    The first is taken: it needs neither the inertia of the motor nor a current that is a mean.
+    The first is taken: it needs neither the inertia of the motor nor a current that is a mean. If both count from gravity, a
+    wrong torque constant changes both alike but for the rotor.
     """
-    if scale.path != GRAVITY or rigid is None or not taken.motor_known:
+    if scale.path != GRAVITY or INERTIA not in by_motor or not taken.motor_known:
         return
     places = {each.path: place for place, each in enumerate(found.fit.estimates)}
     own, sigma = found.fit.estimates[places[INERTIA]].value, float(found.sigmas[places[INERTIA]])
-    by_torque = rigid.value, float(np.hypot(rigid.sigma, taken.rotor))
-    yield inertias_of_load((own, sigma), by_torque, "A·s²/rad" if taken.in_current else "kg·m²", source)
+    drive, rigid = taken.drive, by_motor[INERTIA]
+    rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
+    of_torque = [rigid.sigma, taken.rotor, taken.relative * rotor]
+    by_torque = rigid.value, float(np.linalg.norm(of_torque))
+    unit = "A·s²/rad" if taken.in_current else "kg·m²"
+    yield inertias_of_load((own, float(np.hypot(sigma, scale.own * own))), by_torque, unit, source)
 
 
 def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iterator[str]:

@@ -20,6 +20,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
 from strainwave.messages import as_option, listed
 
+RECORDER_BIAS = 0.05  # of the rotor's inertia: a current recorded where a controller has just acted shows it larger (assumed)
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
 
 
@@ -37,7 +38,8 @@ class PreparedLog(ComparedByFields):
         given: numbers of the drive that a person gave with the file, by path
         relative: standard deviation of the torque constant over its value, where the torque rests on it; else 0 [1]
         of_resistance: the same of the resistance, where the torque is that of a voltage [1]
-        rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2]; 0 where torques are in A
+        rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2], with the bias of a recorder of
+            currents; 0 where torques are in A
     """
 
     log: MotionLog
@@ -94,7 +96,11 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     given = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     rests = log.effort in ("current", "voltage") and not in_current  # a torque that was measured rests on no constant
     constant = TorqueConstant.of(file, known.gear_set) if rests else None
-    rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
+    turning = drive.motor.inertia + drive.gear.input_inertia
+    of_recorder = RECORDER_BIAS * turning if log.effort == "current" else 0.0
+    rotor = (
+        0.0 if in_current else float(np.hypot(rotor_sigma(file, known.gear_set), of_recorder)) * drive.gear.kinematics.ratio**2
+    )
     relative = 0.0 if constant is None else constant.relative
     by_voltage = log.effort == "voltage" and "resistance" not in file.constants
     of_resistance = (

@@ -41,7 +41,7 @@ def without_motor(files: Sequence[FileResult], *, accept: bool = False) -> tuple
 
 def _without_motor(file: FileResult, motors: Mapping[str, CombinedParameter]) -> FileResult:
     drive, own = drive_of(file), {each.path: each for each in file.estimates}
-    if drive is None or LOAD not in own or drive.motor.inertia > MIN_INERTIA:
+    if drive is None or LOAD not in own or (drive.motor.inertia > MIN_INERTIA and MOTOR not in own):
         return file
     load, motor = own[LOAD], motors.get(own[LOAD].law)
     if MOTOR in own:

@@ -59,7 +59,7 @@ def test_two_encoders_contradict_a_gear_of_another_ratio(true: float, fails: boo
     assert check.failed == fails
 
 
-@pytest.mark.parametrize(("by_torque", "fails"), [(0.9, False), (0.135, True), (2.5, True)])
+@pytest.mark.parametrize(("by_torque", "fails"), [(0.9, False), (0.678, True), (0.135, True), (2.5, True)])
 def test_two_inertias_of_a_load_contradict_each_other(by_torque: float, fails: bool) -> None:
     """By the winding up of the gear 0.85 kg.m2; by the torque of a motor whose constant is half of the truth 0.135."""
     assert inertias_of_load((0.85, 0.01), (by_torque, 0.02), "kg.m2", "log.csv").failed == fails
