@@ -46,6 +46,7 @@ MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps mov
 MAX_TRIALS = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
 GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
+MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
 MIN_GAIN_SIGMA = 2.5  # standard deviations of the gain that a further part must have
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
@@ -237,7 +238,8 @@ class _TriedModel(ComparedByFields):
         """True if its squared residuals are larger by no more than chance over the record makes, or by nearly nothing."""
         gains = [float(each.mean()) for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)]
         chance = MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) / np.sqrt(GAIN_BLOCKS)
-        return MAX_RELATIVE_ERROR * self.error <= other.error or float(np.mean(gains)) < chance
+        by_chance = self.error <= MAX_CHANCE_ERROR * other.error and float(np.mean(gains)) < chance
+        return MAX_RELATIVE_ERROR * self.error <= other.error or by_chance
 
     @cached_property
     def values(self) -> dict[str, float]:
