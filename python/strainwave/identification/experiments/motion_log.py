@@ -205,15 +205,11 @@ class MotionLog(ComparedByFields):
         return np.asarray(effort + sum(_zeros(unknown)))
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
-        """Return measured less predicted effort at every instant of the grid, shape (m,).
+        """Return measured less predicted effort at every instant of the grid, at rest, too, shape (m,).
 
-        At rest friction takes any value up to the one that breaks it away: the residual is what lies beyond. Outliers and
-        clipped samples have none.
+        Outliers and clipped samples have none.
         """
-        left: Array = self.recorded - self.whole(model, nuisances)
-        hold = _hold(model) * abs(per_torque(model, self.effort))
-        held = np.sign(left) * np.maximum(np.abs(left) - hold, 0.0)
-        return np.where(self.sound, np.where(self.motion.resting, held, left), 0.0)
+        return np.where(self.sound, self.recorded - self.whole(model, nuisances), 0.0)
 
     def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
@@ -313,12 +309,6 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     found = np.zeros((len(paths), len(torque)))
     found[places] = slopes
     return torque, found
-
-
-def _hold(drive: Drive) -> float:
-    """Return the largest torque at the input that friction there balances at rest [N.m]; a bristle's is its breakaway."""
-    law: Any = drive.gear.friction_input
-    return float(law.hold(1.0)) if hasattr(law, "hold") else float(getattr(law, "breakaway", 0.0))
 
 
 def per_torque(drive: Drive, effort: str) -> float:
