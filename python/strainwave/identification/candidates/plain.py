@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MotionLog, per_torque, turnover_speed
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -20,8 +20,6 @@ Rows = NDArray[np.bool_]
 STRETCHES = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
 MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler log: along a recorded speed, or with a delay, it must be less
 MAX_DELAY_SAMPLES = 5  # of the log
-TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
-FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
 MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction begins, which plain least squares does not describe
 BLOCKS_PER_STRETCH = 10  # over which the residual scatters
@@ -154,8 +152,7 @@ def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
 def _columns(log: MotionLog, drive: Drive) -> Array:
     motion, ratio = log.motion, drive.gear.kinematics.ratio
     angle = motion.angle / ratio
-    fast = float(np.quantile(np.abs(motion.speed), FAST_QUANTILE))
-    sign = np.tanh(motion.speed / max(TURNS_OVER * fast, 1e-300))
+    sign = np.tanh(motion.speed / turnover_speed(motion.speed))
     offset = np.full_like(angle, float(log.both_ways))  # which one direction alone does not separate from friction
     series = [motion.acceleration, motion.speed, sign, offset, np.sin(angle) / ratio, np.cos(angle) / ratio]
     return np.stack([*series, *(each / ratio for each in log.regressors.values())], axis=1)

@@ -40,6 +40,8 @@ HELD_QUANTILE = 0.98  # of the steps of a channel without noise, whose size stan
 MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
+TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
+FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
 INPUT_COUNT, LOAD_PLACE, TEMPERATURE_PLACE = 6, 2, 4  # inputs of the inverse dynamics, and places of two of them
 
@@ -196,8 +198,21 @@ class MotionLog(ComparedByFields):
         return in_band[:1], in_band[1:, np.newaxis]
 
     def whole(self, model: Drive, nuisances: Array) -> Array:
-        """Return the effort that a model predicts at every instant of the grid, shape (m,)."""
-        torque, _ = needed_torque(model, self.motion, self._others(nuisances))
+        """Return the effort that a model predicts at every instant of the grid, shape (m,).
+
+        Friction without bristles turns over with the sign of the speed, of which noise and the instant of a sample decide near
+        zero: there the effort is the mean over both senses by their chance, as plain least squares has it.
+        """
+        motion, others = self.motion, self._others(nuisances)
+        if model.gear.friction_input.set_valued:
+            motion = replace(motion, resting=np.zeros_like(motion.resting))
+            chance = 0.5 + 0.5 * np.tanh(np.abs(motion.speed) / turnover_speed(motion.speed))
+            along, against = (
+                needed_torque(model, each, others)[0] for each in (motion, replace(motion, speed=-motion.speed))
+            )
+            torque = chance * along + (1.0 - chance) * against
+        else:
+            torque, _ = needed_torque(model, motion, others)
         effort = per_torque(model, self.effort) * torque + self.induced(model)
         unknown = self._unknown(nuisances)
         if self.delayed:
@@ -262,6 +277,11 @@ class MotionLog(ComparedByFields):
         )
         there, _ = needed_torque(model, self.motion, others + step)
         return np.asarray((there - torque) / step)
+
+
+def turnover_speed(speed: Array) -> float:
+    """Return the speed of the input about which the sign of friction turns over [rad/s], by the speeds of a log."""
+    return max(TURNS_OVER * float(np.quantile(np.abs(speed), FAST_QUANTILE)), 1e-300)
 
 
 def _zeros(unknown: Mapping[str, float]) -> list[float]:
