@@ -13,7 +13,7 @@ from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import fit_plain
-from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
+from strainwave.identification.checks.logs import MAX_UNEXPLAINED, held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
@@ -37,6 +37,7 @@ FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB = f"{INPUT}coulomb"
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
+BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -52,7 +53,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     estimates, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
-    if not in_current:
+    if not in_current and taken.has_friction:
         known = _with_friction(known, best, estimates, file.path.name)
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
@@ -68,8 +69,12 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     law = best.fit.parts[0].model.gear.friction_input
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
-    level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
-    checks += [] if in_current else level
+    explained = held_out.relative < MAX_UNEXPLAINED and not held_out.share_of_plain > held_out.max_share_of_plain
+    if not in_current and taken.has_friction:
+        of_log = friction_of_log(
+            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, explained=explained
+        )
+        checks += of_log
     checks += [*unit_of_torque(file), input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
     checks += checks_of_motion(best, drive, recording, held_out, name)
     pictures = (Picture(predicted), *between.pictures)
@@ -201,7 +206,9 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
         found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
         found = found.sharing(rotors.get(estimate.path, 0.0))
-        if estimate.path in DRY_TORQUES and not best.log.both_ways:
+        if not taken.has_friction and estimate.path.startswith("gear.friction_"):
+            found = replace(found, why=BEHIND_GEAR)
+        elif estimate.path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
         elif not found.is_phase:
             found = found.unless_uncertain()
