@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from strainwave import Drive
-from strainwave.identification.candidates.plain import Plain, fit_plain, moving
+from strainwave.identification.candidates.plain import Plain, fit_plain, inertia_with_sigma, moving
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 
+SIGNIFICANCE_SIGMA = 3.0  # standard deviations, by which the rotor must have more inertia than all that turns
 ROTOR_MARGIN = 1.2  # times the inertia of the rotor: a joint torque with less of it was measured behind the rotor
 MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a joint torque with less was measured behind the gear
 MIN_FRICTION_OF_INPUT = 0.1  # of the friction of the start set: with less, a joint torque may lack the rotor (assumed)
@@ -45,12 +46,12 @@ def torque_place(log: MotionLog, drive: Drive) -> TorquePlace:
         log: of the torque
         drive: with the inertias of motor and gear, and the friction of the gear, as guessed before
     """
-    plain, ratio = fit_plain(log, drive), drive.gear.kinematics.ratio
-    motor, gear = drive.motor.inertia, drive.gear.input_inertia
-    rotor, total = motor + gear, max(plain.inertia, 0.0)
-    sizes = f"all that turns has {total * ratio**2:.3g} kg·m² at the output, the rotor {rotor * ratio**2:.3g} kg·m²"
+    ratio, motor, gear = drive.gear.kinematics.ratio, drive.motor.inertia, drive.gear.input_inertia
+    inertia, sigma = inertia_with_sigma(log, drive)
+    rotor, total = motor + gear, max(inertia + SIGNIFICANCE_SIGMA * sigma, 0.0)  # no more than that turns
+    sizes = f"all that turns has {inertia * ratio**2:.3g} kg·m² at the output, the rotor {rotor * ratio**2:.3g} kg·m²"
     if log.effort == "joint_torque":
-        share = _friction_share(plain, log, drive)
+        share = _friction_share(fit_plain(log, drive), log, drive)
         if share < MIN_FRICTION_SHARE or total < ROTOR_MARGIN * rotor:
             why = "it contains no friction of the gear" if share < MIN_FRICTION_SHARE else sizes
             return TorquePlace(

@@ -12,7 +12,7 @@ from strainwave.identification.candidates.confirmed import confirmed, other_laws
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT
-from strainwave.identification.candidates.plain import fit_plain
+from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
 from strainwave.identification.checks.logs import MAX_UNEXPLAINED, held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
@@ -24,6 +24,7 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.determined import friction_at
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
@@ -34,7 +35,8 @@ from strainwave.orders.two_encoders import transmission_error
 
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
-COULOMB = f"{INPUT}coulomb"
+COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
+SPREAD_OF_SPLIT = 0.7  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
@@ -201,6 +203,8 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
             continue
         law = encoder if estimate.path == "load.gravity_phase" else ""
         sigma = float(np.hypot(max(estimate.sigma, spread.get(estimate.path, 0.0)), apart.get(estimate.path, 0.0)))
+        if estimate.path == "load.gravity_torque" and not best.log.regressors:
+            sigma = max(sigma, gravity_sigma(best.log, best.model.drive))
         found = FileEstimate(estimate.path, estimate.unit, estimate.value, sigma, law)
         offset = independent.get(estimate.path, 0.0)
         found = found.resting_on(taken.relative, offset + induced.get(estimate.path, 0.0))
@@ -214,4 +218,24 @@ def _of_motion(best: MotionCandidate, others: Sequence[MotionCandidate], taken: 
             found = found.unless_uncertain()
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
+        if best.model.one_speed and estimate.path == COULOMB:
+            for each in _at_one_speed(found, best):
+                yield each.in_current() if in_current else each
+            continue
         yield found.in_current() if in_current else found
+
+
+def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate) -> Iterator[FileEstimate]:
+    """Yield the friction at the one speed of a record, and how the start set splits it into Coulomb and viscous friction."""
+    speed, viscous = best.model.one_speed, float(best.model.law.viscous)
+    at_speed = friction_at(speed, coulomb.value + speed * viscous, coulomb.sigma)
+    why = (
+        f"determined together: coulomb + {speed:.3g} viscous = {at_speed.value:.4g} ± {at_speed.sigma:.2g} {coulomb.unit}, as the "
+        "record has one speed; the split is that of the start set"
+    )
+    spread = SPREAD_OF_SPLIT * viscous
+    together = not at_speed.why
+    own = replace(coulomb, sigma=float(np.hypot(coulomb.sigma, spread * speed)), why=coulomb.why or why, in_combination=together)
+    yield at_speed if not coulomb.why else replace(at_speed, why=coulomb.why)
+    yield own
+    yield FileEstimate(VISCOUS, "N.m.s/rad", viscous, spread, "", own.why, in_combination=together)
