@@ -36,7 +36,8 @@ from strainwave.orders.two_encoders import transmission_error
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
-SPREAD_OF_SPLIT = 0.7  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
+SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
+MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
@@ -233,7 +234,7 @@ def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate) -> Iterator[File
         f"determined together: coulomb + {speed:.3g} viscous = {at_speed.value:.4g} ± {at_speed.sigma:.2g} {coulomb.unit}, as the "
         "record has one speed; the split is that of the start set"
     )
-    spread = SPREAD_OF_SPLIT * viscous
+    spread = max(SPREAD_OF_VISCOUS * viscous, MIN_SPREAD_OF_SHARE * at_speed.value / speed)
     together = not at_speed.why
     own = replace(coulomb, sigma=float(np.hypot(coulomb.sigma, spread * speed)), why=coulomb.why or why, in_combination=together)
     yield at_speed if not coulomb.why else replace(at_speed, why=coulomb.why)
