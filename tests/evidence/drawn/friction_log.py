@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
+
 from tests.evidence.drawn.joint import Friction, several_speeds, torque_of_input
 from tests.evidence.drawn.outcome import Outcome, compared
 
@@ -57,9 +58,7 @@ def _smooth(level: float, viscous: float, fast: float) -> Friction:
 
 
 def _stribeck(level: float, viscous: float, fast: float) -> Friction:
-    return lambda speed, load: (
-        level * np.sign(speed) * (1.0 + 0.5 * np.exp(-((speed / (0.1 * fast)) ** 2))) + viscous * speed
-    )
+    return lambda speed, load: level * np.sign(speed) * (1.0 + 0.5 * np.exp(-((speed / (0.1 * fast)) ** 2))) + viscous * speed
 
 
 def _curved(level: float, viscous: float, fast: float) -> Friction:

@@ -6,6 +6,7 @@ import numpy as np
 from strainwave.files.recording import Recording
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
+
 from tests.evidence.drawn.outcome import Outcome, compared
 
 RATIO = 100.0
@@ -19,7 +20,9 @@ def outcome(seed: int) -> Outcome:
     half = float(random.uniform(1.0, 4.0))  # s
     ramp = float(random.uniform(0.02, 0.1)) * half  # s
     phase = np.mod(time, 2.0 * half)
-    velocity = speed * np.clip(np.where(phase < half, np.minimum(phase, half - phase), -np.minimum(phase - half, 2.0 * half - phase)) / ramp, -1.0, 1.0)
+    velocity = speed * np.clip(
+        np.where(phase < half, np.minimum(phase, half - phase), -np.minimum(phase - half, 2.0 * half - phase)) / ramp, -1.0, 1.0
+    )
     angle = np.cumsum(velocity) / rate
     acceleration = np.gradient(velocity, 1.0 / rate)
     coulomb = float(np.exp(random.uniform(np.log(0.01), np.log(0.1))))
@@ -29,9 +32,7 @@ def outcome(seed: int) -> Outcome:
     torque += coulomb * float(random.uniform(0.01, 0.1)) * random.standard_normal(len(time))
     columns = {"time": time, "output_angle": angle + 1e-6 * random.standard_normal(len(time)), "current": torque / 0.1}
     units = {"time": "s", "output_angle": "rad", "current": "A"}
-    found = identify(
-        "csg-20-100", {"log": Recording(columns, units)}, mapping=FileMapping(constants={"torque_constant": 0.1})
-    )
+    found = identify("csg-20-100", {"log": Recording(columns, units)}, mapping=FileMapping(constants={"torque_constant": 0.1}))
     (file, *_) = found.files
     if file.refused or found.failed:
         return Outcome("refused", file.refused or "; ".join(each.message for each in found.failed))

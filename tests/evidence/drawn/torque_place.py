@@ -6,6 +6,7 @@ import numpy as np
 from strainwave.files.recording import Recording
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
+
 from tests.evidence.drawn.joint import several_speeds, torque_of_input
 from tests.evidence.drawn.outcome import Outcome, compared
 
@@ -42,7 +43,9 @@ def outcome(seed: int) -> Outcome:
     files = [each.files[0] for each in results]
     errors = [each.held_out.error if each.held_out is not None else np.nan for each in files]
     if max(errors) > MAX_ERROR_RATIO * min(errors):
-        return Outcome("wrong", f"{place}: errors {errors[0]:.3g}, {errors[1]:.3g} from two start sets: {[f.model for f in files]}")
+        return Outcome(
+            "wrong", f"{place}: errors {errors[0]:.3g}, {errors[1]:.3g} from two start sets: {[f.model for f in files]}"
+        )
     pairs = []
     truth = {"gear.friction_input.coulomb": level, "gear.friction_input.viscous": viscous}
     for file, result in zip(files, results, strict=True):

@@ -198,7 +198,7 @@ def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
     """Return the model with Coulomb and viscous friction alone, as plain least squares has it."""
     plain, speed = fit_plain(log, drive), one_speed(log)
     start, free = _start(drive, plain, inertia)
-    friction_free = COULOMB
+    friction_free: tuple[str, ...] = COULOMB
     if speed:
         start, friction_free = _with_viscous_share(start, drive.gear.friction_input, speed), COULOMB[:1]
     zero = [plain.offset * per_torque(drive, log.effort)] if log.both_ways else []
@@ -311,7 +311,8 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
 
 def _with_viscous_share(drive: Drive, law: Any, speed: float) -> Drive:
     """Return the drive whose viscous friction is the share of all friction at a speed [rad/s] that another law has there."""
-    own, before = drive.gear.friction_input, float(law.steady(speed))
+    own: Any = drive.gear.friction_input
+    before = float(law.steady(speed))
     slope = float(law.steady((1.0 + SLOPE_STEP) * speed) - law.steady((1.0 - SLOPE_STEP) * speed)) / (2.0 * SLOPE_STEP)
     share = min(max(slope / before, 0.0), 1.0) if before > 0.0 else 0.0
     total = float(own.steady(speed))

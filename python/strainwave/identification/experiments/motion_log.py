@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -207,9 +207,7 @@ class MotionLog(ComparedByFields):
         if model.gear.friction_input.set_valued:
             motion = replace(motion, resting=np.zeros_like(motion.resting))
             chance = 0.5 + 0.5 * np.tanh(np.abs(motion.speed) / turnover_speed(motion.speed))
-            along, against = (
-                needed_torque(model, each, others)[0] for each in (motion, replace(motion, speed=-motion.speed))
-            )
+            along, against = (needed_torque(model, each, others)[0] for each in (motion, replace(motion, speed=-motion.speed)))
             torque = chance * along + (1.0 - chance) * against
         else:
             torque, _ = needed_torque(model, motion, others)

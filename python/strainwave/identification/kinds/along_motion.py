@@ -13,7 +13,13 @@ from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
-from strainwave.identification.checks.logs import MAX_UNEXPLAINED, held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
+from strainwave.identification.checks.logs import (
+    MAX_UNEXPLAINED,
+    held_out_error,
+    ratio_of_encoders,
+    torque_constant_by_voltage,
+    unit_of_torque,
+)
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
@@ -231,12 +237,14 @@ def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate) -> Iterator[File
     speed, viscous = best.model.one_speed, float(best.model.law.viscous)
     at_speed = friction_at(speed, coulomb.value + speed * viscous, coulomb.sigma)
     why = (
-        f"determined together: coulomb + {speed:.3g} viscous = {at_speed.value:.4g} ± {at_speed.sigma:.2g} {coulomb.unit}, as the "
-        "record has one speed; the split is that of the start set"
+        f"determined together: coulomb + {speed:.3g} viscous = {at_speed.value:.4g} ± {at_speed.sigma:.2g} {coulomb.unit}, "
+        "as the record has one speed; the split is that of the start set"
     )
     spread = max(SPREAD_OF_VISCOUS * viscous, MIN_SPREAD_OF_SHARE * at_speed.value / speed)
     together = not at_speed.why
-    own = replace(coulomb, sigma=float(np.hypot(coulomb.sigma, spread * speed)), why=coulomb.why or why, in_combination=together)
+    own = replace(
+        coulomb, sigma=float(np.hypot(coulomb.sigma, spread * speed)), why=coulomb.why or why, in_combination=together
+    )
     yield at_speed if not coulomb.why else replace(at_speed, why=coulomb.why)
     yield own
     yield FileEstimate(VISCOUS, "N.m.s/rad", viscous, spread, "", own.why, in_combination=together)

@@ -107,7 +107,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         relative_sigma(known.gear_set, "motor.resistance", getattr(drive.motor, "resistance", 0.0)) if by_voltage else 0.0
     )
     return PreparedLog(
-        log, with_others, drive, recording, tuple(remarks), in_current, given, relative, of_resistance, rotor, place.has_friction
+        log, with_others, drive, recording, tuple(remarks), in_current, given, relative, of_resistance, rotor,
+        place.has_friction,
     )  # fmt: skip
 
 
