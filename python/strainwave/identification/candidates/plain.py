@@ -122,8 +122,9 @@ def gravity_sigma(log: MotionLog, drive: Drive) -> float:
     series = motion.filtered(np.stack([_torque(log, drive), *own, *rivals]))
     target, columns, others = series[0], series[1 : 1 + len(own)].T, series[1 + len(own) :].T
     found = linear_fit(columns, target, rivals=others)
-    share = found.values[:2] / max(float(np.hypot(*found.values[:2])), 1e-300)
-    return float(np.sqrt(max(share @ found.covariance[:2, :2] @ share, 0.0)))
+    amplitudes: Array = found.values[:2]
+    share = amplitudes / max(float(np.linalg.norm(amplitudes)), 1e-300)
+    return float(np.sqrt(max(float(share @ found.covariance[:2, :2] @ share), 0.0)))
 
 
 def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tuple[MotionLog, bool]:

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option, listed
@@ -29,6 +31,8 @@ MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
 OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
 MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
+MAX_SPEED_FACTOR = 1.5  # between a speed and the slope of its angle: filters and noise change it by less, units by more
+SPEED_UNITS = ("rad/s", "deg/s", "rpm", "rev/s")
 RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
 
 
@@ -79,6 +83,34 @@ def unit_of_torque(file: Recognised) -> Iterator[Check]:
             f"{unit} is taken",
             "give the rated torque of the motor, as " + as_option("unit", file.columns[name], "permille of 0.4 N.m"),
         )  # fmt: skip
+
+
+def speed_against_angle(file: Recognised) -> Iterator[Check]:
+    """Yield the check that a speed is the slope of the angle of the same shaft, in the units that both are taken in."""
+    record = file.recording
+    for angle in set(record.names) & {"input_angle", "output_angle"}:
+        speed = angle.replace("angle", "speed")
+        if speed not in record.names or "time" not in record.names:
+            continue
+        factor = abs(speed_per_slope(record[angle], record[speed], record.time))
+        if factor == 0.0:
+            continue
+        names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in (angle, speed)]
+        usual = {unit: convert(1.0, unit, "rad/s") for unit in SPEED_UNITS}
+        fitting = next((unit for unit, size in usual.items() if abs(_own_size(file, speed) / factor / size - 1.0) < 0.1), "")
+        hint = as_option("unit", names[1], fitting or "UNIT")
+        off = max(factor, 1.0 / factor)
+        yield Check(
+            "speed against angle", file.path.name, off, MAX_SPEED_FACTOR, "1", off > MAX_SPEED_FACTOR,
+            f"{names[1]} is {factor:.4g} times the slope of {names[0]}, in the units that they are taken in",
+            f"one unit is wrong: give it, with {hint} if it is that of the speed, or that of the angle",
+        )  # fmt: skip
+
+
+def _own_size(file: Recognised, speed: str) -> float:
+    """Return the size of the unit of a speed [rad/s]."""
+    unit = file.units.get(speed) or file.units.get(f"reflected_{speed[-5:]}", "rad/s")
+    return convert(1.0, unit, "rad/s") if measures(unit, "rad/s") else 1.0
 
 
 def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check]:

@@ -17,6 +17,7 @@ from strainwave.identification.checks.logs import (
     MAX_UNEXPLAINED,
     held_out_error,
     ratio_of_encoders,
+    speed_against_angle,
     torque_constant_by_voltage,
     unit_of_torque,
 )
@@ -58,7 +59,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best, held_out, predicted = confirmed(models[0], models[1:], drive)
     others = [each for each in models if each.model is not best.model]
     log = best.log
-    of_model = [*_delay(best), *_other_laws(best, others, in_current)]
+    of_model = [*_delay(best), *_other_laws(best, others, in_current), *_one_encoder(taken)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     estimates, checks = list(_of_motion(best, others, taken)), list(held_out_error(held_out, file.path.name, file.neighbours))
@@ -80,11 +81,16 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
     explained = held_out.relative < MAX_UNEXPLAINED and not held_out.share_of_plain > held_out.max_share_of_plain
     if not in_current and taken.has_friction:
-        of_log = friction_of_log(
+        checks += friction_of_log(
             law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, explained=explained
         )
-        checks += of_log
-    checks += [*unit_of_torque(file), input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
+    checks += [
+        *unit_of_torque(file),
+        *speed_against_angle(file),
+        input_speed(speed, name),
+        *_given_inertia(taken, name),
+        *_torque_constant(taken, name),
+    ]
     checks += checks_of_motion(best, drive, recording, held_out, name)
     pictures = (Picture(predicted), *between.pictures)
     return (
@@ -131,6 +137,17 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
         if nuisance.path == "delay":
             way = "behind" if nuisance.value > 0.0 else "ahead of"
             yield f"{best.log.effort} comes {1e3 * abs(nuisance.value):.3g} ± {1e3 * nuisance.sigma:.2g} ms {way} the motion"
+
+
+def _one_encoder(taken: PreparedLog) -> Iterator[str]:
+    """Yield the sentence about what a record with one encoder cannot contradict."""
+    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
+    if set(ENCODERS) <= set(taken.recording.names) or taken.in_current or taken.log.effort != "current":
+        return
+    yield (
+        f"one encoder checks neither the ratio, {abs(taken.drive.gear.kinematics.ratio):.6g}, nor the torque constant, "
+        f"{constant:.4g} N·m/A: friction, inertia and gravity scale with them"
+    )
 
 
 def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:
