@@ -19,6 +19,7 @@ SIGNIFICANCE_SIGMA = 3.0  # standard deviations, by which the rotor must have mo
 ROTOR_MARGIN = 1.2  # times the inertia of the rotor: a joint torque with less of it was measured behind the rotor
 MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a joint torque with less was measured behind the gear
 MIN_FRICTION_OF_INPUT = 0.1  # of the friction of the start set: with less, a joint torque may lack the rotor (assumed)
+NO_ROTOR = 10.0 * MIN_INERTIA  # kg.m2: a drive must have some, and MIN_INERTIA stands for a rotor that is not known
 SHARE_OF_ROTOR = 0.5  # of all that turns, if the start set's rotor has more than that
 
 
@@ -55,13 +56,13 @@ def torque_place(log: MotionLog, drive: Drive) -> TorquePlace:
         if share < MIN_FRICTION_SHARE or total < ROTOR_MARGIN * rotor:
             why = "it contains no friction of the gear" if share < MIN_FRICTION_SHARE else sizes
             return TorquePlace(
-                _with_rotor(drive, 0.0, 0.0), 0.0 if total < rotor else rotor, share >= MIN_FRICTION_SHARE,
+                _with_rotor(drive, NO_ROTOR, 0.0), 0.0 if total < rotor else rotor, share >= MIN_FRICTION_SHARE,
                 f"{log.effort} was measured behind the rotor: {why}; the load's inertia is all that it contains",
             )  # fmt: skip
         return TorquePlace(drive, rotor if share < MIN_FRICTION_OF_INPUT else 0.0)
     if log.effort == "input_torque" and gear < total < rotor:
         return TorquePlace(
-            _with_rotor(drive, 0.0, gear), motor, remark=f"{log.effort} was measured behind the motor's rotor: {sizes}"
+            _with_rotor(drive, NO_ROTOR, gear), motor, remark=f"{log.effort} was measured behind the motor's rotor: {sizes}"
         )
     if total >= rotor:
         return TorquePlace(drive)

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.plain import gravity_sigma, one_speed
-from strainwave.identification.candidates.torque_place import torque_place
-from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
+from strainwave.identification.candidates.torque_place import NO_ROTOR, torque_place
+from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.reading.mapping import FileMapping
 
 from tests.evidence.drawn import friction_log
@@ -44,7 +44,7 @@ def test_no_inertia_of_a_start_set_is_more_than_all_that_turns(size: str, total:
     log = MotionLog.of(record(effort, total), drive(size))
     place = torque_place(log, drive(size))
     rotor = place.drive.motor.inertia + place.drive.gear.input_inertia
-    assert rotor <= 1.05 * total + 2.0 * MIN_INERTIA
+    assert rotor <= 1.05 * total + 2.0 * NO_ROTOR
     before = drive(size).motor.inertia + drive(size).gear.input_inertia
     assert (place.remark == "") == (rotor == pytest.approx(before))
 
@@ -60,7 +60,7 @@ def test_a_torque_behind_the_motor_contains_the_wave_generator_alone() -> None:
     heavy = drive(motor=1e-4)
     place = torque_place(MotionLog.of(record("input_torque", 5e-5), heavy), heavy)
     assert place.drive.gear.input_inertia == heavy.gear.input_inertia
-    assert place.drive.motor.inertia == MIN_INERTIA
+    assert place.drive.motor.inertia == NO_ROTOR
     assert place.open_inertia == pytest.approx(1e-4)
 
 
