@@ -53,7 +53,7 @@ Rows = NDArray[np.bool_]
 
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
 GRAVITY = ("load.gravity_torque", "load.gravity_phase")
-BENDS = np.geomspace(3e-3, 10.0, 22)  # rad of the input, in which bristles bend
+BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
