@@ -54,6 +54,7 @@ Rows = NDArray[np.bool_]
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
 GRAVITY = ("load.gravity_torque", "load.gravity_phase")
 BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
+NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
@@ -280,7 +281,8 @@ def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
     def error(bend: float) -> float:
         return float(np.mean(best.log.residual(bristled(last.drive, bend), last.nuisances)[rows] ** 2))
 
-    return replace(best, bend=min(BENDS.tolist(), key=error)).predicted_anew()
+    coarse = min(BENDS.tolist(), key=error)
+    return replace(best, bend=min((coarse * NEAR_BENDS).tolist(), key=error)).predicted_anew()
 
 
 def _with_ripple(best: MotionCandidate) -> MotionCandidate:
