@@ -18,7 +18,9 @@ from pathlib import Path
 
 MAX_WRONG_SHARE = 0.05  # of the records of a kind
 KINDS = sorted(
-    each.name for each in pkgutil.iter_modules([str(Path(__file__).parent)]) if each.name not in ("__main__", "outcome")
+    each.name
+    for each in pkgutil.iter_modules([str(Path(__file__).parent)])
+    if each.name not in ("__main__", "outcome", "joint")
 )
 
 

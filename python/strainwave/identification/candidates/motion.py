@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,7 @@ from strainwave.identification.candidates.plain import (
     fit_plain,
     held_out_residuals,
     moving,
+    one_speed,
     stretches,
 )
 from strainwave.identification.candidates.ripple import FastDetent, settled, with_ripple
@@ -52,11 +54,13 @@ Rows = NDArray[np.bool_]
 
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
 GRAVITY = ("load.gravity_torque", "load.gravity_phase")
-BENDS = np.geomspace(3e-3, 1.0, 16)  # rad of the input, in which bristles bend
+BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
+NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
+SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
 MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
 
 
@@ -213,10 +217,14 @@ class _Search:
 
 def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
     """Return the model with Coulomb and viscous friction alone, as plain least squares has it."""
-    plain = fit_plain(log, drive)
+    plain, speed = fit_plain(log, drive), one_speed(log)
     start, free = _start(drive, plain, inertia)
+    friction_free: tuple[str, ...] = COULOMB
+    if speed:
+        start, friction_free = _with_viscous_share(start, drive.gear.friction_input, speed), COULOMB[:1]
     zero = [plain.offset * per_torque(drive, log.effort)] if log.both_ways else []
-    return MotionModel("Coulomb and viscous", log.starting((*zero, *plain.shares)), start, (*free, *COULOMB), FOLLOWS)
+    name = "Coulomb and viscous" + (", split as in the start set" if speed else "")
+    return MotionModel(name, log.starting((*zero, *plain.shares)), start, (*free, *friction_free), FOLLOWS, speed)
 
 
 # ---- Parts that a record may not show -------------------------------------------------------------------------------------
@@ -293,7 +301,8 @@ def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
     def error(bend: float) -> float:
         return float(np.mean(best.log.residual(bristled(last.drive, bend), last.nuisances)[rows] ** 2))
 
-    return replace(best, bend=min(BENDS.tolist(), key=error)).predicted_anew()
+    coarse = min(BENDS.tolist(), key=error)
+    return replace(best, bend=min((coarse * NEAR_BENDS).tolist(), key=error)).predicted_anew()
 
 
 def _with_ripple(best: MotionCandidate) -> MotionCandidate:
@@ -320,6 +329,18 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
     moved = drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total))
     load = loads.Pendulum(inertia=inertia_of(drive), gravity_torque=plain.gravity, gravity_phase=plain.phase)
     return drive.replace(motor=moved, load=load), [inertia, *GRAVITY]
+
+
+def _with_viscous_share(drive: Drive, law: Any, speed: float) -> Drive:
+    """Return the drive whose viscous friction is the share of all friction at a speed [rad/s] that another law has there."""
+    own: Any = drive.gear.friction_input
+    before = float(law.steady(speed))
+    slope = float(law.steady((1.0 + SLOPE_STEP) * speed) - law.steady((1.0 - SLOPE_STEP) * speed)) / (2.0 * SLOPE_STEP)
+    share = min(max(slope / before, 0.0), 1.0) if before > 0.0 else 0.0
+    total = float(own.steady(speed))
+    coulomb = (1.0 - share) * total
+    shared = own.replace(coulomb=coulomb, breakaway=coulomb, viscous=share * total / speed)
+    return drive.replace(gear=drive.gear.replace(friction_input=shared))
 
 
 def natural_frequency(drive: Drive, carried: float) -> float:

@@ -29,6 +29,8 @@ class MotionModel(ComparedByFields):
         drive: from which a fit starts
         free: paths of the numbers that are fitted
         ties: numbers that follow others, by path
+        one_speed: size of the speed at which alone friction was measured [rad/s]; 0 if the record has several. The viscous
+            part is then the start set's share of the friction at that speed, and is not fitted
     """
 
     name: str
@@ -36,6 +38,7 @@ class MotionModel(ComparedByFields):
     drive: Drive
     free: tuple[str, ...]
     ties: Mapping[str, str]
+    one_speed: float = 0.0
 
     @property
     def law(self) -> Any:
@@ -78,7 +81,7 @@ def with_delay(model: MotionModel, start: float = 0.0) -> MotionModel | None:
 def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
     """Return the model with a viscous torque that is not linear in the speed."""
     law = model.law
-    if not isinstance(law, friction.Coulomb):
+    if not isinstance(law, friction.Coulomb) or model.one_speed:
         return None
     fastest = float(np.abs(model.log.motion.speed).max())
     curved = friction.CurvedViscous(
@@ -92,7 +95,7 @@ def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
 def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
     """Return the model with friction that is higher, or lower, at low speed."""
     law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
-    if not isinstance(law, friction.Coulomb):
+    if not isinstance(law, friction.Coulomb) or model.one_speed:
         return None
     falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
     ties = {path: other for path, other in model.ties.items() if path not in FOLLOWS}

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MotionLog, per_torque, turnover_speed
+from strainwave.statistics.linear_fit import linear_fit, own_share
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -20,10 +21,10 @@ Rows = NDArray[np.bool_]
 STRETCHES = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
 MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler log: along a recorded speed, or with a delay, it must be less
 MAX_DELAY_SAMPLES = 5  # of the log
-TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
-FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
 MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction begins, which plain least squares does not describe
+MIN_OWN_SHARE_OF_SPEED = 0.1  # of the speed: if less differs from its sign, the record has one speed
+MAX_ROWS_OF_SIGMA = 4000  # samples from which the standard deviation of an inertia is computed
 BLOCKS_PER_STRETCH = 10  # over which the residual scatters
 MIN_SINGULAR_SHARE = 1e-6  # share of the largest singular value [1] below which one counts as zero
 
@@ -85,6 +86,45 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
         1.0 - float(np.var(left) / max(float(np.var(torque[rows])), 1e-300)),
         float(senses @ powers / max(powers.sum(), 1e-300)),
     )  # fmt: skip
+
+
+def inertia_with_sigma(log: MotionLog, drive: Drive) -> tuple[float, float]:
+    """Return the inertia of all that turns at the input by plain least squares, and its standard deviation [kg.m2]."""
+    columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
+    every = max(int(rows.sum()) // MAX_ROWS_OF_SIGMA, 1)
+    found = linear_fit(columns[rows][::every], torque[rows][::every])
+    return float(found.values[0]), float(found.sigma[0])
+
+
+def one_speed(log: MotionLog) -> float:
+    """Return the size of the speed of the input if a log has one only, so that friction has no shape over it; else 0 [rad/s].
+
+    Coulomb and viscous friction are then one number: the speed is made up by its sign, a constant, and inertia.
+    """
+    motion = log.motion
+    speed = motion.speed[motion.compared]
+    columns = np.stack([speed, np.sign(speed), np.ones_like(speed), motion.acceleration[motion.compared]], axis=1)
+    if len(speed) == 0 or own_share(columns)[0] > MIN_OWN_SHARE_OF_SPEED:
+        return 0.0
+    return float(np.median(np.abs(speed)))
+
+
+def gravity_sigma(log: MotionLog, drive: Drive) -> float:
+    """Return the standard deviation of gravity at the output with slow drift or curved friction as rivals [N.m].
+
+    A motion over part of a turn does not separate a sine of the angle from what else changes slowly over it.
+    """
+    motion, ratio = log.motion, drive.gear.kinematics.ratio
+    angle, speed, time = motion.angle / ratio, motion.speed, motion.time - float(np.mean(motion.time))
+    sign = np.sign(speed)
+    own = [np.sin(angle) / ratio, np.cos(angle) / ratio, motion.acceleration, speed, sign, np.ones_like(speed)]
+    rivals = [time, time**2, speed * np.abs(speed), sign * np.sqrt(np.abs(speed)), sign * time]
+    series = motion.filtered(np.stack([_torque(log, drive), *own, *rivals]))
+    target, columns, others = series[0], series[1 : 1 + len(own)].T, series[1 + len(own) :].T
+    found = linear_fit(columns, target, rivals=others)
+    amplitudes: Array = found.values[:2]
+    share = amplitudes / max(float(np.linalg.norm(amplitudes)), 1e-300)
+    return float(np.sqrt(max(float(share @ found.covariance[:2, :2] @ share), 0.0)))
 
 
 def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tuple[MotionLog, bool]:
@@ -154,8 +194,7 @@ def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
 def _columns(log: MotionLog, drive: Drive) -> Array:
     motion, ratio = log.motion, drive.gear.kinematics.ratio
     angle = motion.angle / ratio
-    fast = float(np.quantile(np.abs(motion.speed), FAST_QUANTILE))
-    sign = np.tanh(motion.speed / max(TURNS_OVER * fast, 1e-300))
+    sign = np.tanh(motion.speed / turnover_speed(motion.speed))
     offset = np.full_like(angle, float(log.both_ways))  # which one direction alone does not separate from friction
     series = [motion.acceleration, motion.speed, sign, offset, np.sin(angle) / ratio, np.cos(angle) / ratio]
     return np.stack([*series, *(each / ratio for each in log.regressors.values())], axis=1)

@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compared with that of a gear
 MAX_RATIO = 1e4  # of a gear
 MAX_FACTOR = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
+MAX_FACTOR_OF_EXPLAINED = 50.0  # if the record is explained: the start set is a guess, but wrong units or sides make more
 MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a torque with less is not that of the motor
 MIN_SHARE_OF_A_UNIT = 1e-6  # of the friction of the start set: a wrong unit makes it no smaller
 STIFFNESS_SPREAD = 1.3  # factor by which gears of one kind differ in stiffness, as makers state
@@ -54,7 +55,9 @@ def input_speed(speed: Array, source: str) -> Check:
 # ---- Friction --------------------------------------------------------------------------------------------------------
 
 
-def friction_level(law: Any, start: Any, speed: float, source: str, remedy: str) -> Check | None:
+def friction_level(
+    law: Any, start: Any, speed: float, source: str, remedy: str, max_factor: float = MAX_FACTOR
+) -> Check | None:
     """Return the check that friction is of the size of that of the start set; None if the set has none.
 
     Args:
@@ -63,14 +66,15 @@ def friction_level(law: Any, start: Any, speed: float, source: str, remedy: str)
         speed: of the input, at which both are compared [rad/s]
         source: name of the file
         remedy: what to check first
+        max_factor: by which both may differ
     """
     found, before = float(law.steady(speed)), float(start.steady(speed))
     if before <= 0.0 or not found > 0.0:
         return None
     factor = found / before
     return Check(
-        "friction of the start set", source, max(factor, 1.0 / factor), MAX_FACTOR, "1",
-        not 1.0 / MAX_FACTOR < factor < MAX_FACTOR,
+        "friction of the start set", source, max(factor, 1.0 / factor), max_factor, "1",
+        not 1.0 / max_factor < factor < max_factor,
         f"its friction is {found:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
         f"({before:.3g} N·m)",
         remedy,
@@ -151,8 +155,9 @@ def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> 
 
 
 def friction_of_log(
-    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float = 1.0, column: str = "NAME"
-) -> Iterator[Check]:
+    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float = 1.0, column: str = "NAME",
+    explained: bool = False,
+) -> Iterator[Check]:  # fmt: skip
     """Yield the checks of the friction of a log: that its torque shows some, and its size.
 
     Args:
@@ -163,6 +168,7 @@ def friction_of_log(
         source: name of the file
         ratio: of the gear, by which friction differs if the torque is counted at the other side
         column: name of the torque in the file
+        explained: True if the model predicts the record better than plain least squares: then its friction is no guess
     """
     speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
     if speed <= 0.0:
@@ -185,7 +191,8 @@ def friction_of_log(
     near_thousand = abs(abs(np.log(factor)) - np.log(1000.0)) < np.log(MAX_FACTOR_LEFT)
     mistake = f"a factor of 1000 lies between {unit}; " if near_thousand else _other_side(factor, effort, abs(ratio), column)
     remedy = f"{mistake}see whether units, side, ratio and torque constant are right, or start from a set like this gear"
-    if (check := friction_level(law, start, speed, source, remedy)) is not None:
+    max_factor = MAX_FACTOR_OF_EXPLAINED if explained else MAX_FACTOR
+    if (check := friction_level(law, start, speed, source, remedy, max_factor)) is not None:
         yield check
 
 

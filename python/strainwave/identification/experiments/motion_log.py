@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,8 @@ HELD_QUANTILE = 0.98  # of the steps of a channel without noise, whose size stan
 MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
+TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
+FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
 INPUT_COUNT, LOAD_PLACE, TEMPERATURE_PLACE = 6, 2, 4  # inputs of the inverse dynamics, and places of two of them
 
@@ -203,8 +205,19 @@ class MotionLog(ComparedByFields):
         return in_band[:1], in_band[1:, np.newaxis]
 
     def whole(self, model: Drive, nuisances: Array) -> Array:
-        """Return the effort that a model predicts at every instant of the grid, shape (m,)."""
-        torque, _ = needed_torque(model, self.motion, self._others(nuisances))
+        """Return the effort that a model predicts at every instant of the grid, shape (m,).
+
+        Friction without bristles turns over with the sign of the speed, of which noise and the instant of a sample decide near
+        zero: there the effort is the mean over both senses by their chance, as plain least squares has it.
+        """
+        motion, others = self.motion, self._others(nuisances)
+        if model.gear.friction_input.set_valued:
+            motion = replace(motion, resting=np.zeros_like(motion.resting))
+            chance = 0.5 + 0.5 * np.tanh(np.abs(motion.speed) / turnover_speed(motion.speed))
+            along, against = (needed_torque(model, each, others)[0] for each in (motion, replace(motion, speed=-motion.speed)))
+            torque = chance * along + (1.0 - chance) * against
+        else:
+            torque, _ = needed_torque(model, motion, others)
         unknown = self._unknown(nuisances)
         effort = per_torque(model, self.effort) * torque + self.induced(model) + self._of_waves(unknown)
         if self.delayed:
@@ -212,15 +225,11 @@ class MotionLog(ComparedByFields):
         return np.asarray(effort + sum(_zeros(unknown)))
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
-        """Return measured less predicted effort at every instant of the grid, shape (m,).
+        """Return measured less predicted effort at every instant of the grid, at rest, too, shape (m,).
 
-        At rest friction takes any value up to the one that breaks it away: the residual is what lies beyond. Outliers and
-        clipped samples have none.
+        Outliers and clipped samples have none.
         """
-        left: Array = self.recorded - self.whole(model, nuisances)
-        hold = _hold(model) * abs(per_torque(model, self.effort))
-        held = np.sign(left) * np.maximum(np.abs(left) - hold, 0.0)
-        return np.where(self.sound, np.where(self.motion.resting, held, left), 0.0)
+        return np.where(self.sound, self.recorded - self.whole(model, nuisances), 0.0)
 
     def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
@@ -280,6 +289,11 @@ class MotionLog(ComparedByFields):
         return np.asarray((there - torque) / step)
 
 
+def turnover_speed(speed: Array) -> float:
+    """Return the speed of the input about which the sign of friction turns over [rad/s], by the speeds of a log."""
+    return max(TURNS_OVER * float(np.quantile(np.abs(speed), FAST_QUANTILE)), 1e-300)
+
+
 def _zeros(unknown: Mapping[str, float]) -> list[float]:
     """Return the zeros of channels among nuisances."""
     return [value for name, value in unknown.items() if name.endswith("_zero")]
@@ -325,17 +339,6 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     found = np.zeros((len(paths), len(torque)))
     found[places] = slopes
     return torque, found
-
-
-def _hold(drive: Drive) -> float:
-    """Return the largest torque at the input that friction there balances at rest, on average over the angle [N.m].
-
-    That of a bristle is its breakaway.
-    """
-    law: Any = drive.gear.friction_input
-    while hasattr(law, "law"):
-        law = law.law
-    return float(law.hold(1.0)) if hasattr(law, "hold") else float(getattr(law, "breakaway", 0.0))
 
 
 def per_torque(drive: Drive, effort: str) -> float:

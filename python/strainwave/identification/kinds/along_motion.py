@@ -12,7 +12,7 @@ from strainwave.identification.candidates.confirmed import confirmed, other_laws
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT, sliding
-from strainwave.identification.candidates.plain import fit_plain
+from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
 from strainwave.identification.candidates.rotor import (
     SHARE_OF_UNKNOWN_ROTOR,
     inertia_at_input,
@@ -20,6 +20,7 @@ from strainwave.identification.candidates.rotor import (
     with_rotor,
 )
 from strainwave.identification.checks.logs import (
+    MAX_UNEXPLAINED,
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
@@ -36,6 +37,7 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.determined import friction_at
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
@@ -46,13 +48,16 @@ from strainwave.orders.two_encoders import transmission_error
 
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
-COULOMB = f"{INPUT}coulomb"
+COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
+SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
+MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
 OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=…"
 )
+BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -85,14 +90,17 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
-    if not in_current:
+    if not in_current and taken.has_friction:
         known = _with_friction(known, best, estimates, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
-    level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
-    checks += [] if in_current else level
+    explained = held_out.relative < MAX_UNEXPLAINED and not held_out.share_of_plain > held_out.max_share_of_plain
+    if not in_current and taken.has_friction:
+        checks += friction_of_log(
+            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, explained=explained
+        )
     checks += [
         *unit_of_torque(file),
         *speed_against_angle(file),
@@ -253,12 +261,16 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
         own = max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0), turned * unknown
         sigma = float(np.linalg.norm(own))
+        if path == "load.gravity_torque" and not best.log.regressors:
+            sigma = max(sigma, gravity_sigma(best.log, best.model.drive))
         found = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
         offset = independent.get(path, 0.0)
         found = found.resting_on(taken.relative, offset + induced.get(path, 0.0))
         found = found.resting_on(taken.of_resistance, offset)
         found = found.sharing(rotors.get(path, abs(turned) * taken.rotor / squared))
-        if path in DRY_TORQUES and not best.log.both_ways:
+        if not taken.has_friction and path.startswith("gear.friction_"):
+            found = replace(found, why=BEHIND_GEAR)
+        elif path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
         elif is_uncertain(found.value, abs(turned) * unknown):
             found = replace(found, why=OF_ROTOR)
@@ -268,4 +280,26 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
+        if best.model.one_speed and estimate.path == COULOMB:
+            for each in _at_one_speed(found, best):
+                yield each.in_current() if in_current else each
+            continue
         yield found.in_current() if in_current else found
+
+
+def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate) -> Iterator[FileEstimate]:
+    """Yield the friction at the one speed of a record, and how the start set splits it into Coulomb and viscous friction."""
+    speed, viscous = best.model.one_speed, float(best.model.law.viscous)
+    at_speed = friction_at(speed, coulomb.value + speed * viscous, coulomb.sigma)
+    why = (
+        f"determined together: coulomb + {speed:.3g} viscous = {at_speed.value:.4g} ± {at_speed.sigma:.2g} {coulomb.unit}, "
+        "as the record has one speed; the split is that of the start set"
+    )
+    spread = max(SPREAD_OF_VISCOUS * viscous, MIN_SPREAD_OF_SHARE * at_speed.value / speed)
+    together = not at_speed.why
+    own = replace(
+        coulomb, sigma=float(np.hypot(coulomb.sigma, spread * speed)), why=coulomb.why or why, in_combination=together
+    )
+    yield at_speed if not coulomb.why else replace(at_speed, why=coulomb.why)
+    yield own
+    yield FileEstimate(VISCOUS, "N.m.s/rad", viscous, spread, "", own.why, in_combination=together)

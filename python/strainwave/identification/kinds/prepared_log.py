@@ -13,6 +13,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
+from strainwave.identification.candidates.torque_place import TorquePlace, torque_place
 from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
@@ -40,6 +41,7 @@ class PreparedLog(ComparedByFields):
         of_resistance: the same of the resistance, where the torque is that of a voltage [1]
         rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2], with the bias of a recorder of
             currents; 0 where torques are in A
+        has_friction: False if the torque was measured behind the gear, and contains no friction of it
     """
 
     log: MotionLog
@@ -52,6 +54,7 @@ class PreparedLog(ComparedByFields):
     relative: float
     of_resistance: float
     rotor: float
+    has_friction: bool
 
     @property
     def motor_known(self) -> bool:
@@ -79,6 +82,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
     log, is_of_speed = along_best_motion(log, recording, drive)
+    place = TorquePlace(drive) if in_current else torque_place(log, drive)
+    remarks += [place.remark] * bool(place.remark)
     remarks += [
         "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"
     ] * is_of_speed
@@ -96,17 +101,20 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     given = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     rests = log.effort in ("current", "voltage") and not in_current  # a torque that was measured rests on no constant
     constant = TorqueConstant.of(file, known.gear_set) if rests else None
-    turning = drive.motor.inertia + drive.gear.input_inertia
-    of_recorder = RECORDER_BIAS * turning if log.effort == "current" else 0.0
-    rotor = (
-        0.0 if in_current else float(np.hypot(rotor_sigma(file, known.gear_set), of_recorder)) * drive.gear.kinematics.ratio**2
-    )
+    turning = place.drive.motor.inertia + place.drive.gear.input_inertia
+    of_recorder = RECORDER_BIAS * turning if log.effort == "current" and not in_current else 0.0
+    spread = 0.0 if in_current or place.drive is not drive else rotor_sigma(file, known.gear_set)
+    drive = place.drive
+    rotor = float(np.linalg.norm([spread, of_recorder, place.open_inertia])) * drive.gear.kinematics.ratio**2
     relative = 0.0 if constant is None else constant.relative
     by_voltage = log.effort == "voltage" and "resistance" not in file.constants
     of_resistance = (
         relative_sigma(known.gear_set, "motor.resistance", getattr(drive.motor, "resistance", 0.0)) if by_voltage else 0.0
     )
-    return PreparedLog(log, with_others, drive, recording, tuple(remarks), in_current, given, relative, of_resistance, rotor)
+    return PreparedLog(
+        log, with_others, drive, recording, tuple(remarks), in_current, given, relative, of_resistance, rotor,
+        place.has_friction,
+    )  # fmt: skip
 
 
 def _with_angle(recording: Recording) -> tuple[Recording, str]:
