@@ -168,7 +168,7 @@ def identify(
 
 
 def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult]) -> GearSet:
-    """Return the set with its error on the whole of a log of which only stretches at constant speed were used, if on no other."""
+    """Return the set with its error on the whole of a log of which stretches at constant speed were used, if on no other."""
     logs = (each.recognised for each in files if each.part_of and each.recognised is not None)
     log = next((each for each in logs if each.kind == "log"), None)
     if log is None or gear_set.load is None or any(each.kind == "log" for each in gear_set.validation):
