@@ -228,7 +228,8 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
     least = 0.0 if whole.gear.input_inertia > 0.0 else MIN_INERTIA
     combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR]
     for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR)):
-        return max(estimate.value, least), source_of(estimate, name)
+        if estimate.state != "not identified":
+            return max(estimate.value, least), source_of(estimate, name)
     return least, Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")
 
 

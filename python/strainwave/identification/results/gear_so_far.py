@@ -75,11 +75,13 @@ class GearSoFar:
 
         Args:
             gear: the fitted one
-            parts: to take from it
+            parts: to take from it; one of which no number is identified stays as it was
             estimates: of the fit
             name: of the file
         """
-        laws, entries = {part: getattr(gear, part) for part in parts}, {each.path: source_of(each, name) for each in estimates}
+        states = {part: {each.state for each in estimates if is_of(each.path, {part})} for part in parts}
+        laws = {part: getattr(gear, part) for part, found in states.items() if found != {"not identified"}}
+        entries = {each.path: source_of(each, name) for each in estimates}
         return self._with_laws(laws, entries, {each.path for each in estimates if not each.why}, name)
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> GearSoFar:

@@ -38,7 +38,11 @@ def test_sums_are_marked_and_friction_of_a_file_before_is_kept() -> None:
                          {"speed": "rad/s", "torque": "N.m"})  # fmt: skip
     found = sw.identify(START, {"friction": table}).gear_set
     again = with_friction_at(
-        GearSoFar(found, determined=frozenset({"friction_input"})), np.array([10.0]), [friction_at(10.0, 0.2, 0.01)], "input", "b"
+        GearSoFar(found, determined=frozenset({"friction_input"})),
+        np.array([10.0]),
+        [friction_at(10.0, 0.2, 0.01)],
+        "input",
+        "b",
     )
     assert again.gear_set == found
 
