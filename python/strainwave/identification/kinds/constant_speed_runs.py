@@ -22,7 +22,7 @@ from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
-from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds, sizes_of
+from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.undetermined import with_friction_at
@@ -268,7 +268,7 @@ def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
         checks = tuple(opposes_motion(estimates, names))
         every = (*estimates, *gravity)
         result = FileResult(JOINED, file, AT_SPEEDS, every, (*remarks, *few), checks, what=TABLE)
-        return (result,), with_friction_at(known, sizes_of(speed), estimates, side, names)
+        return (result,), with_friction_at(known, speed, estimates, side, names)
     result, after = fit_table(file, file.recording, uncertain, known)
     return (replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)),), after
 

@@ -40,7 +40,6 @@ from strainwave.identification.results.determined import (
     best_known_friction,
     different_speeds,
     friction_at_speeds,
-    sizes_of,
 )
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
@@ -205,7 +204,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         at_speeds = tuple(each.resting_on(uncertain) for each in at_speeds)
         opposing = tuple(opposes_motion(at_speeds, name))
         result = FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few), checks=opposing)
-        return result, with_friction_at(known, sizes_of(speed), at_speeds, file.side or "input", name)
+        return result, with_friction_at(known, speed, at_speeds, file.side or "input", name)
     best, *others = fit_friction(experiment, gear)
     speed_check = input_speed(experiment.speed, name)
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]

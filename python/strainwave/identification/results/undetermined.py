@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from strainwave import friction
 from strainwave.files.entries import Entry
 from strainwave.identification.fitting.fit import Fit, solved_problem, with_priors
+from strainwave.identification.results.determined import sizes_of
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.identification.results.gear_so_far import START_SPREAD, GearSoFar
 from strainwave.identification.results.identifiability import MAX_CORRELATION, combination
@@ -138,8 +139,8 @@ def with_friction_at(known: GearSoFar, speed: Array, estimates: Sequence[FileEst
 
     Args:
         known: the set before the file
-        speed: measured [rad/s], shape (n,)
-        estimates: friction at each speed, as many
+        speed: measured, with the sign of the motion [rad/s], shape (n,); one direction does not separate friction from gravity
+        estimates: friction at each size of the speed, in order
         side: at which both were measured, `input` or `output`
         name: of the file
     """
@@ -148,9 +149,12 @@ def with_friction_at(known: GearSoFar, speed: Array, estimates: Sequence[FileEst
     law: Any = known.gear_set.gear.friction_input
     ratio = abs(known.gear_set.gear.kinematics.ratio) if side == "output" else 1.0
     torque, sigma = np.array([(each.value, each.sigma) for each in estimates]).T
-    at, sum_of, spread = np.abs(speed) * ratio, torque / ratio, np.maximum(sigma, MIN_RELATIVE_SIGMA * np.abs(torque)) / ratio
+    at, sum_of, spread = sizes_of(speed) * ratio, torque / ratio, np.maximum(sigma, MIN_RELATIVE_SIGMA * np.abs(torque)) / ratio
     usable = np.isfinite(spread) & (sum_of > 0.0)
-    if "friction_input" in known.determined or not isinstance(law, DIVIDED) or not usable.any() or law.coulomb <= 0.0:
+    both_ways = speed.min() < 0.0 < speed.max()
+    if "friction_input" in known.determined or not isinstance(law, DIVIDED) or law.coulomb <= 0.0:
+        return known
+    if not both_ways or not usable.any():
         return known
     at, sum_of, spread = at[usable], sum_of[usable], spread[usable]
     before = np.array([law.coulomb, law.viscous])

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 from strainwave.identification.fitting.fit import fit
 from strainwave.identification.fitting.unknowns import Unknown
-from strainwave.identification.results.determined import friction_at
+from strainwave.identification.results.determined import friction_at, sizes_of
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.undetermined import with_friction_at
 from strainwave.parameters import every
@@ -23,20 +23,24 @@ LAW = START.gear.friction_input
 @settings(deadline=None, max_examples=30)
 @given(some.lists(some.floats(0.5, 200.0), min_size=1, max_size=3), some.floats(0.2, 8.0))
 def test_friction_at_few_speeds_is_reproduced_and_divided_as_the_set_has_it(speeds: list[float], factor: float) -> None:
-    speed, name = np.array(sorted(speeds)), "few.csv"
+    speed, name = sizes_of(np.array(speeds)), "few.csv"
     estimates = [friction_at(each, factor * float(LAW.steady(each)), 1e-5) for each in speed]
-    law = with_friction_at(GearSoFar(START), speed, estimates, "input", name).gear_set.gear.friction_input
+    law = with_friction_at(GearSoFar(START), np.append(speed, -speed), estimates, "input", name).gear_set.gear.friction_input
     assert law.steady(speed) == pytest.approx([each.value for each in estimates], rel=2e-3)
     assert (law.coulomb / LAW.coulomb, law.viscous / LAW.viscous) == pytest.approx((factor, factor), rel=0.02)
 
 
 def test_sums_are_marked_and_friction_of_a_file_before_is_kept() -> None:
-    known = with_friction_at(GearSoFar(START), np.array([0.1]), [friction_at(0.1, 6.4, 0.01, side="output")], "output", "a.csv")
+    known = with_friction_at(
+        GearSoFar(START), np.array([0.1, -0.1]), [friction_at(0.1, 6.4, 0.01, side="output")], "output", "a.csv"
+    )
     entry = known.gear_set.sources["gear.friction_input.viscous"]
     assert entry.source.startswith("identified in combination: a.csv determines 0.064 N.m at 10 rad/s of the input")
     table = sw.Recording({"speed": [1.0, 9.0, 40.0, 90.0, 150.0], "torque": [0.05, 0.053, 0.062, 0.077, 0.095]},
                          {"speed": "rad/s", "torque": "N.m"})  # fmt: skip
     found = sw.identify(START, {"friction": table}).gear_set
+    one_way = with_friction_at(GearSoFar(START), np.array([10.0]), [friction_at(10.0, 0.2, 0.01)], "input", "b")
+    assert one_way.gear_set == START
     again = with_friction_at(
         GearSoFar(found, determined=frozenset({"friction_input"})),
         np.array([10.0]),
