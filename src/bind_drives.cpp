@@ -318,6 +318,10 @@ void bind_drives(nb::module_& core) {
         "bristle_frequency", [](const ParameterDrive& drive) { return general::bristle_frequency(parts_of(drive).set()); },
         nb::arg("drive"), nb::sig("def bristle_frequency(drive: Drive) -> float"),
         "Highest angular frequency [rad/s] at which a shaft vibrates on the bristles of its friction.");
+    core.def(
+        "has_events", [](const ParameterDrive& drive) { return general::has_events(parts_of(drive).set()); }, nb::arg("drive"),
+        nb::sig("def has_events(drive: Drive) -> bool"),
+        "True if set-valued friction or a brake can hold a shaft of a drive, so that steps are cut at events.");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
              "All channels in `state`, shape (channels, 1).");

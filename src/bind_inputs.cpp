@@ -3,6 +3,7 @@
 #include "arrays.hpp"
 #include "kernel/table.hpp"
 #include "signal.hpp"
+#include "time_grid.hpp"
 
 namespace strainwave::host {
 
@@ -48,46 +49,19 @@ Values grid(double step, double duration, double tolerance) {
     return out;
 }
 
-/// A series of instants, in order, and how far it has been gone through.
-struct Queue {
-    const double *next, *const end;
-
-    explicit Queue(const Numbers& series) : next(series.data()), end(next + series.size()) {}
-    double first() const { return next < end ? *next : unbounded; }
-};
-
-/// Instants from three series, those within `tolerance` of each other being one; flags of the samples, and the longest step.
+/// Instants from three series, flags of the samples, their instants, and the longest step.
 nb::tuple time_grid_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
     const std::size_t capacity = steps.size() + samples.size() + breaks.size();
     const auto instants = room(capacity);
     const auto sampled = room<std::uint8_t>(capacity);
-    Queue step(steps), sample(samples), jump(breaks);
-    std::size_t count = 0;
-    double before = -unbounded;
-    for (std::size_t i = 0; i < capacity; ++i) {
-        const double instant = std::min(std::min(step.first(), sample.first()), jump.first());
-        if (instant - before > tolerance) {
-            sampled[count] = 0;
-            instants[count++] = instant;
-        }
-        before = instant;
-        if (step.first() == instant) {
-            ++step.next;
-        } else if (sample.first() == instant) {
-            ++sample.next;
-            sampled[count - 1] = 1;
-        } else {
-            ++jump.next;
-            instants[count - 1] = instant;  // a step that ends at a break does so exactly: the inputs jump
-        }
-    }
-    Values out = array({count});
-    auto flags = array<std::uint8_t>({count});
-    std::copy_n(instants.get(), count, out.data());
-    std::copy_n(sampled.get(), count, flags.data());
-    double longest = 0.0;
-    for (std::size_t i = 1; i < count; ++i) longest = std::max(longest, instants[i] - instants[i - 1]);
-    return nb::make_tuple(out, flags, longest);
+    const Instants all[] = {{steps.data(), steps.size()}, {samples.data(), samples.size()}, {breaks.data(), breaks.size()}};
+    const Merged merged = merge(all[0], all[1], all[2], tolerance, instants.get(), sampled.get());
+    Values out = array({merged.count}), times = array({merged.samples});
+    auto flags = array<std::uint8_t>({merged.count});
+    std::copy_n(instants.get(), merged.count, out.data());
+    std::copy_n(sampled.get(), merged.count, flags.data());
+    copy_samples(instants.get(), sampled.get(), merged.samples, times.data());
+    return nb::make_tuple(out, flags, times, merged.longest);
 }
 
 }  // namespace
@@ -115,9 +89,9 @@ void bind_inputs(nb::module_& core) {
              "0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.");
     core.def("time_grid", &time_grid_of, nb::arg("steps"), nb::arg("samples"), nb::arg("breaks"), nb::arg("tolerance"),
              nb::sig("def time_grid(steps: " SW_ARRAY ", samples: " SW_ARRAY ", breaks: " SW_ARRAY
-                     ", tolerance: float) -> tuple[" SW_ARRAY ", numpy.typing.NDArray[numpy.uint8], float]"),
-             "All instants in order (those within `tolerance` of each other are one), flags of those that are samples, and the "
-             "longest step.");
+                     ", tolerance: float) -> tuple[" SW_ARRAY ", numpy.typing.NDArray[numpy.uint8], " SW_ARRAY ", float]"),
+             "All instants in order (those within `tolerance` of each other are one), flags of those that are samples, the "
+             "samples, and the longest step.");
 }
 
 }  // namespace strainwave::host

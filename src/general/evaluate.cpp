@@ -96,6 +96,10 @@ State begin(const Set& set, const State& x, const Input& u) {
     });
 }
 
+bool has_events(const Set& set) {
+    return with_drive(set, [](const auto& drive) { return drive.has_events(); });
+}
+
 control::Schedule<double> schedule(const Set& set, const State& x) {
     return with_drive(set, [&](const auto& drive) { return drive.schedule(kernel::state_of(drive, x.data())); });
 }

@@ -28,6 +28,8 @@ State started(const Set& drive, const initial::Known<double>& known, const Input
 State consistent(const Set& drive, const State& x);
 /// Initial state of a run: consistent, and sampled by a controller that samples.
 State begin(const Set& drive, const State& x, const Input& u);
+/// True if set-valued friction, or a brake, may hold a shaft at rest, so that steps are cut at events.
+bool has_events(const Set& drive);
 /// When its controller acts.
 control::Schedule<double> schedule(const Set& drive, const State& x);
 /// The state with the memory of friction after `dt` [s] at constant speeds.

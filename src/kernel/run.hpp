@@ -11,13 +11,13 @@
 namespace strainwave::kernel {
 
 template <class S>
-Input<S> input_from(const double* u) {
+constexpr Input<S> input_from(const double* u) {
     Array<S, input_count> numbers;
     for (int i = 0; i < input_count; ++i) numbers[i] = S(u[i]);
     return shaped<Input<S>>(numbers);
 }
 template <class S>
-Interval<Input<S>> interval(const double* inputs) {
+constexpr Interval<Input<S>> interval(const double* inputs) {
     return {input_from<S>(inputs), input_from<S>(inputs + input_count), input_from<S>(inputs + 2 * input_count)};
 }
 

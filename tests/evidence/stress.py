@@ -147,7 +147,7 @@ def outcome(number: int) -> Outcome:
     acting = {"inputs": acting_on(drive, random)}
     course: dict[str, Any] = {**acting, "sample": 20.0 * dt}
     excitation = Excitation.of(drive, volts, **acting)
-    inputs = excitation.over(excitation.time_grid(dt, None))[-1, -1]
+    inputs = excitation.over(excitation.time_grid(dt, None).instants)[-1, -1]
     method: Any = (*METHODS, None)[random.integers(len(METHODS) + 1)]
     began = time.perf_counter()
     said = {method or "chosen": words(lambda: check(drive, sw.simulate(drive, volts, dt, method=method, **course), inputs))}

@@ -80,10 +80,11 @@ inline constexpr long long rounder_bits = 0x4338000000000000;
 template <class L, int n>
 constexpr L polynomial(const double (&c)[n], const L& x) {
     const L x2 = x * x, x4 = x2 * x2;
-    L sum[4]{};
-    for (int k = (n - 1) / 4 * 4; k >= 0; k -= 4)
-        for (int j = 0; j < 4; ++j)
-            if (k + j < n) sum[j] = sum[j] * x4 + c[k + j];
+    constexpr int top = (n - 1) / 4 * 4;
+    L sum[4];
+    for (int j = 0; j < 4; ++j) sum[j] = everywhere<L>(top + j < n ? c[top + j] : 0.0);
+    for (int k = top - 4; k >= 0; k -= 4)
+        for (int j = 0; j < 4; ++j) sum[j] = sum[j] * x4 + c[k + j];
     return (sum[0] + sum[1] * x) + (sum[2] + sum[3] * x) * x2;
 }
 
@@ -157,6 +158,24 @@ struct SineCosine {
     L sine, cosine;
 };
 
+// Not within the function: at -O2, GCC would copy them at each call.
+inline constexpr double sine_series[] = {-1.0 / 6,
+                                         1.0 / 120,
+                                         -1.0 / 5040,
+                                         1.0 / 362880,
+                                         -1.0 / 39916800,
+                                         1.0 / 6227020800.0,
+                                         -1.0 / 1307674368000.0,
+                                         1.0 / 355687428096000.0};
+inline constexpr double cosine_series[] = {1.0 / 24,
+                                           -1.0 / 720,
+                                           1.0 / 40320,
+                                           -1.0 / 3628800,
+                                           1.0 / 479001600,
+                                           -1.0 / 87178291200.0,
+                                           1.0 / 20922789888000.0,
+                                           -1.0 / 6402373705728000.0};
+
 /// Sine and cosine of |x| < `farthest`: x = n pi/2 + r, |r| <= pi/4.
 inline constexpr double farthest = 1e6;
 template <class L>
@@ -164,26 +183,10 @@ constexpr SineCosine<L> sincos(const L& x) {
     // pi/2 in parts of 33 bits, whose products with n are exact.
     constexpr double per_quarter = 0.63661977236758134, quarter = 1.57079632673412561417, quarter2 = 6.07710050630396597660e-11,
                      quarter3 = 2.02226624879595063154e-21;
-    constexpr double sine[] = {-1.0 / 6,
-                               1.0 / 120,
-                               -1.0 / 5040,
-                               1.0 / 362880,
-                               -1.0 / 39916800,
-                               1.0 / 6227020800.0,
-                               -1.0 / 1307674368000.0,
-                               1.0 / 355687428096000.0};
-    constexpr double cosine[] = {1.0 / 24,
-                                 -1.0 / 720,
-                                 1.0 / 40320,
-                                 -1.0 / 3628800,
-                                 1.0 / 479001600,
-                                 -1.0 / 87178291200.0,
-                                 1.0 / 20922789888000.0,
-                                 -1.0 / 6402373705728000.0};
     const L shifted = x * per_quarter + rounder, n = shifted - rounder;
     const L r = ((x - n * quarter) - n * quarter2) - n * quarter3, square = r * r;
-    const L s = r + r * square * polynomial(sine, square);
-    const L c = 1.0 - square * (0.5 - square * polynomial(cosine, square));
+    const L s = r + r * square * polynomial(sine_series, square);
+    const L c = 1.0 - square * (0.5 - square * polynomial(cosine_series, square));
     const WordOf<L> turned = bits(shifted), odd = -(turned & 1), flip_sine = (turned & 2) << 62,
                     flip_cosine = ((turned + 1) & 2) << 62;
     return {lanes<L>(bits(blend<L>(odd, c, s)) ^ flip_sine), lanes<L>(bits(blend<L>(odd, s, c)) ^ flip_cosine)};

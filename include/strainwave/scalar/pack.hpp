@@ -6,9 +6,9 @@ namespace strainwave {
 
 /// `n` numbers that take every step together, in as many vector registers as they need. Every lane holds the same numbers whatever
 /// the registers.
-template <int n>
+template <int n, int register_width = detail::register_width>
 struct Pack {
-    static constexpr int width = detail::register_width < n ? detail::register_width : n, count = n / width;
+    static constexpr int width = register_width < n ? register_width : n, count = n / width;
     using Lanes = typename detail::Vector<double, width * sizeof(double)>::type;
     using Bits = elementary::WordOf<Lanes>;
 

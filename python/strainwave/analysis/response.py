@@ -234,7 +234,7 @@ class _Sines:
         time_grid = excitation.time_grid(step, None)
         recorded = outputs_of(self.drive)
         channels = [each.channel for each in recorded.values()]
-        inputs, state = excitation.over(time_grid), self.start
+        inputs, state = excitation.over(time_grid.instants), self.start
         while True:
             outputs = beginning(self.drive, state, excitation.first(), channels, len(time_grid.times))
             keep, method = time_grid.samples[1:], _core.Method.exponential

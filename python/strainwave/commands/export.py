@@ -53,7 +53,7 @@ class Conversion(NamedTuple):
 
 def _model_text(file: Path | None) -> str | None:
     """Return the text of the MJCF file of a robot; None if none is given."""
-    from strainwave.export.mujoco import MAX_MODEL_BYTES
+    from strainwave.export.robot import MAX_MODEL_BYTES
     from strainwave.files.budget import read_text
 
     return None if file is None else read_text(file, MAX_MODEL_BYTES)

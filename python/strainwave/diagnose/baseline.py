@@ -20,6 +20,7 @@ from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS
+from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
 
@@ -336,7 +337,7 @@ def _design(condition: str, cells: Sequence[Cell]) -> Array:
 
 def _fitted(condition: str, cells: Sequence[Cell]) -> _Expected:
     design = _design(condition, cells)
-    inverse = np.asarray(np.linalg.pinv(design.T @ design))
+    inverse = normal_inverse(design)
     return _Expected(condition, inverse @ (design.T @ np.array([cell.amplitude for cell in cells])), inverse)
 
 

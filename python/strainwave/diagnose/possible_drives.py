@@ -15,6 +15,7 @@ from strainwave.diagnose.reaction import CurrentPerError, current_per_error
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.parameters import every
+from strainwave.statistics.linear_fit import normal_inverse, solved
 from strainwave.tuning.drawn import drawn_gears
 
 Array = NDArray[np.float64]
@@ -103,7 +104,7 @@ def _moved(design: Array, values: Complex) -> Complex:
 
     The residual of the regression is enlarged by the degrees of freedom that the regression took.
     """
-    found, *_ = np.linalg.lstsq(design.astype(complex), values, rcond=1e-6)
+    found = solved(design, values)
     rest = values - design @ found
     members, terms = design.shape
     moved: Complex = found[0] + rest * np.sqrt((members - 1.0) / (members - terms))
@@ -129,8 +130,8 @@ def trend(recording: Recording) -> tuple[Array, Array]:
     terms = np.polynomial.legendre.legvander(2.0 * (angle - angle.min()) / np.ptp(angle) - 1.0, TREND_DEGREES)
     waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
     design = np.column_stack([terms, *waves])
-    found: Any = np.linalg.lstsq(design, current, rcond=None)[0]
+    found = solved(design, current)
     white = float(np.std(np.diff(current - design @ found)) / np.sqrt(2.0))
-    covariance: Any = np.linalg.inv(design.T @ design)
+    covariance = normal_inverse(design)
     kept = TREND_DEGREES + 1
     return found[:kept], white * np.sqrt(np.diag(covariance)[:kept])

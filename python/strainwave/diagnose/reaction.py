@@ -22,6 +22,7 @@ from strainwave import arguments
 from strainwave.diagnose.actuator_ramp import ActuatorRamp
 from strainwave.diagnose.inversion import ORDERS, answer_per_error, runs_with_probe
 from strainwave.orders.order_spectrum import order_amplitudes
+from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -131,8 +132,7 @@ def parts_over_load(lines: ArrayLike, torque: ArrayLike, sigma: ArrayLike) -> Pa
     if len(np.unique(loads)) < LOADS_PER_FIT:
         raise ValueError("the records have one load; two different torques determine the part that is proportional to the load")
     design = np.column_stack([np.ones_like(loads), loads]) / noise[:, None]
-    found, *_ = np.linalg.lstsq(design.astype(complex), values / noise, rcond=None)
-    deviations = np.sqrt(np.diag(np.linalg.inv(design.T @ design)))
+    found, deviations = solved(design, values / noise), np.sqrt(np.diag(normal_inverse(design)))
     return PartsOverLoad(complex(found[0]), complex(found[1]), (float(deviations[0]), float(deviations[1])))
 
 

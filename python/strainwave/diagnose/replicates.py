@@ -18,6 +18,7 @@ from strainwave.diagnose.refusals import JointRecording
 from strainwave.orders.ripple import Ripple
 from strainwave.orders.smooth_part import Moving, floor_without, least_squares, shaft_of
 from strainwave.statistics.floor import Floor
+from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
 
@@ -206,10 +207,7 @@ def _block_cells(
         return cells
     places = [2 * (part * len(orders) + k) + half for part, k in used for half in (0, 1)]
     own = columns[inside][:, places]
-    size = np.linalg.norm(own, axis=0)
-    size[size == 0.0] = 1.0
-    inverse = np.asarray(np.linalg.pinv((own / size).T @ (own / size), rcond=1e-8)) / np.outer(size, size)
-    values, sigmas = inverse @ (own.T @ white[inside]), np.sqrt(np.diag(inverse))
+    values, sigmas = solved(own, white[inside]), np.sqrt(np.diag(normal_inverse(own)))
     for place, (part, k) in enumerate(used):
         here = inside & masks[part]
         share = weight[here]

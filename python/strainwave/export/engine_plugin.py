@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 from importlib import resources
 from pathlib import Path
@@ -25,17 +25,9 @@ from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import ShaftFriction, max_torque_of
 from strainwave.export.exported import Exported, Form
 from strainwave.export.internal_step import internal_step
-from strainwave.export.mujoco import (
-    Element,
-    child,
-    friction_attributes,
-    hinge_of,
-    inertia_on_a_hinge,
-    others_on,
-    timestep_of,
-    written,
-)
+from strainwave.export.mujoco import friction_attributes, inertia_on_a_hinge
 from strainwave.export.names import checked_name
+from strainwave.export.robot import Element, Robot, child, kept, timestep_of, written
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import one_line
@@ -69,6 +61,7 @@ def mujoco_plugin(
     *,
     into: str | None = None,
     joint: str | None = None,
+    keep: str | None = None,
     load_inertia: float | None = None,
     max_torque: float | None = None,
     command: Command = "held",
@@ -84,6 +77,7 @@ def mujoco_plugin(
         drive: a drive, or a gear set with one. A body of MuJoCo takes the place of its load
         into: text of the MJCF file of a robot; a model with an inertia alone if not given
         joint: name of a hinge of the robot, which becomes the output
+        keep: what the joint keeps of its own damping, frictionloss and armature besides the drive's, as "damping,armature"
         load_inertia: of the model with an inertia alone [kg.m²]; by default that of the load
         max_torque: at the output [N.m], up to which the stiffness limits the timestep; by default the peak torque of the
             ratings, or 0 without one
@@ -116,7 +110,7 @@ def mujoco_plugin(
     coupled = CoupledDrive.of(drive, largest)
     inertia = _inertia(drive, load_inertia, into is None)
     alone = _alone(coupled, inertia, command, name)
-    text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, command, name)
+    text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, command, name, kept(keep))
     suffix = SUFFIXES[sys.platform]
     content = compiled(coupled.sources(f"strainwave.{name}", step, "mujoco_plugin.cpp"), include)
     numbers = {
@@ -191,21 +185,31 @@ def _inertia(drive: Drive, given: float | None, is_needed: bool) -> float:
 def _alone(coupled: CoupledDrive, inertia: float, command: Command, name: str) -> Element:
     timestep = min(DEFAULT_TIMESTEP, MAX_STABLE_SHARE * coupled.max_timestep(inertia))
     root, _, shaft = inertia_on_a_hinge(inertia, timestep, name)
-    _add_plugin(root, shaft, coupled, command, name)
+    _add_plugin(root, shaft, command, name)
+    shaft.attrib.update(_hold(coupled, root))
     return root
 
 
-def _attached(model: str, joint: str, coupled: CoupledDrive, command: Command, name: str) -> tuple[str, tuple[str, ...]]:
+def _attached(
+    model: str, joint: str, coupled: CoupledDrive, command: Command, name: str, keep: Collection[str] = ()
+) -> tuple[str, tuple[str, ...]]:
     """Return a robot's model with a drive at one of its joints, and remarks on what it changes."""
-    root, _, shaft = hinge_of(model, joint)
-    remarks = list(others_on(root, joint, name))
-    if armature := shaft.get("armature"):
-        remarks.append(f"the armature {armature} of {joint} is added to the rotor of the drive; remove it if it is that rotor")
-    _add_plugin(root, shaft, coupled, command, name)
-    return written(root), tuple(remarks)
+    robot = Robot.of(model)
+    shaft = robot.hinge(joint)
+    remarks = [*robot.replace_friction(shaft, _hold(coupled, robot.root), keep), *robot.others_on(joint, name)]
+    _add_plugin(robot.root, shaft, command, name)
+    for key in robot.root.findall("keyframe/key"):
+        if key.get("ctrl"):
+            key.set("ctrl", f"{key.attrib['ctrl']} 0")
+    return written(robot.root), tuple(remarks)
 
 
-def _add_plugin(root: Element, shaft: Element, coupled: CoupledDrive, command: Command, name: str) -> None:
+def _hold(coupled: CoupledDrive, root: Element) -> dict[str, str]:
+    """Return the attributes of a joint for the dry friction at the output of a drive."""
+    return friction_attributes(ShaftFriction(dry=coupled.hold, viscous=0.0), timestep_of(root))
+
+
+def _add_plugin(root: Element, shaft: Element, command: Command, name: str) -> None:
     """Add a drive to a model, at a joint of it."""
     plugin = f"strainwave.{name}"
     ElementTree.SubElement(child(root, "extension"), "plugin", plugin=plugin)
@@ -213,9 +217,6 @@ def _add_plugin(root: Element, shaft: Element, coupled: CoupledDrive, command: C
         child(root, "actuator"), "plugin", {"name": f"{name}_motor", "joint": shaft.attrib["name"], "plugin": plugin}
     )
     ElementTree.SubElement(motor, "config", key="command", value=command)
-    if coupled.hold > 0.0:
-        dry = coupled.hold + float(shaft.get("frictionloss", 0.0))
-        shaft.attrib.update(friction_attributes(ShaftFriction(dry=dry, viscous=0.0), timestep_of(root)))
 
 
 def _run_in_mujoco(content: bytes, model: str, command: float, angle: float, timestep: float, every: int) -> Array:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, twist_at_largest
 from strainwave.export.exported import Exported, Form
-from strainwave.export.mujoco import DEFAULT_TIMESTEP, friction_attributes
+from strainwave.export.mujoco import friction_attributes
+from strainwave.export.robot import DEFAULT_TIMESTEP
 from strainwave.files.gear_set import GearSet, gear_set_of
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ that yield are its elastic elements, so that the hysteresis of Maxwell slip elem
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -18,23 +18,19 @@ import numpy as np
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported, Form
+from strainwave.export.robot import Element, Robot, child, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
-from strainwave.messages import listed, quoted
 from strainwave.tuning.drawn import drawn_gears
 
 ROTOR_MASS = 1e-6  # kg: MuJoCo refuses a body that moves without one
 ROTOR_INERTIA = 1e-9  # kg.m², at least, across the axis
 TIMESTEP_ALONE = 5e-4  # s, of a model that has the gear and an inertia only
-DEFAULT_TIMESTEP = 2e-3  # s, of a model that states none
 STIFF_FRICTION = "0.9999 0.9999 0.001 0.5 2"  # impedance of dry friction: by default MuJoCo gives 5 to 10 % of it away
-MAX_MODEL_BYTES = 64 << 20  # of a robot's file
 RANDOMISED_ATTRIBUTES = (  # that drawn gears differ in
     *("armature", "frictionloss", "damping", "stiffness", "springlength", "springyield"),
     *("resistance", "motorconst", "inductance", "cogging", "lugre", "gear"),
 )
 PLACING_ATTRIBUTES = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")  # of a body
-
-Element = ElementTree.Element
 
 
 def mjcf(
@@ -44,6 +40,7 @@ def mjcf(
     load_inertia: float | None = None,
     into: str | None = None,
     joint: str | None = None,
+    keep: str | None = None,
     draws: int = 0,
     seed: int = 0,
     name: str = "gear",
@@ -56,6 +53,7 @@ def mjcf(
         load_inertia: at the output about its axis [kg.m²]; by default that of the load
         into: text of the MJCF file of a robot; a model with an inertia alone if not given
         joint: name of a hinge of the robot, which becomes the output
+        keep: what the joint keeps of its own damping, frictionloss and armature besides the gear's, as "damping,armature"
         draws: number of gears that are drawn from what is known of the numbers, for domain randomisation
         seed: of the draw
         name: of the gear, and prefix of joints, tendons and actuators
@@ -79,7 +77,7 @@ def mjcf(
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
     remarks: tuple[str, ...] = ()
     if into is not None and joint is not None:
-        text, remarks = attached(into, joint, elements, gear_set.motor, name=name)
+        text, remarks = attached(into, joint, elements, gear_set.motor, name=name, keep=kept(keep))
     else:
         text = _alone(elements, gear_set.motor, _inertia(gear_set, load_inertia), name)
     files: dict[str, str | bytes] = {"gear.xml": text}
@@ -144,7 +142,8 @@ def _numbers(model: str) -> dict[str, float]:
 
 def _alone(elements: GearElements, actuator: Any, load_inertia: float, name: str) -> str:
     root, link, shaft = inertia_on_a_hinge(load_inertia, TIMESTEP_ALONE, name)
-    add_gear(root, child(root, "worldbody"), link, shaft, elements, actuator, name)
+    shaft.attrib.update(friction_attributes(elements.at_output, TIMESTEP_ALONE))
+    add_gear(Robot.in_tree(root), link, shaft, elements, actuator, name)
     return written(root)
 
 
@@ -166,7 +165,7 @@ def inertia_on_a_hinge(inertia: float, timestep: float, name: str) -> tuple[Elem
 
 
 def attached(
-    model: str, joint: str, elements: GearElements, actuator: Any, *, name: str = "gear"
+    model: str, joint: str, elements: GearElements, actuator: Any, *, name: str = "gear", keep: Collection[str] = ()
 ) -> tuple[str, tuple[str, ...]]:
     """Return a robot's model with a gear behind one of its joints, and remarks on what it changes.
 
@@ -176,98 +175,52 @@ def attached(
         elements: of the gear
         actuator: motor of the drive; None for a torque at the input
         name: of the gear
+        keep: of damping, frictionloss and armature, what the joint keeps of its own
 
     Raises:
         ValueError: the text is no MJCF, or the joint is not a hinge in it with a body of its own
     """
-    root, parents, shaft = hinge_of(model, joint)
-    link = parents[shaft]
-    add_gear(root, parents[link], link, shaft, elements, actuator, name)
-    return written(root), tuple(others_on(root, joint, name))
+    robot = Robot.of(model)
+    shaft = robot.hinge(joint)
+    remarks = list(robot.replace_friction(shaft, friction_attributes(elements.at_output, robot.timestep), keep))
+    link = robot.parents[shaft]
+    before = len(robot.root.findall("actuator/*"))
+    rotor = add_gear(robot, link, shaft, elements, actuator, name)
+    added = len(robot.root.findall("actuator/*")) - before
+    remarks += [*robot.extended_keyframes(rotor, shaft, elements.ratio, added), *robot.others_on(joint, name)]
+    return written(robot.root), tuple(remarks)
 
 
-def others_on(root: Element, joint: str, name: str) -> Iterator[str]:
-    """Yield a remark on each actuator of a robot that acts on a joint in addition to the motor of a gear."""
-    motor = f"{name}_motor"
-    for each in root.findall("actuator/*"):
-        if each.get("joint") == joint and (own := each.get("name")) != motor:
-            yield f"the actuator {own or each.tag} still acts on {joint}, behind the gear; let {motor} take its place"
-
-
-def written(root: Element) -> str:
-    """Return a model as text."""
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode") + "\n"
-
-
-def hinge_of(model: str, joint: str) -> tuple[Element, dict[Element, Element], Element]:
-    """Return the root of a robot's model, the parent of each of its elements, and one of its hinges.
-
-    Raises:
-        ValueError: the text is no MJCF, or the joint is not a hinge in it with a body of its own
-    """
-    root = _parsed(model)
-    parents = {child: parent for parent in root.iter() for child in parent}
-    hinges = [each for each in root.iter("joint") if each.get("name") == joint and parents[each].tag == "body"]
-    if not hinges:
-        names = [each.get("name", "") for each in root.iter("joint") if parents[each].tag == "body" and each.get("name")]
-        raise ValueError(f"joint = {quoted(joint)} is not in the model; it has {listed(names) or 'no joint with a name'}")
-    shaft = hinges[0]
-    if shaft.get("type", "hinge") != "hinge":
-        raise ValueError(f"joint = {quoted(joint)} is of type {shaft.get('type')}; a gear turns a hinge")
-    return root, parents, shaft
-
-
-def _parsed(model: str) -> Element:
-    """Return the root of an MJCF file; one that declares entities is refused, as these may grow without bound."""
-    if len(model) > MAX_MODEL_BYTES or "<!DOCTYPE" in model or "<!ENTITY" in model:
-        raise ValueError("the model declares entities, or is larger than 64 MiB; save it without a DOCTYPE")
-    try:
-        root = ElementTree.fromstring(model)
-    except ElementTree.ParseError as error:
-        raise ValueError(f"the model is no XML: {error}") from None
-    if root.tag != "mujoco":
-        raise ValueError(f"the model is a {root.tag}, not a mujoco; MuJoCo itself saves a URDF as MJCF (mj_saveLastXML)")
-    return root
-
-
-def add_gear(
-    root: Element, parent: Element, link: Element, joint: Element, elements: GearElements, actuator: Any, name: str
-) -> None:
-    """Add rotor, tendons and actuator of a gear to a model.
+def add_gear(robot: Robot, link: Element, joint: Element, elements: GearElements, actuator: Any, name: str) -> Element:
+    """Add rotor, tendons and actuator of a gear to a model, and return the joint of the rotor.
 
     Args:
-        root: of the model
-        parent: body, or the world, to which the rotor is attached
-        link: body that the gear turns, a child of it
+        robot: the model
+        link: body that the gear turns
         joint: of the link, a hinge with a name
         elements: of the gear
         actuator: motor of the drive; None for a torque at the input
         name: of the gear
     """
-    timestep = timestep_of(root)
+    parent, stated = robot.parents[link], robot.stated(joint)
     place = {key: value for key, value in link.attrib.items() if key in PLACING_ATTRIBUTES}
-    rotor = ElementTree.SubElement(parent, "body", {"name": f"{name}_rotor", **place})
+    body = ElementTree.SubElement(parent, "body", {"name": f"{name}_rotor", **place})
     inertia = " ".join([repr(ROTOR_INERTIA)] * 3)
-    ElementTree.SubElement(rotor, "inertial", pos="0 0 0", mass=repr(ROTOR_MASS), diaginertia=inertia)
-    axis = {key: value for key, value in joint.attrib.items() if key in ("axis", "pos", "class")}
-    own = {"armature": repr(elements.input_inertia), **friction_attributes(elements.at_input, timestep)}
-    ElementTree.SubElement(rotor, "joint", {"name": f"{name}_input", "type": "hinge", **axis, **own})
-    joint.attrib.update(friction_attributes(elements.at_output, timestep))
-    _add_twist(child(root, "tendon"), elements, name, joint.attrib["name"])
-    _add_actuators(child(root, "actuator"), actuator, elements.at_input, name)
-
-
-def timestep_of(root: Element) -> float:
-    """Return the timestep of a model [s]."""
-    option = root.find("option")
-    return DEFAULT_TIMESTEP if option is None else float(option.get("timestep", DEFAULT_TIMESTEP))
-
-
-def child(root: Element, tag: str) -> Element:
-    """Return the child of a root with this tag, which is added if there is none."""
-    found = root.find(tag)
-    return ElementTree.SubElement(root, tag) if found is None else found
+    ElementTree.SubElement(body, "inertial", pos="0 0 0", mass=repr(ROTOR_MASS), diaginertia=inertia)
+    axis = {key: value for key, value in stated.items() if key in ("axis", "pos")}
+    start = {"ref": repr(elements.ratio * float(stated["ref"]))} if float(stated.get("ref", 0.0)) else {}
+    own = {"armature": repr(elements.input_inertia), **friction_attributes(elements.at_input, robot.timestep)}
+    rotor = ElementTree.SubElement(body, "joint", {"name": f"{name}_input", "type": "hinge", **axis, **start, **own})
+    robot.parents.update({body: parent, rotor: body})
+    robot.neutral(rotor)
+    _add_twist(child(robot.root, "tendon"), elements, name, joint.attrib["name"])
+    actuators = child(robot.root, "actuator")
+    before = len(actuators)
+    _add_actuators(actuators, actuator, elements.at_input, name)
+    for each in actuators[before:]:
+        robot.parents[each] = actuators
+        robot.neutral(each)
+    return rotor
 
 
 def friction_attributes(shaft: ShaftFriction, timestep: float) -> dict[str, str]:

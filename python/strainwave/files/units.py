@@ -86,7 +86,7 @@ _OF_ARC = re.compile(
     r"\b(?:arc[-. ]{0,2}|Winkel|Bogen)(min|sec|[Ss]ek)(?:ut|und|ond)?(?:en|es|e|s)?(?![a-z])(?:\.(?![a-z(]))?",
     re.ASCII | re.IGNORECASE,
 )
-_PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s"}  # as the data sheets of sensors write them
+_PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s", "rps": "rev/s"}  # as data sheets write them
 
 # Counts of an encoder with the counts of one revolution: counts/16384, inc/4096/s.
 _COUNTED = re.compile(

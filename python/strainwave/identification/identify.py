@@ -34,6 +34,7 @@ from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.simulation.threads import one_thread_of_algebra
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -266,6 +267,7 @@ class _Fits:
         fits.fit_all(files)
         return fits
 
+    @one_thread_of_algebra()
     def fit_all(self, files: Sequence[Recognised]) -> None:
         """Fit each file in the turn of its kind, and what files of a kind determine together."""
         kinds = [kind_named(name) for name in KINDS]

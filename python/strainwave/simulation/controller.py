@@ -134,7 +134,7 @@ def simulate_controlled(
     course = Course.of(drive, excitation, recorded, dt, interval, actions)
     longest = course.time_grid.longest
     course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
-    given = excitation.over(course.time_grid)
+    given = excitation.over(course.time_grid.instants)
     with progressing(progress, len(given)) as shown:
         outputs, state = _run(course, state, given, actions, controller, shown)
     outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)

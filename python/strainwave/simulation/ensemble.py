@@ -258,10 +258,8 @@ class _Plan(ComparedByFields):
         instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
         excitation.check_laid_out(min(dt, sample))
         time_grid = excitation.time_grid(dt, sample, instants)
-        return cls(
-            drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid), recorded, threads,
-            backend,
-        )  # fmt: skip
+        inputs = excitation.over(time_grid.instants)
+        return cls(drive, excitation, dt, sample, numbers, values, known, time_grid, inputs, recorded, threads, backend)
 
     @property
     def members(self) -> int:

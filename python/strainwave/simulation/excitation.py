@@ -129,10 +129,10 @@ class Excitation:
         start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
         return start
 
-    def over(self, time_grid: TimeGrid) -> Array:
-        """The same at the start, middle and end of each step, shape (n, 3, 6)."""
-        with room_for("steps", len(time_grid.instants), BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN):
-            inputs = _core.inputs(*self.signals, time_grid.instants)
+    def over(self, instants: Array) -> Array:
+        """The same at the start, middle and end of each step between these instants [s], shape (n, 3, 6)."""
+        with room_for("steps", len(instants), BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN):
+            inputs = _core.inputs(*self.signals, instants)
         if isinstance(self.temperature, Scenario):
             check_temperature(float(inputs[:, :, TEMPERATURE_PLACE].min()))
         return inputs

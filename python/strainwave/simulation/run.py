@@ -190,12 +190,10 @@ def simulate(
     taken = method or "exponential"
     outputs, first, steps = course.beginning(state, excitation.first()), 1, len(time_grid.instants) - 1
     with kernels.prepared(drive, "simulate", steps), progressing(progress, steps) as shown:
-        for number, chunk in enumerate(time_grid.chunks()):
+        for number, (instants, keep) in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
-            laid_out, keep = excitation.over(chunk), chunk.samples[1:]
-            state = _core.simulate(
-                drive, state, chunk.instants, laid_out, keep, _core.Method[taken], course.channels, outputs, first, report
-            )
+            laid_out, steps_by = excitation.over(instants), _core.Method[taken]
+            state = _core.simulate(drive, state, instants, laid_out, keep, steps_by, course.channels, outputs, first, report)
             first += int(np.count_nonzero(keep))
     check_meaning(course.time, recorded, outputs, remedy(time_grid.longest))
     if method != "rosenbrock":
@@ -295,9 +293,7 @@ _NAMED: dict[Method, str] = {
 
 def _named(method: Method, drive: Drive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
-    rest = drive.rest()
-    sticks = not rest.input_slip_direction or not rest.output_slip_direction
-    return _NAMED[method] + (", cut at events" if sticks and method != "moreau_jean" else "")
+    return _NAMED[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
 
 
 def simulate_adaptively(
@@ -403,7 +399,7 @@ def differentiate(
     excitation.check_laid_out(dt if isinstance(samples, np.ndarray) else min(dt, samples))
     time_grid = excitation.time_grid(dt, samples, instants)
     check_resolution(drive, time_grid.longest, 0.0, temperature)
-    inputs = excitation.over(time_grid)
+    inputs = excitation.over(time_grid.instants)
     recorded = signals.outputs(drive)
     with room_for("samples", len(time_grid.times), 8.0 * len(recorded) * (1 + len(numbers)), "sample less often"):
         beginning, kept = known(drive, initial), time_grid.samples[1:]

@@ -23,10 +23,18 @@ STEPS_PER_CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the
 
 @dataclass(frozen=True, eq=False)
 class TimeGrid(ComparedByFields):
-    """A stretch of time cut into steps: where they end, which ends are samples of the recording, and the longest step [s]."""
+    """A stretch of time cut into steps.
+
+    Attributes:
+        instants: at which steps begin and end [s]
+        samples: 1 if an instant is a sample of the recording
+        times: of the samples [s]
+        longest: step [s]
+    """
 
     instants: Array
     samples: NDArray[np.uint8]
+    times: Array
     longest: float
 
     @classmethod
@@ -41,23 +49,14 @@ class TimeGrid(ComparedByFields):
             samples = grid(samples, duration, nearest)
         steps = grid(dt, duration, nearest)
         with room_for("steps", len(steps) + len(samples), BYTES_PER_STEP, LONG_RUN):
-            instants, sampled, longest = _core.time_grid(steps, samples, np.sort(breaks), nearest)
-        return cls(instants, sampled, min(longest, dt))  # longer by rounding
+            instants, sampled, times, longest = _core.time_grid(steps, samples, np.sort(breaks), nearest)
+        return cls(instants, sampled, times, min(longest, dt))  # longer by rounding
 
-    @property
-    def times(self) -> Array:
-        """The samples [s]."""
-        times: Array = self.instants[self.samples.view(np.bool_)]
-        return times
-
-    def chunks(self) -> Iterator[TimeGrid]:
-        """The same time_grid in pieces that follow each other."""
+    def chunks(self) -> Iterator[tuple[Array, NDArray[np.uint8]]]:
+        """Yield instants of pieces that follow each other, and 1 for each step of a piece that ends at a sample."""
         for start in range(0, len(self.instants) - 1, STEPS_PER_CHUNK):
-            yield TimeGrid(
-                self.instants[start : start + STEPS_PER_CHUNK + 1],
-                self.samples[start : start + STEPS_PER_CHUNK + 1],
-                self.longest,
-            )
+            end = start + STEPS_PER_CHUNK + 1
+            yield self.instants[start:end], self.samples[start + 1 : end]
 
 
 def grid(step: float, duration: float, tolerance: float) -> Array:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,12 +103,31 @@ def linear_fit(
     return LinearFit(names, values, covariance, own_share(unit), int(live.sum()), words, target - columns @ values, freedom)
 
 
-def solved(columns: Array, target: Array) -> Array:
-    """Return the coefficients of columns, scaled so that small ones count alike, shape (n,) or (n, k) for k targets."""
+def solved(columns: Array, target: NDArray[Any]) -> NDArray[Any]:
+    """Return the coefficients of columns, scaled so that small ones count alike, shape (n,) or (n, k) for k targets.
+
+    They are complex if the target is.
+    """
     size = np.linalg.norm(columns, axis=0)
     size = np.where(size > 0.0, size, 1.0)
     coefficients = np.linalg.lstsq(columns / size, target, rcond=MIN_SINGULAR)[0]
     return np.asarray((coefficients.T / size).T)
+
+
+def normal_inverse(columns: Array) -> Array:
+    """Return the inverse of A' A of columns A: the covariance of their coefficients for noise of variance 1, shape (n, n).
+
+    Directions that are not separated are left out, as in `solved`.
+
+    >>> normal_inverse(np.array([[2.0, 0.0], [0.0, 1e-9]])).tolist()
+    [[0.25, 0.0], [0.0, 1e+18]]
+    """
+    size = np.linalg.norm(columns, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    _, singular, directions = np.linalg.svd(columns / size, full_matrices=False)
+    live = singular > MIN_SINGULAR * singular.max(initial=0.0)
+    root = directions[live].T / singular[live]
+    return np.asarray((root @ root.T) / np.outer(size, size))
 
 
 def own_share(columns: Array, others: Array | None = None) -> Array:

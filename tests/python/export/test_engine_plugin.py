@@ -120,7 +120,7 @@ def test_an_arm_gets_two_drives():
     for joint, name in (("shoulder", "robot-joint"), ("elbow", "position-drive")):
         coupled = CoupledDrive.of(sw.GearSet.read(name).drive, 100.0)
         exported(name)
-        text, remarks = export._attached(text, joint, coupled, "held", name)
+        text, remarks = export._attached(text, joint, coupled, "held", name, ("frictionloss",))
         assert remarks == (() if joint == "shoulder" else (export_remark(name),))
     model = mujoco.MjModel.from_xml_string(text)
     assert model.joint("elbow").frictionloss[0] == pytest.approx(0.1 + coupled.hold)

@@ -118,9 +118,9 @@ def test_fmpy_runs_it_by_default_settings(tmp_path):
 
 
 @cache
-def exchanged(version):
+def exchanged(version, name=None):
     """The content of an FMU for model exchange."""
-    found = sw.export.fmu(sw.GearSet.read(DRIVES[version]), version=version, model_exchange=True, name="block")
+    found = sw.export.fmu(sw.GearSet.read(name or DRIVES[version]), version=version, model_exchange=True, name="block")
     return found.files["block.fmu"]
 
 
@@ -178,10 +178,10 @@ def test_directional_derivatives_are_those_of_differences(version, tmp_path):
 
 
 @pytest.mark.slow("export")
-@pytest.mark.parametrize("version", DRIVES)
-def test_solver_of_a_tool_comes_closer_with_its_tolerance(version, tmp_path):
-    drive, path = drive_of(version), tmp_path / "block.fmu"
-    path.write_bytes(exchanged(version))
+@pytest.mark.parametrize(("version", "name"), [*DRIVES.items(), (3, "robot-joint")])  # with Maxwell elements in both versions
+def test_solver_of_a_tool_comes_closer_with_its_tolerance(version, name, tmp_path):
+    drive, path = sw.GearSet.read(name).drive, tmp_path / "block.fmu"
+    path.write_bytes(exchanged(version, name))
     assert validation.validate_fmu(str(path)) == []
     run = sw.simulate_adaptively(drive, sw.scenario.constant(0.1, 0.2), 1e-9, sample=1e-3)
     settings = {
@@ -285,6 +285,8 @@ def test_description_is_valid(content, version, tmp_path):
         about = etree.fromstring(archive.read("modelDescription.xml"))
     ability = "providesDirectionalDerivative" + "s" * (version == 3)
     assert [each.get(ability) for each in about.iter("ModelExchange")] == ["true"] * (content is exchanged)
+    needs = ["true"] if version == 3 and content is exchanged else [None] * (content is exchanged)
+    assert [each.get("needsCompletedIntegratorStep") for each in about.iter("ModelExchange")] == needs
 
 
 def test_terminals_name_variables_of_the_description():

@@ -43,7 +43,10 @@ def with_options(path: Path, options: str) -> Identified:
         given.setdefault(name, []).append(value)
     files = measurement_files([path])
     side = given.get("--side", [None])[0]
-    said = FileOptions(column=given.get("--column"), unit=given.get("--unit"), side=side).mapping_of(files.files)
+    constant = given.get("--constant")
+    said = FileOptions(column=given.get("--column"), unit=given.get("--unit"), side=side, constant=constant).mapping_of(
+        files.files
+    )
     return identify("csg-20-100", files, mapping=said)
 
 
@@ -151,3 +154,22 @@ def test_each_file_may_have_a_ratio_of_its_own(tmp_path: Path) -> None:
     found = identify("csg-20-100", paths, mapping=lambda path: FileMapping(constants={"ratio": ratios[path.parent.name]}))
     coulomb = [next(each for each in file.estimates if each.path.endswith("coulomb")).value for file in found.files]
     assert coulomb == pytest.approx([COULOMB * RATIO / ratio for ratio in ratios.values()], rel=0.02)
+
+
+@pytest.mark.slow("identification")
+def test_an_effort_without_a_unit_that_may_be_a_current_is_asked_about(tmp_path: Path) -> None:
+    """Of a friction of the usual size it is a torque. Of a tenth of that it may be the current of a motor of 0.1 N·m/A."""
+    path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("joint_position", "joint_velocity", "joint_effort"))
+    assert not identify("csg-20-100", [path]).failed
+    time, angle, speed, effort = np.loadtxt(path, delimiter=",", skiprows=1).T
+    rows = np.column_stack([time, angle, speed, effort / 9.85])
+    np.savetxt(path, rows, delimiter=",", header="time,joint_position,joint_velocity,joint_effort", comments="")
+    with pytest.raises(ValueError, match="joint_effort has no unit, and may be a torque in N·m or the current") as asked:
+        identify("csg-20-100", [path])
+    first, second = (re.search(rf"(--{option} \S+)", str(asked.value)) for option in ("unit", "column"))
+    assert first is not None
+    assert second is not None
+    as_torque = with_options(path, first[1])
+    as_current = with_options(path, second[1].replace("…", "") + " --constant torque_constant=0.0985")
+    assert values(as_torque)["load.gravity_torque"] == pytest.approx(25.0 / 9.85, rel=0.01)
+    assert values(as_current)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)

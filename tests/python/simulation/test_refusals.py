@@ -263,7 +263,7 @@ def test_a_run_that_has_diverged_goes_no_further() -> None:
     excitation = Excitation(sw.scenario.sine(0.02, 3.0, 1.0))
     course = excitation.time_grid(5e-4, None)
     outputs = np.empty((len(COLUMNS), len(course.times)))
-    course_of = (course.instants, excitation.over(course), course.samples[1:])
+    course_of = (course.instants, excitation.over(course.instants), course.samples[1:])
     _core.simulate(drive, drive.rest().numbers, *course_of, _core.Method.exponential, EVERY, outputs, 1)
     sound = (np.abs(outputs[:, 1:]) <= simulation.LARGEST).all(axis=0)
     lost = int(np.argmin(sound))

@@ -142,6 +142,21 @@ def test_an_array_of_times_gives_what_each_time_gives(scenario: Scenario, column
         np.testing.assert_allclose(method(time), [[method(t) for t in row] for row in time], rtol=1e-14, atol=1e-14)
 
 
+@given(scenarios, st.sampled_from([1.0, 1e-7]), st.integers(0, 9))
+def test_every_instruction_set_and_every_order_of_times_gives_the_same_bits(
+    scenario: Scenario, scale: float, count: int
+) -> None:
+    times = np.sort(np.concatenate([np.linspace(0.0, DURATION * scale, count), scenario.breaks]))
+    signal = replace(scenario, waves=tuple(replace(wave, phase=wave.phase / scale) for wave in scenario.waves)).signal
+    for before in (False, True):
+        found = signal.at(times, before)
+        assert np.array_equal(found, np.transpose([signal.at(np.array([time]), before)[:, 0] for time in times]).reshape(2, -1))
+        assert np.array_equal(found, signal.at(times[::-1].copy(), before)[:, ::-1])
+        with pytest.MonkeyPatch.context() as environment:
+            environment.setenv("STRAINWAVE_INSTRUCTION_SET", "baseline")
+            assert np.array_equal(found, signal.at(times, before))
+
+
 @pytest.mark.parametrize("method", ["value", "rate", "value_before"])
 @pytest.mark.parametrize("time", [-1e-9, 4.000001, float("nan"), float("inf")])
 def test_a_time_outside_is_refused(method: str, time: float) -> None:

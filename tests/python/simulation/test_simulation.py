@@ -68,14 +68,14 @@ def test_a_jump_between_two_steps_is_seen_by_the_second_alone(dt: float, multipl
     """Also where floating point puts the jump, written in decimals, beside the multiple: 5 * 3e-4 < 0.0015."""
     jump = round(dt * multiple, 12)
     excitation = Excitation(sw.scenario.step(1.0, duration=jump + 2.0 * dt, start=jump))
-    inputs = excitation.over(excitation.time_grid(dt, None))[:, :, 0]
+    inputs = excitation.over(excitation.time_grid(dt, None).instants)[:, :, 0]
     assert inputs.tolist() == multiple * [[0.0] * 3] + 2 * [[1.0] * 3]
 
 
 @pytest.mark.parametrize("others", [0.1 * 3, 0.3 - 1e-16, 0.3])
 def test_jumps_of_two_signals_at_one_instant_but_for_rounding_are_seen_by_the_next_step_alone(others: float) -> None:
     excitation = Excitation(sw.scenario.step(1.0, duration=0.5, start=0.3), sw.scenario.step(2.0, duration=0.5, start=others))
-    inputs = excitation.over(excitation.time_grid(0.1, None))
+    inputs = excitation.over(excitation.time_grid(0.1, None).instants)
     assert inputs[:, :, 0].tolist() == 3 * [[0.0] * 3] + 2 * [[1.0] * 3]
     assert inputs[:, :, 2].tolist() == 3 * [[0.0] * 3] + 2 * [[2.0] * 3]
 
@@ -84,7 +84,7 @@ def test_jumps_of_two_signals_at_one_instant_but_for_rounding_are_seen_by_the_ne
 def test_two_jumps_of_one_signal_at_one_instant_but_for_rounding_are_seen_by_the_next_step_alone(second: float) -> None:
     twice = sw.scenario.step(1.0, duration=0.5, start=0.3) + sw.scenario.step(2.0, duration=0.5, start=second)
     excitation = Excitation(twice)
-    inputs = excitation.over(excitation.time_grid(0.1, None))
+    inputs = excitation.over(excitation.time_grid(0.1, None).instants)
     assert inputs[:, :, 0].tolist() == 3 * [[0.0] * 3] + 2 * [[3.0] * 3]
 
 
@@ -166,7 +166,7 @@ def test_inputs_are_the_left_limits_at_the_end_of_a_step() -> None:
     load = sw.scenario.step(5.0, duration=0.4, start=0.2)
     warming = sw.scenario.step(20.0, duration=0.4, start=0.3) + sw.scenario.constant(290.0, duration=0.4)
     excitation = Excitation(sw.scenario.ramp(2.0, duration=0.4), load, warming)
-    inputs = excitation.over(excitation.time_grid(0.1, None))
+    inputs = excitation.over(excitation.time_grid(0.1, None).instants)
     assert inputs[:, :, 0] == pytest.approx(2.0 * np.array([[0, 5, 10], [10, 15, 20], [20, 25, 30], [30, 35, 40]]) / 100)
     assert inputs[:, :, 1] == pytest.approx(np.full((4, 3), 2.0))
     assert inputs[:, :, 2].tolist() == [[0.0] * 3, [0.0] * 3, [5.0] * 3, [5.0] * 3]
@@ -178,7 +178,7 @@ def test_load_torque_and_temperature_may_be_numbers() -> None:
     numbers = Excitation(HELD, 3.0, 310.0)
     lines = Excitation(HELD, sw.scenario.constant(3.0, 0.25), sw.scenario.constant(310.0, 0.25))
     course = numbers.time_grid(0.1, None)
-    assert np.array_equal(numbers.over(course), lines.over(course))
+    assert np.array_equal(numbers.over(course.instants), lines.over(course.instants))
     assert np.array_equal(numbers.first(), lines.first())
     assert Excitation(HELD).first().tolist() == [0.02, 0.0, 0.0, 0.0, ROOM_TEMPERATURE, 0.0]
 
@@ -268,7 +268,7 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
     excitation = Excitation(command(10.0))
     course = excitation.time_grid(DT, 1.0)
     outputs = np.empty((len(COLUMNS), len(course.times)))
-    course_of = (course.instants, excitation.over(course), course.samples[1:])
+    course_of = (course.instants, excitation.over(course.instants), course.samples[1:])
     arguments = (DRIVE, DRIVE.rest().numbers, *course_of, _core.Method.exponential, EVERY, outputs, 1)
     counted: list[int] = []
     _core.simulate(*arguments, counted.append)
@@ -287,7 +287,7 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
 def test_outputs_are_written_within_the_array_given_only(channels: int, samples: int, first: int) -> None:
     excitation = Excitation(command(0.01))
     course = excitation.time_grid(1e-3, None)
-    steps = (course.instants, excitation.over(course), course.samples[1:])
+    steps = (course.instants, excitation.over(course.instants), course.samples[1:])
     arguments = (DRIVE, DRIVE.rest().numbers, *steps, _core.Method.exponential, EVERY)
     with pytest.raises(ValueError, match="are written within"):
         _core.simulate(*arguments, np.empty((channels, samples)), first)
@@ -302,7 +302,7 @@ def test_a_progress_bar_changes_nothing() -> None:
 def test_an_interrupt_ends_a_long_run_on_its_way() -> None:
     excitation = Excitation(sw.scenario.constant(0.1, 300.0))
     course = excitation.time_grid(DT, 10.0)
-    inputs, outputs = excitation.over(course), np.empty((len(COLUMNS), len(course.times)))
+    inputs, outputs = excitation.over(course.instants), np.empty((len(COLUMNS), len(course.times)))
     start = DRIVE.rest().numbers
     times = course.instants, inputs, course.samples[1:]
     with ctrl_c(), pytest.raises(KeyboardInterrupt):

@@ -50,6 +50,9 @@ class Description:
         return len(self.states) // 2
 
 
+NEEDS_STEPS = "needsCompletedIntegratorStep"
+
+
 def model_description(about: Description, version: int) -> bytes:
     """Return the file modelDescription.xml of an FMU for version 2 or 3 of FMI."""
     root = Element("fmiModelDescription", fmiVersion=f"{version}.0", modelName=about.name)
@@ -120,7 +123,8 @@ def _interface(about: Description, version: int) -> Element:
     abilities = names[version] if about.states else ("canHandleVariableCommunicationStepSize", *names[version])
     chosen = [each for each in abilities if not (about.states and each == "canInterpolateInputs")]
     if about.states:
-        chosen.append("providesDirectionalDerivative" if version == 2 else "providesDirectionalDerivatives")
+        # FMI 2 calls completedIntegratorStep unless told otherwise; FMI 3 only where it is asked for, and memory is kept there.
+        chosen += ["providesDirectionalDerivative"] if version == 2 else ["providesDirectionalDerivatives", NEEDS_STEPS]
     kind = "ModelExchange" if about.states else "CoSimulation"
     found = Element(kind, {"modelIdentifier": about.identifier} | dict.fromkeys(chosen, "true"))
     if version == 2:

@@ -18,6 +18,7 @@ from strainwave.identification.candidates.friction import MAX_CHANCE, by_chance,
 from strainwave.identification.experiments.presliding import BreakawayPoint, PreslidingLoop
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.statistics.covariance import covariance_of
+from strainwave.statistics.linear_fit import normal_inverse, solved
 from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
@@ -170,11 +171,11 @@ def breakaway_torque(ramps: Sequence[BreakawayPoint]) -> BreakawayTorque:
         columns.append(rate - rate.mean())
         names.append("breakaway per decade of the rate")
     jacobian = np.stack(columns, axis=1)
-    found = np.linalg.lstsq(jacobian, size, rcond=None)[0]
+    found = solved(jacobian, size)
     freedom = len(size) - len(found)
     if freedom > 0:
         variance = float(np.sum((size - jacobian @ found) ** 2)) / freedom
-        sigma = student(ONE_SIGMA, freedom) * np.sqrt(variance * np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+        sigma = student(ONE_SIGMA, freedom) * np.sqrt(variance * np.diag(normal_inverse(jacobian)))
     else:
         sigma = np.full(len(found), np.inf)
     estimates = {

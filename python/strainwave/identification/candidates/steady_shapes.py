@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.identification.experiments.friction_table import FrictionTable, varies
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
@@ -191,7 +192,7 @@ def under_load(table: FrictionTable, ratio: float) -> Iterator[Shape]:
         return
     way, size = np.sign(table.speed), np.abs(table.load)
     columns = np.stack([np.ones_like(size), np.abs(table.speed), size], axis=1)
-    loss = float(np.clip((np.linalg.pinv(columns, rcond=1e-10) @ (way * table.torque))[2], 1e-3, 1.0))
+    loss = float(np.clip(solved(columns, way * table.torque)[2], 1e-3, 1.0))
     alone = replace(table, torque=table.torque - way * loss * size)
     mesh = friction.LoadDependent(**dict.fromkeys(QUADRANTS, loss))
     tried = {
@@ -272,5 +273,5 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
 def _explained(residual: Array, pairs: list[Array]) -> tuple[Array, float]:
     """Return the factors of the columns of all pairs, and the sum of squares left."""
     columns = np.hstack(pairs)
-    found = np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], float)
+    found = solved(columns, residual)
     return found, float(np.sum((residual - columns @ found) ** 2))

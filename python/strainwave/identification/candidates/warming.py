@@ -14,6 +14,7 @@ from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_S
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.statistics.linear_fit import normal_inverse, solved
 from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
@@ -83,9 +84,9 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     middle = float(np.mean(temperature))
     warmer = temperature - middle
     jacobian = np.stack([np.ones_like(way), warmer, way, way * warmer], axis=1)
-    found = np.linalg.lstsq(jacobian, force, rcond=None)[0]
+    found = solved(jacobian, force)
     scores = jacobian * (force - jacobian @ found)[:, np.newaxis]
-    inverse = np.linalg.inv(jacobian.T @ jacobian)
+    inverse = normal_inverse(jacobian)
     covariances = [
         (length, _clustered(scores, inverse, length)) for length in BLOCK_LENGTHS if len(force) // length >= MIN_BLOCKS
     ]

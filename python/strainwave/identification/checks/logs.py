@@ -9,12 +9,15 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
@@ -28,6 +31,8 @@ MIN_INERTIA_SIGMA = 3.0  # standard deviations of their difference
 OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
 MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
+MAX_SPEED_FACTOR = 1.5  # between a speed and the slope of its angle: filters and noise change it by less, units by more
+SPEED_UNITS = ("rad/s", "deg/s", "rpm", "rev/s")
 RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
 
 
@@ -80,6 +85,34 @@ def unit_of_torque(file: Recognised) -> Iterator[Check]:
         )  # fmt: skip
 
 
+def speed_against_angle(file: Recognised) -> Iterator[Check]:
+    """Yield the check that a speed is the slope of the angle of the same shaft, in the units that both are taken in."""
+    record = file.recording
+    for angle in set(record.names) & {"input_angle", "output_angle"}:
+        speed = angle.replace("angle", "speed")
+        if speed not in record.names or "time" not in record.names:
+            continue
+        factor = abs(speed_per_slope(record[angle], record[speed], record.time))
+        if factor == 0.0:
+            continue
+        names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in (angle, speed)]
+        usual = {unit: convert(1.0, unit, "rad/s") for unit in SPEED_UNITS}
+        fitting = next((unit for unit, size in usual.items() if abs(_own_size(file, speed) / factor / size - 1.0) < 0.1), "")
+        hint = as_option("unit", names[1], fitting or "UNIT")
+        off = max(factor, 1.0 / factor)
+        yield Check(
+            "speed against angle", file.path.name, off, MAX_SPEED_FACTOR, "1", off > MAX_SPEED_FACTOR,
+            f"{names[1]} is {factor:.4g} times the slope of {names[0]}, in the units that they are taken in",
+            f"one unit is wrong: give it, with {hint} if it is that of the speed, or that of the angle",
+        )  # fmt: skip
+
+
+def _own_size(file: Recognised, speed: str) -> float:
+    """Return the size of the unit of a speed [rad/s]."""
+    unit = file.units.get(speed) or file.units.get(f"reflected_{speed[-5:]}", "rad/s")
+    return convert(1.0, unit, "rad/s") if measures(unit, "rad/s") else 1.0
+
+
 def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check]:
     """Yield the check that the ratio of two measured angles is that of the gear."""
     if ratio.in_joint_units:
@@ -106,14 +139,13 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
     if not {"voltage", "current"} <= set(recording.names):
         return
     columns = np.stack([recording["current"], speed, np.ones_like(speed)], axis=1)
-    size = np.linalg.norm(columns, axis=0)
-    if not (size > 0.0).all():
+    if not columns.any(axis=0).all():
         return
-    found = np.linalg.lstsq(columns / size, recording["voltage"], rcond=1e-8)[0]
-    left = recording["voltage"] - columns / size @ found
-    blocks = [float(np.mean(each)) for each in np.array_split(left * columns[:, 1] / size[1], RECORD_BLOCKS)]
-    sigma = float(np.std(blocks, ddof=1)) * len(left) / np.sqrt(RECORD_BLOCKS) / size[1]
-    induced = float(found[1] / size[1])
+    found = solved(columns, recording["voltage"])
+    left = recording["voltage"] - columns @ found
+    scores = [float(np.mean(each)) for each in np.array_split(left * speed, RECORD_BLOCKS)]
+    sigma = float(np.std(scores, ddof=1)) * len(left) / np.sqrt(RECORD_BLOCKS) / float(speed @ speed)
+    induced = float(found[1])
     if not sigma < MAX_CONSTANT_SIGMA * abs(induced):
         return
     off = abs(abs(induced) / constant - 1.0)

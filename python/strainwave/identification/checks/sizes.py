@@ -18,6 +18,7 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.messages import as_option
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
@@ -210,7 +211,7 @@ def _acceleration(recording: Recording, found: Fit, ratio: float, source: str) -
         residual = torque - FrictionTable(speed, torque, load=load).predict(found.gear, (), np.zeros(0))[0][0]
         change = np.gradient(speed)
         columns = np.column_stack((change, np.ones_like(change)))
-        rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0]
+        rest = residual - columns @ solved(columns, residual)
         if np.any(np.diff(np.sign(change))) and np.var(residual) > 0.0:
             share = 1.0 - float(np.var(rest) / np.var(residual))
     return Check(

@@ -16,6 +16,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.friction import innermost
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
@@ -157,7 +158,7 @@ def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
     error = angle / ratio - (output_angle - output_angle[0])
     waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
     columns = np.column_stack((np.ones_like(angle), angle, *waves))
-    weights = np.linalg.lstsq(columns, error, rcond=None)[0][2:].reshape(-1, 2)
+    weights = solved(columns, error)[2:].reshape(-1, 2)
     amplitude, phase = np.hypot(*weights.T), np.arctan2(weights[:, 1], weights[:, 0])
     largest = MAX_SLOPE / (abs(ratio) * np.array(ORDERS))
     amplitude = np.where(amplitude < largest, amplitude, 1e-3 * largest)  # no error of a gear: something else is wrong

@@ -16,6 +16,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.friction import Viscous
 from strainwave.identification.experiments.experiment import Nuisance, sensible
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 MAX_SPEEDS = 1_000  # of either sign in a table; a longer table is thinned
@@ -174,7 +175,7 @@ def _plain(speed: Array, torque: Array, load: Array) -> tuple[float, float]:
     """Return the loss per load [1] by plain least squares, and the sum of squares left [N2.m2]."""
     way = np.sign(speed)
     columns = np.stack([way, speed, way * np.abs(load)], axis=1)
-    found = np.linalg.pinv(columns, rcond=1e-10) @ torque
+    found = solved(columns, torque)
     return float(found[2]), float(np.sum((torque - columns @ found) ** 2))
 
 

@@ -26,6 +26,7 @@ from strainwave.identification.fitting.problem import FitRecord, Problem, Weight
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
+from strainwave.simulation.threads import one_thread_of_algebra
 from strainwave.statistics.residuals import correlation_length
 
 if TYPE_CHECKING:
@@ -393,6 +394,7 @@ def _models(model: Any, asked: FitParameters) -> list[Any]:
     return [_core.with_numbers(model, list(numbers)) for numbers in asked.numbers]
 
 
+@one_thread_of_algebra()
 def solved_from(problem: Problem, x: Array) -> Fit:
     """Return the fit from some unknowns, in passes: the residuals of each give the weights of the channels in the next."""
     weights = problem.first_weights()

@@ -13,6 +13,7 @@ from strainwave.files.entries import Entry
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.problem import MIN_NOISE
 from strainwave.parameters import Parameter, every
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
@@ -112,10 +113,8 @@ def influence(found: Fit) -> InfluenceOfKept:
     by_free = np.column_stack((columns[:, : len(free)], columns[:, len(numbers) :]))
     by_kept = columns[:, len(free) : len(numbers)]
     acting = np.any(by_kept, axis=0)
-    scale = np.linalg.norm(by_free, axis=0)
-    scale[scale == 0.0] = 1.0
     moved = np.zeros((by_free.shape[1], len(kept)))
-    moved[:, acting] = -np.linalg.lstsq(by_free / scale, by_kept[:, acting], rcond=1e-10)[0] / scale[:, np.newaxis]
+    moved[:, acting] = -solved(by_free, by_kept[:, acting])
     shown = by_kept + by_free @ moved
     power = np.sum(shown**2, axis=0)
     divisor = np.where(power > 0.0, power, 1.0)

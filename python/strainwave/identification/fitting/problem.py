@@ -15,13 +15,13 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
 from strainwave.statistics.covariance import posterior_of
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
 MIN_NOISE = 1e-12  # of the size of a channel: no measurement has less noise
 MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost smaller; one with less is the last
-MIN_SINGULAR = 1e-8  # singular values below this share of the largest are taken as zero: derivatives are no better
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 
 
@@ -133,11 +133,8 @@ class _SettledError(Exception):
 
 def _step(rows: Array, left: Array) -> tuple[Array, float]:
     """Return the step of Gauss and Newton, and its decrease of the sum of squares if residuals were linear."""
-    size = np.linalg.norm(rows, axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    scaled = rows / size
-    step = np.linalg.lstsq(scaled, -left, rcond=MIN_SINGULAR)[0]
-    return step / size, float(np.sum((scaled @ step) ** 2))
+    step = solved(rows, -left)
+    return step, float(np.sum((rows @ step) ** 2))
 
 
 class Problem:

@@ -13,7 +13,13 @@ from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES
 from strainwave.identification.candidates.plain import fit_plain
-from strainwave.identification.checks.logs import held_out_error, ratio_of_encoders, torque_constant_by_voltage, unit_of_torque
+from strainwave.identification.checks.logs import (
+    held_out_error,
+    ratio_of_encoders,
+    speed_against_angle,
+    torque_constant_by_voltage,
+    unit_of_torque,
+)
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
@@ -49,7 +55,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best, held_out, predicted = confirmed(models[0], models[1:], drive)
     others = [each for each in models if each.model is not best.model]
     log = best.log
-    of_model = [*_delay(best), *_other_laws(best, others, in_current)]
+    of_model = [*_delay(best), *_other_laws(best, others, in_current), *_one_encoder(taken)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     estimates = list(_of_motion(best, others, taken))
@@ -77,7 +83,13 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
     level = friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
     checks += [] if in_current else level
-    checks += [*unit_of_torque(file), input_speed(speed, name), *_given_inertia(taken, name), *_torque_constant(taken, name)]
+    checks += [
+        *unit_of_torque(file),
+        *speed_against_angle(file),
+        input_speed(speed, name),
+        *_given_inertia(taken, name),
+        *_torque_constant(taken, name),
+    ]
     checks += checks_of_motion(best, drive, recording, held_out, name)
     pictures = (Picture(predicted), *between.pictures)
     return (
@@ -124,6 +136,17 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
         if nuisance.path == "delay":
             way = "behind" if nuisance.value > 0.0 else "ahead of"
             yield f"{best.log.effort} comes {1e3 * abs(nuisance.value):.3g} ± {1e3 * nuisance.sigma:.2g} ms {way} the motion"
+
+
+def _one_encoder(taken: PreparedLog) -> Iterator[str]:
+    """Yield the sentence about what a record with one encoder cannot contradict."""
+    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
+    if set(ENCODERS) <= set(taken.recording.names) or taken.in_current or taken.log.effort != "current":
+        return
+    yield (
+        f"one encoder checks neither the ratio, {abs(taken.drive.gear.kinematics.ratio):.6g}, nor the torque constant, "
+        f"{constant:.4g} N·m/A: friction, inertia and gravity scale with them"
+    )
 
 
 def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:

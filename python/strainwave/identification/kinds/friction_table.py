@@ -48,6 +48,7 @@ from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.prediction import Prediction, judged, model_error
 from strainwave.identification.results.undetermined import with_friction_at, with_set_before
 from strainwave.messages import as_option
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length, rms
 
 Array = NDArray[np.float64]
@@ -180,7 +181,7 @@ def _drives(speed: Array, torque: Column, load: Column) -> bool:
     sizes = np.linalg.norm(terms, axis=0)
     if not sizes.all() or np.linalg.matrix_rank(terms / sizes, tol=MIN_INDEPENDENCE) < len(sizes):
         return torque.channel.side == "input"
-    _, _, driving, rubbing = np.linalg.lstsq(terms, torque.si, rcond=None)[0]
+    _, _, driving, rubbing = solved(terms, torque.si)
     return bool(abs(driving) > abs(rubbing))
 
 

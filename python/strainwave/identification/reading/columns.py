@@ -15,7 +15,7 @@ from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import QUANTITIES, is_of_joint, meaning, which_of, words_of
+from strainwave.identification.reading.names import QUANTITIES, is_of_joint, meaning, unit_in, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
 
@@ -173,7 +173,8 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
     for name, column in wanted:
         place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[ALIASES.get(name, name)]
         label, by_name = table.labels[place], meaning(table.labels[place])
-        unit = label.unit or (by_name.unit if by_name and by_name.quantity == channel.quantity else None) or None
+        by_name_unit = by_name.unit if by_name and by_name.quantity == channel.quantity else None
+        unit = label.unit or by_name_unit or unit_in(label.name, channel.quantity)
         unit = "s" if table.contents[place] == "dates" else unit
         if name == "regressors":  # of one, any unit is that of torque over that of its share
             found.append(Column(place, label, channel, by_user=True, regressor=True, unit=channel.unit))

@@ -56,6 +56,7 @@ SIDES: dict[Side, tuple[str, ...]] = {
 COMMANDED = (
     "command", "commanded", "cmd", "reference", "ref", "setpoint", "set", "target", "desired", "des", "demand", "soll",
     "sollwert", "vorgabe", "consigne", "consigna", "riferimento", "referencia", "goal", "computed", "cmptd", "planned",
+    "calculated", "calc", "cal",
 )  # fmt: skip
 NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
@@ -204,10 +205,19 @@ def _parts(word: str) -> list[str] | None:
     return None
 
 
-def _without_unit(name: str) -> tuple[str, str | None]:
+def unit_in(name: str, quantity: Quantity) -> str | None:
+    """Return the unit of a quantity with which a name ends; None if it ends with none.
+
+    >>> unit_in("table_deg", "angle"), unit_in("drive", "angle")
+    ('deg', None)
+    """
+    return _without_unit(name, quantity)[1]
+
+
+def _without_unit(name: str, of: Quantity | None = None) -> tuple[str, str | None]:
     """Return a name without its last words, if these are a unit of what the others name, and the unit.
 
-    As of `torque_Nm`, `speed rad/s`, `vel_deg_s`, `pos_deg_1`.
+    As of `torque_Nm`, `speed rad/s`, `vel_deg_s`, `pos_deg_1`. If the quantity is known, the others may name anything.
     """
     words = re.split(r"[_\s.]+", name.strip())
     number = [words.pop()] if len(words) > 2 and words[-1].isdigit() else []
@@ -218,7 +228,7 @@ def _without_unit(name: str) -> tuple[str, str | None]:
         if any(re.fullmatch(r"J?|[A-Za-z]?\d+", word) for word in words[-count:]):  # of a joint: its number, as A1, or the word
             continue
         rest = "_".join([*words[:-count], *number]).removesuffix("_in")  # position in rad
-        quantity, _ = _quantity(words_of(rest), None)
+        quantity = of or _quantity(words_of(rest), None)[0]
         unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
         if quantity is not None and measures(unit, UNITS[quantity]):
             return rest, unit

@@ -58,8 +58,9 @@ class Recognised:
         began: the stamp in the file from which the time is counted [s]
         alternatives: other ways to read it that its names and numbers leave open; the fit may decide between them
         question: what to ask if the fit does not decide; empty if this reading is the usual one
-        is_of_robot: True if its motions have the names of a robot's joints, which are in radians by convention
+        is_of_robot: True if its channels have the names of a robot's joints, whose motions are in radians by convention
         units_given: channels whose unit a person gave, and the file does not contain
+        units_assumed: channels whose unit neither the file nor a person states, and no number determines
     """
 
     path: Path
@@ -80,6 +81,7 @@ class Recognised:
     question: str = ""
     is_of_robot: bool = False
     units_given: tuple[str, ...] = ()
+    units_assumed: tuple[str, ...] = ()
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -201,8 +203,9 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         unused=unused,
         began=began,
         alternatives=_other_units(columns, found.columns, given),
-        is_of_robot=any(column.robot and column.channel.quantity in ("angle", "speed") for column in found.columns.values()),
+        is_of_robot=any(column.robot for column in found.columns.values()),
         units_given=tuple(name for name, each in found.columns.items() if each.sure and each.unit and not each.label.unit),
+        units_assumed=tuple(name for name, each in found.columns.items() if not each.sure),
     )
 
 

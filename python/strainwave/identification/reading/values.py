@@ -18,6 +18,7 @@ from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
 from strainwave.identification.reading.names import UNITS
+from strainwave.identification.reading.recorders import with_registers
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
@@ -39,6 +40,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
     known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)
+    known, of_recorder = with_registers(known)
     known, counted = with_counts(known)
     own = [_with_side(column, mapping) for column in known if column.own]
     check_units(own, mapping.constants.get("ratio"))
@@ -47,7 +49,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
     assumed = ", ".join(f"{c.name} in {' '.join(filter(None, units[c.position][:2]))}" for c in own if c.unit is None)
-    remarks = [*left_out, *remarks, *counted]
+    remarks = [*left_out, *remarks, *of_recorder, *counted]
     remarks += [f"no unit is stated: {assumed}; otherwise add --unit NAME=UNIT"] if assumed else []
     angle = next((c for c in own if c.channel.quantity == "angle" and not c.channel.commanded), None)
     neighbour = Assumed(UNITS["angle"] if angle is None else units[angle.position].unit, sure=True)  # in that of the joint

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.rig.analysis.result import Result, result
+from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
 
@@ -130,9 +131,7 @@ class _Chain(ComparedByFields):
         size = self.misfit / freedom if freedom > 0 else float("nan")
         if stated:
             size = max(1.0, size) if freedom > 0 else 1.0  # a chain that misses points by more may err by more
-        lengths = _lengths(self.columns)
-        unit = self.columns / lengths
-        covariance = size * np.linalg.pinv(unit.T @ unit, rcond=1e-12) / np.outer(lengths, lengths)
+        covariance = size * normal_inverse(self.columns)
         count = len(self.knees)
         sums = np.tril(np.ones((count + 1, count + 1)))
         slopes = sums @ covariance[1 : count + 2, 1 : count + 2] @ sums.T
@@ -201,8 +200,7 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
     """Moves the knees to the best place: the lines are linear in the rest, and a knee moves by what its hinge calls for."""
     best = _lines(torque, angle, variance, knees)
     for _ in range(MAX_GAUSS_NEWTON_STEPS if len(knees) else 0):
-        lengths = _lengths(best.columns)
-        step = np.linalg.lstsq(best.columns / lengths, best.residual / np.sqrt(variance), rcond=1e-10)[0] / lengths
+        step = solved(best.columns, best.residual / np.sqrt(variance))
         step = step[2 + len(knees) :]
         better = _first_better(torque, angle, variance, best, step)
         if better is None:
@@ -239,19 +237,13 @@ def _past(torque: Array, knees: Array) -> Array:
     return past
 
 
-def _lengths(columns: Array) -> Array:
-    """Return the length of each column, 1 for an empty one; scaled by it, the solution is the same in all units."""
-    lengths = np.sqrt(np.sum(columns**2, axis=0))
-    return np.asarray(np.where(lengths > 0.0, lengths, 1.0))
-
-
 def _lines(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
     weights = 1.0 / np.sqrt(variance)
     past = _past(torque, knees)
     columns = np.empty((len(torque), 2 + 2 * len(knees)))
     linear = columns[:, : 2 + len(knees)]
     linear[:, 0], linear[:, 1], linear[:, 2:] = 1.0, torque, np.maximum(past, 0.0)
-    found = np.linalg.lstsq(weights[:, np.newaxis] * linear, weights * angle)[0]
+    found = solved(weights[:, np.newaxis] * linear, weights * angle)
     residual = angle - linear @ found
     slopes = np.cumsum(found[1:])
     columns[:, 2 + len(knees) :] = -found[2:] * np.heaviside(past, 0.5)

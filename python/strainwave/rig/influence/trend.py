@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 Law = Literal["power", "exponential", "linear"]
@@ -156,7 +157,7 @@ def lack_of_fit(columns: Array, values: Array) -> float:
     cells = np.round((columns - columns.min(axis=0)) / np.where(spans > 0.0, REPEAT_TOLERANCE * spans, 1.0))
     different, of = np.unique(cells, axis=0, return_inverse=True)
     of = of.ravel()
-    residual = values - columns @ np.linalg.lstsq(columns, values)[0]
+    residual = values - columns @ solved(columns, values)
     means = np.bincount(of, weights=residual) / np.bincount(of)
     pure, left = len(values) - len(different), len(different) - int(np.linalg.matrix_rank(columns))
     error = float(np.sum((residual - means[of]) ** 2))
@@ -265,7 +266,7 @@ def _explained(design: Design, factor: str, by: Sequence[str]) -> float:
 
     column = within(design.taken(factor))
     others = np.column_stack([within(design.taken(each)) for each in by])
-    left = column - others @ np.linalg.lstsq(others, column)[0]
+    left = column - others @ solved(others, column)
     total = float(column @ column)
     return 1.0 - float(left @ left) / total if total > 0.0 else 1.0
 

@@ -21,6 +21,7 @@ from strainwave.rig.bench.steps import Step
 from strainwave.rig.torque.torque import Torque
 from strainwave.rig.vision.angle import Angles
 from strainwave.rig.vision.camera import changes_nothing, flat
+from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
 SIGNIFICANCE_SIGMA = 4.0  # standard deviations beyond which a shift is reported
@@ -96,7 +97,7 @@ def couple(middle: Array, angle: Array, torque: Array, scale: float | None = Non
         raise ValueError("torque and angle change together: they do not separate a shift of the shaft from its turn")
     residual = seen - design @ fit
     variance = float(residual @ residual) / (2 * n - 6)
-    sigma = float(np.sqrt(variance * np.linalg.inv(design.T @ design)[4, 4]))
+    sigma = float(np.sqrt(variance * normal_inverse(design)[4, 4]))
     return Couple((float(fit[4]), float(fit[5])), sigma, float(np.sqrt(np.mean(residual**2))), scale, float(np.ptp(torque)))
 
 

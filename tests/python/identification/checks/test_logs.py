@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -9,8 +11,11 @@ from strainwave.identification.checks.logs import (
     held_out_error,
     inertias_of_load,
     ratio_of_encoders,
+    speed_against_angle,
     torque_constant_by_voltage,
 )
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.orders.two_encoders import transmission_error
@@ -78,3 +83,14 @@ def test_the_remedy_names_no_angle_that_was_given(joints: tuple[str, ...], told:
     (check,) = held_out_error(held_out, "log.csv", joints)
     assert told in check.remedy
     assert ("other_angles" in check.remedy) == (joints == ())
+
+
+@pytest.mark.parametrize(("unit", "fails"), [("rad/s", False), ("rev/s", True), ("rpm", True)])
+def test_a_speed_in_a_wrong_unit_contradicts_its_angle(tmp_path: Path, unit: str, fails: bool) -> None:
+    """The speed is recorded in rad/s; what is stated of its unit is checked by the slope of the angle."""
+    path = tmp_path / "log.csv"
+    rows = np.column_stack([TIME, ANGLE, SPEED, 0.8 * torque(TRUTH)])
+    np.savetxt(path, rows, delimiter=",", header=f"t [s],q [rad],dq [{unit}],tau [N.m]", comments="")
+    (check,) = speed_against_angle(recognise(path, FileMapping(side="output")))
+    assert check.failed == fails
+    assert not fails or "--unit dq=rad/s" in check.remedy

@@ -368,3 +368,47 @@ def test_the_object_of_cia_402_is_in_thousandths_of_the_rated_torque(
     found = recognise(written(tmp_path / "log.csv", names, columns, ";"), given)
     assert "input_torque" in found.columns
     assert [check.failed for check in unit_of_torque(found)] == fails
+
+
+# ---- Raw registers and names of what was commanded
+
+
+def dynamixel(path: Path, velocity_count: float) -> Path:
+    columns = [np.round(values) for values in (2048.0 + ANGLE * 4096.0 / (2.0 * np.pi), SPEED * 30.0 / np.pi / velocity_count)]
+    columns.append(np.round(TORQUE / 50.0 / 2.69e-3))
+    return written(path, "time,present_position,present_velocity,present_current\n", [TIME, *columns])
+
+
+def test_registers_of_dynamixel_are_in_the_counts_of_their_manual(tmp_path: Path) -> None:
+    found = recognise(dynamixel(tmp_path / "servo.csv", 0.229), FileMapping(side="output"))
+    assert found.recording["output_angle"] - np.pi == pytest.approx(ANGLE, abs=np.pi / 4096.0)
+    assert found.recording["output_speed"] == pytest.approx(SPEED, abs=0.0121)
+    assert found.recording["current"] == pytest.approx(TORQUE / 50.0, abs=1.4e-3)
+    assert any("raw registers of Dynamixel X" in remark for remark in found.remarks)
+
+
+def test_registers_whose_speed_is_no_slope_of_the_angle_by_the_manual_are_asked_about(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="how many counts a revolution has in present_position"):
+        recognise(dynamixel(tmp_path / "servo.csv", 0.01))
+
+
+def test_the_measured_torque_is_taken_and_not_the_calculated_one(tmp_path: Path) -> None:
+    path = written(
+        tmp_path / "leg.csv", "time,joint_pos,joint_vel,tau_cal,tau_est\n", [TIME, ANGLE, SPEED, 1.3 * TORQUE, TORQUE]
+    )
+    check_joint(recognise(path))
+
+
+@pytest.mark.parametrize(("name", "size"), [("vel_rps", 2.0 * np.pi), ("vel_deg_s", np.pi / 180.0), ("vel_rpm", np.pi / 30.0)])
+def test_units_at_the_end_of_a_name(tmp_path: Path, name: str, size: float) -> None:
+    path = written(tmp_path / "joint.csv", f"t_s,pos_deg,{name},torque_Nm\n", [TIME, np.rad2deg(ANGLE), SPEED / size, TORQUE])
+    found = recognise(path, FileMapping(side="output"))
+    check_joint(found)
+    assert found.recording["output_speed"] == pytest.approx(SPEED, abs=1e-6)
+
+
+def test_the_unit_in_the_name_of_a_column_that_a_person_names(tmp_path: Path) -> None:
+    path = written(tmp_path / "two.csv", "time_s,drive_deg,table_deg\n", [TIME, np.rad2deg(RATIO * ANGLE), np.rad2deg(ANGLE)])
+    found = recognise(path, FileMapping(columns={"input_angle": "drive_deg", "output_angle": "table_deg"}))
+    assert found.recording["output_angle"] == pytest.approx(ANGLE, abs=1e-7)
+    assert found.units["input_angle"] == found.units["output_angle"] == "deg"

@@ -1,0 +1,227 @@
+"""The model of a robot in MJCF: its hinges, what their classes give them, and its keyframes.
+
+An element has the attributes of its class where it states none: that of its own, else the `childclass` of the nearest body
+around it, else the main class. A gear that is added between two bodies states what it must not have of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from xml.etree import ElementTree
+
+import numpy as np
+
+from strainwave.messages import listed, quoted
+
+Element = ElementTree.Element
+
+DEFAULT_TIMESTEP = 2e-3  # s, of a model that states none
+MAX_MODEL_BYTES = 64 << 20  # of a robot's file
+POSITIONS = {"hinge": 1, "slide": 1, "ball": 4, "free": 7}  # numbers of a joint in qpos
+SPEEDS = {"hinge": 1, "slide": 1, "ball": 3, "free": 6}  # in qvel
+# What a joint or actuator of a gear must not have of a class of the robot, and the value that turns it off.
+NEUTRAL = {
+    "limited": "false", "actuatorfrclimited": "false", "damping": "0", "stiffness": "0", "frictionloss": "0", "armature": "0",
+    "springref": "0", "ref": "0", "ctrllimited": "false", "forcelimited": "false", "actlimited": "false",
+}  # fmt: skip
+IMPLIED = {"range": "limited", "actuatorfrcrange": "actuatorfrclimited", "ctrlrange": "ctrllimited"}
+IMPLIED |= {"forcerange": "forcelimited", "actrange": "actlimited"}
+REPLACED = ("damping", "frictionloss", "armature")  # of a robot's joint, which a gear has itself
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Model of a robot, to which gears are added.
+
+    Attributes:
+        root: of the model
+        parents: of each element
+    """
+
+    root: Element
+    parents: dict[Element, Element]
+
+    @classmethod
+    def of(cls, model: str) -> Robot:
+        """Return the robot of an MJCF text.
+
+        Raises:
+            ValueError: the text is no MJCF
+        """
+        return cls.in_tree(_parsed(model))
+
+    @classmethod
+    def in_tree(cls, root: Element) -> Robot:
+        """Return the robot of a parsed model."""
+        return cls(root, {child: parent for parent in root.iter() for child in parent})
+
+    @property
+    def timestep(self) -> float:
+        """Timestep of the model [s]."""
+        return timestep_of(self.root)
+
+    def hinge(self, joint: str) -> Element:
+        """Return a hinge of the robot.
+
+        Raises:
+            ValueError: the joint is not a hinge with a body of its own
+        """
+        there = [each for each in self.root.iter("joint") if self.parents[each].tag == "body" and each.get("name")]
+        shaft = next((each for each in there if each.get("name") == joint), None)
+        if shaft is None:
+            names = listed(each.get("name", "") for each in there) or "no joint with a name"
+            raise ValueError(f"joint = {quoted(joint)} is not in the model; it has {names}")
+        if (kind := self.stated(shaft).get("type", "hinge")) != "hinge":
+            raise ValueError(f"joint = {quoted(joint)} is of type {kind}; a gear turns a hinge")
+        return shaft
+
+    def stated(self, element: Element) -> dict[str, str]:
+        """Return the attributes of an element, those of its classes included."""
+        return {**self.of_classes(element), **element.attrib}
+
+    def of_classes(self, element: Element) -> dict[str, str]:
+        """Return the attributes that an element of this place and tag has of its classes."""
+        name, body = element.get("class"), self.parents.get(element)
+        while name is None and body is not None:
+            name, body = body.get("childclass"), self.parents.get(body)
+        found: dict[str, str] = {}
+        for default in self._classes(name):
+            for each in default.findall(element.tag):
+                found |= each.attrib
+        return found
+
+    def _classes(self, name: str | None) -> list[Element]:
+        """Return the classes whose attributes count for one of them, the outermost first."""
+        main = self.root.findall("default")
+        if name is None:
+            return main
+        for default in main:
+            for each in default.iter("default"):
+                if each.get("class") == name:
+                    chain = [each]
+                    while chain[0] is not default:
+                        chain.insert(0, self.parents[chain[0]])
+                    return chain
+        return main
+
+    def neutral(self, element: Element) -> None:
+        """State what an element must not have of the classes of its place, unless it states it itself."""
+        given = self.of_classes(element)
+        unwanted = {IMPLIED.get(name, name) for name in given} & NEUTRAL.keys()
+        for name in sorted(unwanted - element.attrib.keys()):
+            element.set(name, NEUTRAL[name])
+
+    def replace_friction(self, shaft: Element, own: dict[str, str], keep: Collection[str]) -> Iterator[str]:
+        """Give a joint the friction of a gear at its output in place of its own; yield a remark of what is replaced.
+
+        Args:
+            shaft: joint of the robot
+            own: attributes of the friction at the output of the gear
+            keep: those of `REPLACED` that the joint keeps besides
+        """
+        before = self.stated(shaft)
+        for name in REPLACED:
+            value = before.get(name, "0")
+            if name in keep:
+                total = _first(value) + _first(own.get(name, "0"))
+                shaft.set(name, repr(total)) if total else None
+                continue
+            if _first(value):
+                yield f"{name} {value} of {shaft.get('name')} is replaced by that of the gear; --keep {name} keeps it besides"
+                shaft.set(name, "0")
+            if name in own:
+                shaft.set(name, own[name])
+        shaft.attrib.update({name: value for name, value in own.items() if name not in REPLACED})
+
+    def others_on(self, joint: str, name: str) -> Iterator[str]:
+        """Yield a remark on each actuator that acts on a joint in addition to the motor of a gear."""
+        motor = f"{name}_motor"
+        for each in self.root.findall("actuator/*"):
+            if each.get("joint") == joint and (own := each.get("name")) != motor:
+                yield f"the actuator {own or each.tag} still acts on {joint}, behind the gear; let {motor} take its place"
+
+    # ---- Keyframes ---------------------------------------------------------------------------------------------------
+
+    def joints(self) -> list[Element]:
+        """Return the joints in the order of their numbers in qpos: bodies in the order of the file, depth first."""
+        return [each for body in self.root.iter("body") for each in body if each.tag in ("joint", "freejoint")]
+
+    def kind(self, joint: Element) -> str:
+        """Return the type of a joint."""
+        return "free" if joint.tag == "freejoint" else self.stated(joint).get("type", "hinge")
+
+    def extended_keyframes(self, rotor: Element, shaft: Element, ratio: float, controls: int) -> Iterator[str]:
+        """Give each keyframe the angle and speed of a rotor that has just been added; yield a remark on those it cannot.
+
+        Args:
+            rotor: joint of the rotor
+            shaft: joint of the output
+            ratio: of the gear
+            controls: number of the actuators that were added
+        """
+        joints = [each for each in self.joints() if each is not rotor]
+        place = self.joints().index(rotor)
+        for key in self.root.findall("keyframe/key"):
+            for name, counts in (("qpos", POSITIONS), ("qvel", SPEEDS)):
+                if not (text := key.get(name)):
+                    continue
+                values, sizes = text.split(), [counts[self.kind(each)] for each in joints]
+                if len(values) != sum(sizes):
+                    which = f"{name} of the keyframe {key.get('name', '')}"
+                    yield f"{which} has {len(values)} numbers, not {sum(sizes)}: add that of the rotor by hand"
+                    continue
+                turned = ratio * float(values[sum(sizes[: joints.index(shaft)])])
+                values.insert(sum(sizes[:place]), repr(turned))
+                key.set(name, " ".join(values))
+            if key.get("ctrl"):
+                key.set("ctrl", " ".join([key.attrib["ctrl"], *["0"] * controls]))
+
+
+def kept(names: str | None) -> tuple[str, ...]:
+    """Return the attributes that a joint keeps of its own, of a text with commas.
+
+    Raises:
+        ValueError: one is none that a gear replaces
+    """
+    found = tuple(each.strip() for each in (names or "").split(",") if each.strip())
+    if wrong := [each for each in found if each not in REPLACED]:
+        raise ValueError(f"keep = {quoted(wrong[0])} must be one of {listed(REPLACED)}, or several with commas")
+    return found
+
+
+def timestep_of(root: Element) -> float:
+    """Return the timestep of a model [s]."""
+    option = root.find("option")
+    return DEFAULT_TIMESTEP if option is None else float(option.get("timestep", DEFAULT_TIMESTEP))
+
+
+def child(root: Element, tag: str) -> Element:
+    """Return the child of a root with this tag, which is added if there is none."""
+    found = root.find(tag)
+    return ElementTree.SubElement(root, tag) if found is None else found
+
+
+def written(root: Element) -> str:
+    """Return a model as text."""
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _first(text: str) -> float:
+    """Return the first number of an attribute, as damping may be a polynomial; 0 if all are."""
+    numbers = [float(each) for each in text.split()]
+    return next((each for each in numbers if each), 0.0) if np.isfinite(numbers).all() else 0.0
+
+
+def _parsed(model: str) -> Element:
+    """Return the root of an MJCF file; one that declares entities is refused, as these may grow without bound."""
+    if len(model) > MAX_MODEL_BYTES or "<!DOCTYPE" in model or "<!ENTITY" in model:
+        raise ValueError("the model declares entities, or is larger than 64 MiB; save it without a DOCTYPE")
+    try:
+        root = ElementTree.fromstring(model)
+    except ElementTree.ParseError as error:
+        raise ValueError(f"the model is no XML: {error}") from None
+    if root.tag != "mujoco":
+        raise ValueError(f"the model is a {root.tag}, not a mujoco; MuJoCo itself saves a URDF as MJCF (mj_saveLastXML)")
+    return root

@@ -1,0 +1,85 @@
+"""Gears in robots of others: classes that give a joint range and friction, keyframes, free and fixed bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.export.mujoco import mjcf
+from strainwave.export.robot import kept
+
+mujoco = pytest.importorskip("mujoco")
+
+RATIO = sw.load("csg-20-100").kinematics.ratio
+# A walking robot: a free body, classes in classes, a ball, a fixed body, an axis that a class gives, and keyframes.
+ROBOT = """<mujoco><compiler angle="radian" autolimits="true"/><option timestep="0.0005" gravity="0 0 0"/>
+  <default><joint damping="1" range="-9 9"/><motor ctrlrange="-1 1"/>
+    <default class="leg"><joint axis="0 1 0" armature="0.1" frictionloss="2"/>
+      <default class="knee"><joint range="-2 2" damping="40"/></default></default></default>
+  <worldbody><body name="trunk" childclass="leg"><freejoint/><geom size=".1" mass="9"/>
+    <body name="tail"><joint type="ball" name="tail" limited="false" range="0 1"/>
+      <geom size=".02" pos="0 0 .1" mass=".1"/></body>
+    <body name="thigh"><joint name="hip"/><geom size=".03" pos="0 0 -.1" mass="1"/>
+      <body name="foot" pos="0 0 -.2"><geom size=".01" mass=".1"/></body>
+      <body name="shank" pos="0 0 -.2"><joint name="knee" class="knee"/><geom size=".03" pos="0 0 -.1" mass="1"/>
+        <body name="toe"><joint name="toe" type="slide"/><geom size=".01" mass=".1"/></body></body></body></body></worldbody>
+  <actuator><motor name="hip" joint="hip"/></actuator>
+  <keyframe><key name="crouch" qpos="1 2 3 1 0 0 0 1 0 0 0 .3 .7 .01" qvel="0 0 0 0 0 0 0 0 0 .2 .5 0" ctrl=".1"/></keyframe>
+</mujoco>"""
+
+
+def with_gear(joint, **options):
+    found = mjcf("csg-20-100", into=ROBOT, joint=joint, **options)
+    model = mujoco.MjModel.from_xml_string(found.files["gear.xml"])
+    return found, model, mujoco.MjData(model)
+
+
+@pytest.mark.parametrize("joint", ["hip", "knee"])
+def test_a_keyframe_has_the_rotor_where_the_gear_is_not_wound_up(joint):
+    _, model, data = with_gear(joint)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    output, rotor = model.joint(joint), model.joint("gear_input")
+    before = {"hip": (0.3, 0.2), "knee": (0.7, 0.5)}[joint]
+    assert (data.joint(joint).qpos[0], data.joint(joint).qvel[0]) == before
+    assert data.joint("gear_input").qpos[0] == pytest.approx(RATIO * before[0], rel=1e-12)
+    assert data.joint("gear_input").qvel[0] == pytest.approx(RATIO * before[1], rel=1e-12)
+    assert data.joint("toe").qpos[0] == 0.01
+    assert data.ten_length == pytest.approx(np.zeros(model.ntendon), abs=1e-12)
+    assert data.ctrl.tolist() == [0.1, 0.0]
+    assert np.cross(model.jnt_axis[output.id], model.jnt_axis[rotor.id]) == pytest.approx(np.zeros(3))
+
+
+@pytest.mark.parametrize("joint", ["hip", "knee"])
+def test_rotor_and_motor_have_nothing_of_the_robots_classes(joint):
+    found, model, _ = with_gear(joint)
+    rotor = model.joint("gear_input")
+    gear = sw.load("csg-20-100")
+    assert not model.jnt_limited[rotor.id]
+    assert model.dof_armature[rotor.dofadr[0]] == pytest.approx(gear.input_inertia)
+    assert not model.actuator_ctrllimited[model.actuator("gear_motor").id]
+    assert model.joint(joint).damping[0] == model.joint(joint).armature[0] == 0.0
+    assert any(f"armature 0.1 of {joint} is replaced" in remark for remark in found.remarks)
+
+
+def test_what_is_kept_of_a_joint_adds_to_the_gear():
+    found, model, _ = with_gear("knee", keep="damping, armature")
+    assert model.joint("knee").damping[0] == 40.0
+    assert model.joint("knee").armature[0] == 0.1
+    assert not any("damping" in remark and "replaced" in remark for remark in found.remarks)
+    with pytest.raises(ValueError, match=r"keep = \"mass\" must be one of damping, frictionloss, armature"):
+        kept("mass")
+
+
+def test_a_keyframe_of_another_length_is_named():
+    found = mjcf("csg-20-100", into=ROBOT.replace(".7 .01", ".7"), joint="knee")
+    assert any("qpos of the keyframe crouch has 13 numbers, not 14" in remark for remark in found.remarks)
+
+
+def test_the_output_turns_as_far_as_the_motor_drives_it():
+    """A class with a range of 2 rad must not stop the rotor: at the output that is a fiftieth of it."""
+    _, model, data = with_gear("hip")
+    data.ctrl[model.actuator("gear_motor").id] = 0.5
+    mujoco.mj_step(model, data, nstep=1000)
+    assert abs(data.joint("gear_input").qpos[0]) > 10.0
+    assert data.joint("hip").qpos[0] == pytest.approx(data.joint("gear_input").qpos[0] / RATIO, abs=1e-3)
