@@ -190,13 +190,18 @@ def paths(trial: Trial) -> list[Path]:
 
 def mapping(trial: Trial) -> Any:
     """Return what the options of a trial state of its files."""
-    given = shlex.split(trial.options)
+    return mapping_of(trial.options, paths(trial))
+
+
+def mapping_of(options: str, files: Sequence[Path]) -> Any:
+    """Return what options of `strainwave identify` state of files."""
+    given = shlex.split(options)
     values: dict[str, list[str]] = {}
     for name, value in zip(given[::2], given[1::2], strict=True):
         values.setdefault(name, []).append(value)
     one = {name: values.get(f"--{name}", [None])[0] for name in ("side", "joint", "kind")}
     several = (values.get(f"--{name}") for name in ("column", "unit", "constant"))
-    return FileOptions(None, *several, **one).mapping_of(measurement_files(paths(trial)).files)
+    return FileOptions(None, *several, **one).mapping_of(measurement_files(files).files)
 
 
 def best_of_yardstick(trial: Trial) -> float:

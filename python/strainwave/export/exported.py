@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from inspect import signature
 from typing import Any, NamedTuple, get_args
 
+from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.messages import listed
 from strainwave.tuning.loss import ExportLoss
+
+NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # beginnings of sources of such numbers
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,24 @@ class Exported:
     left_out: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     table: Recording | None = None
+
+
+def with_sources(found: Exported, gear_set: GearSet) -> Exported:
+    """Return an export with a remark on each number of its gear that measurements do not determine by itself, and why.
+
+    >>> import strainwave as sw
+    >>> gear = sw.GearSet.read("csg-20-100")
+    >>> why = sw.Entry("identified in combination: a.csv determines 0.064 N.m at 10 rad/s of the input")
+    >>> gear = gear.replace(sources={**gear.sources, "gear.friction_input.viscous": why})
+    >>> with_sources(sw.export.joint(gear), gear).remarks[-1]
+    'gear.friction_input.viscous: identified in combination: a.csv determines 0.064 N.m at 10 rad/s of the input'
+    """
+    paths = dict[str, list[str]]()
+    for path, entry in gear_set.sources.items():
+        if entry.source.startswith(NOT_BY_ITSELF):
+            paths.setdefault(entry.source, []).append(path)
+    remarks = (f"{listed(names)}: {source}" for source, names in paths.items())
+    return replace(found, remarks=(*found.remarks, *remarks))
 
 
 class Form(NamedTuple):

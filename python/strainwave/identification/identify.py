@@ -12,6 +12,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, check_line
 from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
+from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS
 from strainwave.identification.checks.comparisons import (
@@ -170,7 +171,23 @@ def identify(
     checks = _checks(start, results, parameters)
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
     gear_set = drive_set(start, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
-    return Identified(start, results, parameters, gear_set, checks)
+    return Identified(start, results, parameters, with_error_at_constant_speed(gear_set, counted), checks)
+
+
+def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult]) -> GearSet:
+    """Return the set with its error on the whole of a log of which stretches at constant speed were used, if on no other."""
+    logs = (each.recognised for each in files if each.part_of and each.recognised is not None)
+    log = next((each for each in logs if each.kind == "log"), None)
+    if log is None or gear_set.load is None or any(each.kind == "log" for each in gear_set.validation):
+        return gear_set
+    try:
+        found = kind_named(log.kind).predict(log.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
+    except (ValueError, FloatingPointError):  # no torque along its motion can be compared
+        return gear_set
+    own = Validation(
+        one_line(found.name), found.kind, found.channel, found.unit, found.error, found.varies, found.error, found.varies
+    )
+    return replace(gear_set, validation=(*gear_set.validation, own))
 
 
 def checks_of(start: GearSet, file: Recognised) -> tuple[Check, ...]:

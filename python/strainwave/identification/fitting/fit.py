@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
 from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
-from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, plan
+from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.threads import one_thread_of_algebra
@@ -365,6 +365,15 @@ def solved_problem(found: Fit) -> tuple[Problem, Array]:
     known, tied = len(found.plan.unknowns), len(found.plan.tied)
     values = [each.value for each in found.estimates]
     return problem, np.array(values[:known] + values[known + tied :])
+
+
+def with_priors(found: Fit, priors: Mapping[str, tuple[float, float]]) -> Fit:
+    """Return a fit with further priors of its unknowns: value and standard deviation, by path."""
+    places = {each.path: place for place, each in enumerate(found.plan.unknowns)}
+    more = [Prior(places[path], 1.0, *prior) for path, prior in priors.items()]
+    asked = replace(found.plan, priors=(*found.plan.priors, *more))
+    experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
+    return solved_from(problem_of(asked, found.model, experiments, masks, found.loss), solved_problem(found)[1])
 
 
 def problem_of(

@@ -303,8 +303,14 @@ class Problem:
                     max_nfev=trials,
                 )
             except _SettledError as settled:
-                return with_free(settled.part)
-        return with_free(np.asarray(solution.x))
+                return self._ended(with_free(settled.part), held)
+        return self._ended(with_free(np.asarray(solution.x)), held)
+
+    def _ended(self, x: Array, held: Sequence[int]) -> Array:
+        """Return unknowns without the rounding by which solvers stop short of a limit."""
+        for place, unknown in enumerate(self.plan.unknowns):
+            x[place] = x[place] if place in held else unknown.ended(float(x[place]))
+        return x
 
     def cost(self, x: Array, weights: Sequence[Weights]) -> float:
         """Return twice the objective of a fit: costs of the samples, of which the independent ones count, and of priors."""

@@ -14,6 +14,7 @@ from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import Parameter, every, parameters, unknown
 
 LIMIT_TOLERANCE = 1e-6  # of the size of a parameter: within it of a limit, a fit ended there
+OPEN_AT_ZERO = 2.0**-126  # lowest value of a number that must be greater than 0, see `_core.parameters`
 OF_RECORD = " @ "  # between the path of a parameter and the name of the only record that has it
 
 
@@ -43,6 +44,14 @@ class Unknown:
         """True if a fit ended at a limit: solvers stop short of it, by far less than the size of the parameter."""
         near = [LIMIT_TOLERANCE * max(abs(end), abs(self.before)) if isfinite(end) else 0.0 for end in (self.low, self.high)]
         return value <= self.low + near[0] or value >= self.high - near[1]
+
+    def ended(self, value: float) -> float:
+        """Return the value of a fit that ended here: at a limit that limit, or as little from one that is no value."""
+        if not self.at_limit(value):
+            return value
+        if abs(value - self.low) > abs(value - self.high):
+            return self.high
+        return LIMIT_TOLERANCE * abs(self.before) if self.low == OPEN_AT_ZERO else self.low
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.identification.candidates.confirmed import confirmed, other_laws, spread_by_blocks, spread_by_models
+from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT, sliding
+from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
 from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
 from strainwave.identification.candidates.rotor import (
     SHARE_OF_UNKNOWN_ROTOR,
@@ -43,6 +43,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA
 from strainwave.identification.results.motor_inertia import MOTOR
+from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
 
@@ -73,25 +74,28 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     apart = spread_by_models(best, others)
-    estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
+    judged, estimates = _judged(best, apart, taken, known)
+    if judged is not best:
+        refitted, predicted = refit(judged)
+        held_out = replace(refitted, plain=held_out.plain)
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
         errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
-        between, known = between_encoders(taken, best, errors, known, file.path.name)
+        between, known = between_encoders(taken, judged, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
-            best = with_rotor(best, rotor.value)
             squared = drive.gear.kinematics.ratio**2
             taken = replace(taken, drive=drive.replace({MOTOR: rotor.value}), rotor=rotor.sigma * squared)
-            estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
+            judged, estimates = _judged(with_rotor(best, rotor.value), apart, taken, known)
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
+    best = judged
     if not in_current and taken.has_friction:
-        known = _with_friction(known, best, estimates, file.path.name)
+        known, estimates = _with_friction(known, best, estimates, file.path.name)
     every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
@@ -184,18 +188,55 @@ def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
     return [f"shares of the regressors in the torque at the output: {listed(each)}"] if each else []
 
 
-def _with_friction(known: GearSoFar, best: MotionCandidate, estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
-    """Return the set with the friction of a log, whole, unless an earlier file determines friction no worse.
+def _judged(
+    best: MotionCandidate, apart: Mapping[str, float], taken: PreparedLog, known: GearSoFar
+) -> tuple[MotionCandidate, list[FileEstimate]]:
+    """Return a model and its estimates; what the log does not determine is that of the set before.
 
-    The loss under load was fitted with this Coulomb torque: with that of another file it would be a friction of neither.
+    Of a record at one speed the fit itself splits friction as the set does.
+    """
+    estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
+    return (best, estimates) if taken.in_current or best.model.one_speed else _with_set_before(best, estimates, known)
+
+
+def _with_set_before(
+    best: MotionCandidate, estimates: list[FileEstimate], known: GearSoFar
+) -> tuple[MotionCandidate, list[FileEstimate]]:
+    """Return a model and its estimates with the set before the log as the prior of what the log does not determine."""
+    priors = priors_of_undetermined(best.fit, estimates, known)
+    if not priors:
+        return best, estimates
+    again = _with_priors(best, priors)
+    return again, list(moved(estimates, again.fit, best.fit, priors))
+
+
+def _with_priors(best: MotionCandidate, priors: Mapping[str, PriorOfSet]) -> MotionCandidate:
+    return replace(best, priors={**best.priors, **{path: (each.value, each.weighted) for path, each in priors.items()}})
+
+
+def _with_friction(
+    known: GearSoFar, best: MotionCandidate, estimates: list[FileEstimate], name: str
+) -> tuple[GearSoFar, list[FileEstimate]]:
+    """Return the set with the friction of a log, whole, unless an earlier file determines friction no worse; and estimates.
+
+    A loss under load belongs to the friction without load that it was fitted with. If an earlier file determines that, the
+    loss is fitted with the friction of that file as its prior.
     """
     gear, before = best.fit.parts[0].model.gear, known.gear_set.gear
     laws = [part for part in FRICTION if getattr(gear, part) != getattr(before, part)]
     earlier = COULOMB in map(plain, known.determined_by)
     own = any(each.path == COULOMB and not each.why for each in estimates)
-    if not laws or (known.determined & set(FRICTION) and (earlier or not own)):
-        return known
-    return known.with_fit(gear, laws, estimates, name)
+    if not laws:
+        return known, estimates
+    if not known.determined & set(FRICTION) or (own and not earlier):
+        return known.with_fit(gear, laws, estimates, name), estimates
+    if "friction_mesh" in known.determined or not any(each.path == LOSSES[0] and not each.why for each in estimates):
+        return known, estimates
+    priors = {path: prior for path, prior in priors_of(best.fit, estimates, known).items() if path.startswith(INPUT)}
+    again = _with_priors(best, priors).fit
+    losses = {each.path: each for each in moved(estimates, again, best.fit, {}) if each.path in LOSSES}
+    estimates = [losses.get(each.path, each) for each in estimates]
+    return known.with_fit(again.parts[0].model.gear, ["friction_mesh"], estimates, name), estimates
 
 
 def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:

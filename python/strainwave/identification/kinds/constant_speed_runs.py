@@ -25,6 +25,7 @@ from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
 from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
+from strainwave.identification.results.undetermined import with_friction_at
 from strainwave.messages import listed
 from strainwave.statistics.residuals import rms
 
@@ -266,7 +267,8 @@ def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
         estimates = tuple(each.resting_on(uncertain) for each in estimates)
         checks = tuple(opposes_motion(estimates, names))
         every = (*estimates, *gravity)
-        return (FileResult(JOINED, file, AT_SPEEDS, every, (*remarks, *few), checks, what=TABLE),), known
+        result = FileResult(JOINED, file, AT_SPEEDS, every, (*remarks, *few), checks, what=TABLE)
+        return (result,), with_friction_at(known, speed, estimates, side, names)
     result, after = fit_table(file, file.recording, uncertain, known)
     return (replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)),), after
 

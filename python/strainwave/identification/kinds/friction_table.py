@@ -46,6 +46,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.prediction import Prediction, judged, model_error
+from strainwave.identification.results.undetermined import with_friction_at, with_set_before
 from strainwave.messages import as_option
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length, rms
@@ -203,33 +204,35 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         at_speeds, few = friction_at_speeds(speed, table.values("torque", "N.m"), side=file.side or "input")
         at_speeds = tuple(each.resting_on(uncertain) for each in at_speeds)
         opposing = tuple(opposes_motion(at_speeds, name))
-        return FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few), checks=opposing), known
+        result = FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few), checks=opposing)
+        return result, with_friction_at(known, speed, at_speeds, file.side or "input", name)
     best, *others = fit_friction(experiment, gear)
     speed_check = input_speed(experiment.speed, name)
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole = explained(best.fit, name)
     fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
-    estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
+    estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
         paths = [each.path for each in best.fit.estimates]
+        fit, estimates = with_set_before(fit, estimates, known, "gear.")
         estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
         name, file, best.name, estimates,
         (*file.remarks, *_remarks(table, best, experiment, known.initial), *hints_of_levels(table)),
         (*checks, *([] if any(check.failed for check in checks) else [whole])),
-        pictures=(Picture(curves_of(best.fit), "table", "friction torque, at the input"),),
+        pictures=(Picture(curves_of(fit), "table", "friction torque, at the input"),),
         held_out=HeldOut(
             "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),
             samples=len(experiment.torque),
         ),
-        candidates=tuple((each.name, each.error) for each in (best, *others)), fit=best.fit,
+        candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
     )  # fmt: skip
     if whole.failed or known.knows_better("friction_input", estimates):
         return result, known
     parts = {"friction_input", "friction_mesh"} if is_loaded(experiment) else {"friction_input"}
-    return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("friction_input", estimates)
+    return result, known.with_fit(fit.gear, parts, estimates, name).judged("friction_input", estimates)
 
 
 def _with_torque_and_load(file: Recognised, gear_set: GearSet) -> tuple[Recording, float, tuple[str, ...]]:

@@ -28,6 +28,7 @@ from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import MAX_LISTED, JudgedFit
+from strainwave.identification.results.undetermined import with_set_before
 from strainwave.simulation.run import simulate
 
 MAX_CAUSES = 2  # likely mistakes that are fitted if the model does not explain a run, the likeliest first
@@ -67,16 +68,18 @@ class RunFromRest(Kind):
         if whole.failed:
             whole = _with_cause(whole, found.fit, recording, drive, free)
         fitted = JudgedFit(found.fit, name, kept, not whole.failed, prefix="")
-        estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
+        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), found.fit
+        if not whole.failed:
+            fit, estimates = with_set_before(fit, estimates, known)
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
             (*file.remarks, *_remarks(recording, log, found.fit, kept, known)), (whole,),
-            pictures=pictures_of_channels(found.fit), held_out=_held_out(found), fit=found.fit,
+            pictures=pictures_of_channels(fit), held_out=_held_out(found), fit=fit,
         )  # fmt: skip
         if whole.failed:
             return result, known
         parts = dict.fromkeys(each.path.split(".")[1] for each in estimates)
-        return result, known.with_fit(found.fit.gear, list(parts), estimates, name)
+        return result, known.with_fit(fit.gear, list(parts), estimates, name)
 
 
 def _held_out(found: LogFit) -> HeldOut:

@@ -29,6 +29,7 @@ from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
+from strainwave.identification.results.undetermined import with_set_before
 
 Array = NDArray[np.float64]
 
@@ -105,14 +106,16 @@ class Torsion(Kind):
         whole = explained(best.fit, name)
         shared = _shared(best, gear, loop, friction_measured)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
-        estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
+        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
+        if not whole.failed:
+            fit, estimates = with_set_before(fit, estimates, known, "gear.")
         result = FileResult(
             name, file, best.name, estimates,
             (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start)),
             (*checks, *([] if any(check.failed for check in checks) else [whole])),
-            pictures=(Picture(curves_of(best.fit), "loop", "torque" + _place(loop)),),
+            pictures=(Picture(curves_of(fit), "loop", "torque" + _place(loop)),),
             held_out=_held_out(best),
-            candidates=tuple((each.name, each.error) for each in (best, *others)), fit=best.fit,
+            candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
         )  # fmt: skip
         if whole.failed or known.knows_better("stiffness", estimates):
             return result, known
@@ -122,7 +125,7 @@ class Torsion(Kind):
         )
         if isinstance(best.dissipation, InputFriction):
             parts |= {"friction_input"}
-        return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("stiffness", estimates)
+        return result, known.with_fit(fit.gear, parts, estimates, name).judged("stiffness", estimates)
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return all springs and hysteresis laws by their error on data held out."""

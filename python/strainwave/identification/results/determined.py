@@ -41,6 +41,12 @@ def different_speeds(speed: Array) -> int:
     return np.unique(np.stack([np.round(np.log(np.abs(speed)), 1), np.sign(speed)]), axis=1).shape[1] if len(speed) else 0
 
 
+def sizes_of(speed: Array) -> Array:
+    """Return the mean of each size of speeds that differ by 10 % at least [rad/s], in order, shape (sizes,)."""
+    sizes = np.round(np.log(np.abs(speed)), 1)
+    return np.array([float(np.abs(speed[sizes == size]).mean()) for size in np.unique(sizes)])
+
+
 def friction_at_speeds(
     speed: Array, torque: Array, covariance: Array | None = None, side: str = "input"
 ) -> tuple[tuple[FileEstimate, ...], tuple[str, ...]]:
@@ -60,7 +66,7 @@ def friction_at_speeds(
     """
     sizes = np.round(np.log(np.abs(speed)), 1)
     estimates = []
-    for size in np.unique(sizes):
+    for size, mean in zip(np.unique(sizes), sizes_of(speed).tolist(), strict=True):
         alike = [(sizes == size) & (np.sign(speed) == way) for way in (1.0, -1.0)]
         present = [rows for rows in alike if rows.any()]
         weights = np.zeros_like(speed)
@@ -70,9 +76,7 @@ def friction_at_speeds(
         freedom = len(left) - len(present)
         scatter = student(ONE_SIGMA, freedom) ** 2 * float(left @ left) / freedom if freedom > 0 else 0.0
         variance = scatter * float(weights @ weights) if covariance is None else float(weights @ covariance @ weights)
-        found = friction_at(
-            float(np.abs(speed[sizes == size]).mean()), float(weights @ torque), float(np.sqrt(variance)), side=side
-        )
+        found = friction_at(mean, float(weights @ torque), float(np.sqrt(variance)), side=side)
         estimates.append(found if found.sigma else replace(found, sigma=np.inf, why="one number shows no scatter"))
     count = different_speeds(speed)
     few = (

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, motor
+from strainwave import Drive, loads, motor
 from strainwave.files.described import own_paths
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 
 MAX_NAME = 60  # letters of the name of a gear that is made of those of its files
 MIN_LOAD_DIFFERENCE = 3.0  # standard deviations: two logs that differ by more carry different loads
+MIN_LOAD_SHARE = 1e-3  # of the inertia of the rotor at the output [1]: a load with less changes no torque measurably
 PARTS_OF_TORQUE = {
     "load.": "load", "gear.friction_": "friction", "gear.stiffness.": "stiffness", "gear.hysteresis.": "hysteresis",
     "gear.damping": "damping",
@@ -57,6 +58,8 @@ def drive_set(
     )  # fmt: skip
     if best is not None:
         whole = _with_bristles(_with_motor(_with_load(whole, best), best, parameters), files)
+    elif whole.load is None and (steady := [each for each in files if _is_at_constant_speed(each)]):
+        whole = _with_motor(_with_steady_load(whole, steady[0], parameters), steady[0], parameters)
     unchanged = {path for path, entry in start.sources.items() if whole.sources.get(path) == entry}
     before = None if start.covariance is None else start.covariance.among(unchanged)
     ordered = sorted(files, key=lambda each: each is not best)
@@ -116,10 +119,8 @@ def _loads_of(result: FileResult) -> dict[str, FileEstimate]:
 
 
 def _has_load(result: FileResult) -> bool:
-    """True if a file determines a number of the load, in its unit, or was fitted with one that a person gave."""
-    given = result.recognised is not None and "load_inertia" in result.recognised.constants
-    determined = any(not each.why for each in _loads_of(result).values())
-    return drive_of(result) is not None and (determined or given) and not result.is_in_current
+    """True for a log whose torque is known: what it shows of its load, be it nothing that counts, is the load of the gear."""
+    return drive_of(result) is not None and not result.is_in_current
 
 
 def _load_sigma(result: FileResult) -> float:
@@ -149,24 +150,61 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     load: Any = drive.load
     sources = {}
     for path in own_paths("load", load):
-        if path in own:
-            sources[path] = source_of(own[path], log.name)
-            load = load.replace(inertia=own[path].value) if path == LOAD and own[path].value > 0.0 else load
-        elif path == "load.inertia" and "load_inertia" in given:
+        name = path.removeprefix("load.")
+        estimate, before = own.get(path), getattr(whole.load, name, None)
+        if path == LOAD and "load_inertia" in given:
             sources[path] = Entry(f"given with {log.name}")
-        elif path == "load.inertia" and hasattr(whole.load, "inertia"):  # fitted without one, no step would be short enough
-            load = load.replace(inertia=whole.load.inertia)
-            sources[path] = Entry(f"assumed: that of the start set, as {log.name} does not determine it")
+        elif estimate is not None and (estimate.state != "not identified" or before is None):
+            sources[path] = source_of(estimate, log.name)
+            load = load.replace(inertia=estimate.value) if path == LOAD and estimate.value > 0.0 else load
+        elif before is not None:
+            load = load.replace(**{name: before})
+            stated = whole.sources.get(path, Entry("not given"))
+            sources[path] = replace(stated, source=f"assumed: that of the start set, as {log.name} does not determine it")
         else:
             sources[path] = Entry(f"assumed: {log.name} does not determine it")
+    least = MIN_LOAD_SHARE * _rotor_of(drive)
+    if hasattr(load, "inertia") and load.inertia < least:  # with less, no step of a simulation would be short enough
+        load = load.replace(inertia=least)
+        sources[LOAD] = Entry(f"assumed: {100.0 * MIN_LOAD_SHARE:g} % of the rotor's; {log.name} shows none")
     return _with_part(whole, "load", load, sources)
+
+
+def _is_at_constant_speed(result: FileResult) -> bool:
+    """True for a log that is a point of a table of friction."""
+    return bool(result.part_of) and result.recognised is not None and result.recognised.kind == "log"
+
+
+def _with_steady_load(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
+    """Return the set with the load of logs at constant speed: their gravity, and an inertia that changes nothing there."""
+    assert log.recognised is not None
+    given = log.recognised.constants
+    shown = {each.estimate.path: each for each in parameters if each.estimate.path.startswith("load.gravity")}
+    rotor = (whole.gear.input_inertia + given.get("motor_inertia", 0.0)) * whole.gear.kinematics.ratio**2
+    inertia = given.get("load_inertia", max(MIN_LOAD_SHARE * rotor, MIN_INERTIA))
+    gravity = {path.removeprefix("load."): each.estimate.value for path, each in shown.items()}
+    load: Any = loads.Pendulum(inertia=inertia, **gravity) if gravity else loads.Inertia(inertia=inertia)
+    why = f"given with {log.name}" if "load_inertia" in given else f"assumed: {log.name}, at constant speed, shows none"
+    sources = {LOAD: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
+    return _with_part(whole, "load", load, sources)
+
+
+def _motor_of(log: FileResult) -> Any:
+    """Return the motor of a log: that of its fit, else one with the torque constant that was given with it."""
+    if (drive := drive_of(log)) is not None:
+        return drive.motor
+    given = {} if log.recognised is None else log.recognised.constants
+    return motor.CurrentSource(torque_constant=given["torque_constant"]) if "torque_constant" in given else motor.TorqueSource()
+
+
+def _rotor_of(drive: Drive) -> float:
+    """Return the inertia that turns at the input, as the output has it [kg.m2]."""
+    return float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
 
 
 def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log: with its torque constant if that is known, else one that gives a torque."""
-    given, drive = ({} if log.recognised is None else log.recognised.constants), drive_of(log)
-    assert drive is not None
-    fitted: Any = drive.motor
+    given, fitted = ({} if log.recognised is None else log.recognised.constants), _motor_of(log)
     if whole.motor is not None:
         names = {field["name"] for field in whole.motor.fields}
         numbers = {"torque_constant": "torque_constant", "resistance": "resistance", "inertia": "motor_inertia"}
@@ -191,7 +229,8 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
     least = 0.0 if whole.gear.input_inertia > 0.0 else MIN_INERTIA
     combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR]
     for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR)):
-        return max(estimate.value, least), source_of(estimate, name)
+        if estimate.state != "not identified":
+            return max(estimate.value, least), source_of(estimate, name)
     return least, Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")
 
 

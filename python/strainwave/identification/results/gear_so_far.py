@@ -11,6 +11,7 @@ import numpy as np
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.friction import STEADY_NUMBERS
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate
@@ -18,6 +19,7 @@ from strainwave.messages import one_line
 from strainwave.parameters import gear_numbers
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
+START_SPREAD = 0.5  # relative standard deviation of a number of a set that states none (assumed)
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
 
 
@@ -46,6 +48,20 @@ class GearSoFar:
         """Initial set of all files."""
         return self.gear_set if self.start is None else self.start
 
+    def prior(self, path: str, gear: Any) -> tuple[float, float] | None:
+        """Return a number of the set before a file and its standard deviation, where it means the same in another gear.
+
+        None if the set lacks it, has it as 0, or has it in another law, in which only steady friction means the same.
+        """
+        part, _, name = path.removeprefix("gear.").partition(".")
+        own = {plain(each): (each, value) for each, (value, _) in gear_numbers(self.gear_set.gear).items()}
+        if path not in own or own[path][1] == 0.0:
+            return None
+        if name and getattr(self.gear_set.gear, part).name != getattr(gear, part).name and name not in STEADY_NUMBERS:
+            return None
+        entry, value = self.gear_set.sources.get(own[path][0], Entry("not given")), own[path][1]
+        return value, entry.sigma(value) or START_SPREAD * abs(value)
+
     def knows_better(self, part: str, estimates: Sequence[FileEstimate]) -> bool:
         """True if an earlier file determines a part of the gear better than this one."""
         return part in self.determined and self.sigmas.get(part, np.inf) <= _first_sigma(part, estimates)
@@ -59,11 +75,13 @@ class GearSoFar:
 
         Args:
             gear: the fitted one
-            parts: to take from it
+            parts: to take from it; one of which no number is identified stays as it was
             estimates: of the fit
             name: of the file
         """
-        laws, entries = {part: getattr(gear, part) for part in parts}, {each.path: source_of(each, name) for each in estimates}
+        states = {part: {each.state for each in estimates if is_of(each.path, {part})} for part in parts}
+        laws = {part: getattr(gear, part) for part, found in states.items() if found != {"not identified"}}
+        entries = {each.path: source_of(each, name) for each in estimates}
         return self._with_laws(laws, entries, {each.path for each in estimates if not each.why}, name)
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> GearSoFar:
@@ -78,6 +96,10 @@ class GearSoFar:
         unknown = Entry(source=f"fitted but not identified: {one_line(name)} does not determine it")
         known = {path: Entry(source=f"identified from {one_line(name)}", uncertainty=sigmas[path]) for path in determined}
         return self._with_laws(parts, dict.fromkeys(sigmas, unknown) | known, determined, name)
+
+    def with_sums(self, laws: Mapping[str, Any], entries: Mapping[str, Entry], name: str) -> GearSoFar:
+        """Return the same with laws of which a file determines sums alone; a later file may determine their numbers."""
+        return self._with_laws(laws, entries, (), name)
 
     def _with_laws(
         self, laws: Mapping[str, Any], entries: Mapping[str, Entry], determined: Collection[str], name: str

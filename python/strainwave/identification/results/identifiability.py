@@ -71,7 +71,7 @@ class JudgedFit:
             return why, False
         estimate = self.fit.estimates[place]
         if not _is_phase(estimate) and is_uncertain(estimate.value, estimate.sigma):
-            why = _combination(self.fit, place)
+            why = combination(self.fit, place)
             return why or TOO_UNCERTAIN, bool(why)
         if why := self.shared.get(path, ""):
             return why, True
@@ -117,7 +117,7 @@ def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
     return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_LISTED])}" if far else ""
 
 
-def _combination(fit: Fit, place: int) -> str:
+def combination(fit: Fit, place: int) -> str:
     """Return the combination with another estimate that the data determine, although they hardly determine one; or nothing."""
     correlation, free = np.abs(fit.correlation[place]), len(fit.plan.unknowns)
     correlation[place] = 0.0

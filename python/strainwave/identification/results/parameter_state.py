@@ -61,6 +61,9 @@ def states_of(
             sigma = each.estimate.sigma if each is not None else np.nan
             sigma = entry.uncertainty if entry is not None and entry.uncertainty is not None else sigma
             yield ParameterState(path, unit, known, value, sigma, "identified", source)
+        elif source.startswith("identified in combination") and path not in undetermined:
+            sigma = np.nan if entry is None or entry.uncertainty is None else entry.uncertainty
+            yield ParameterState(path, unit, known, value, sigma, "identified in combination", source)
         elif (estimate := undetermined.get(path)) is not None:
             yield ParameterState(path, unit, known, value, estimate.sigma, estimate.state, estimate.why)
         else:

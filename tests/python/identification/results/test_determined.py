@@ -72,13 +72,16 @@ def test_both_directions_cancel_a_zero_error() -> None:
     assert "zero error" in remarks[1]
 
 
-def test_a_table_of_speeds_close_together_determines_friction_there_and_leaves_the_gear_alone(tmp_path: Path) -> None:
+def test_a_table_of_speeds_close_together_determines_friction_there_and_the_set_divides_it(tmp_path: Path) -> None:
     speed = np.concatenate([sign * np.linspace(19.8, 20.2, 8) for sign in (1.0, -1.0)])
     found = identify(START, [table(tmp_path / "pq.csv", speed)])
     (number,) = found.parameters
     assert number.estimate.label == "steady_friction (at 20 rad/s of the input)"
     assert abs(number.estimate.value - COULOMB - 20.0 * VISCOUS) < 3.0 * number.estimate.sigma < 1e-3
-    assert found.gear_set.gear == sw.load(START)
+    law, before = found.gear_set.gear.friction_input, sw.load(START).friction_input
+    assert law.steady(20.0) == pytest.approx(number.estimate.value, rel=1e-3)
+    assert law.viscous / law.coulomb == pytest.approx(before.viscous / before.coulomb, rel=1e-3)
+    assert found.gear_set.sources["gear.friction_input.viscous"].source.startswith("identified in combination: pq.csv")
 
 
 def test_friction_at_a_speed_with_a_large_standard_deviation_is_not_identified() -> None:
