@@ -106,8 +106,8 @@ def trials() -> Iterator[Trial]:
     for joint in (1, 2, 4, 5, 6, 7):
         yield Trial(f"kinova-gen3/joint_{joint}_trapez.csv", "", _kinova_columns(joint))
     idle = (
-        "left-hip-pitch/idle", "left-hip-pitch/ref", "left-hip-roll/idle", "genova01-left-hip-pitch/idle", "right-ankle-roll/Idle",
-        "right-knee/idle", "right-knee/ref",
+        "left-hip-pitch/idle", "left-hip-pitch/ref", "left-hip-roll/idle", "genova01-left-hip-pitch/idle",
+        "right-ankle-roll/Idle", "right-knee/idle", "right-knee/ref",
     )  # fmt: skip
     for name in idle:
         yield Trial(
