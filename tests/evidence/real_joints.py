@@ -105,7 +105,10 @@ def trials() -> Iterator[Trial]:
         yield Trial(f"ur10e/ur-20_01_22-joint_{joint}.csv", _ur(joint), _ur_columns(joint))
     for joint in (1, 2, 4, 5, 6, 7):
         yield Trial(f"kinova-gen3/joint_{joint}_trapez.csv", "", _kinova_columns(joint))
-    idle = ("left-hip-pitch/idle", "left-hip-pitch/ref", "right-ankle-roll/Idle", "right-knee/idle", "right-knee/ref")
+    idle = (
+        "left-hip-pitch/idle", "left-hip-pitch/ref", "left-hip-roll/idle", "genova01-left-hip-pitch/idle",
+        "right-ankle-roll/Idle", "right-knee/idle", "right-knee/ref",
+    )  # fmt: skip
     for name in idle:
         yield Trial(
             f"icub/{name}.mat", "--kind log --side output --column joint_torque=block3",
