@@ -6,8 +6,9 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import cache
 from threading import Event
-from typing import TypeVar
+from typing import Any, TypeVar
 
 StepCounter = Callable[[int], None]  # a call of the core reports to it now and then the count of steps done
 T = TypeVar("T")
@@ -24,11 +25,17 @@ def available_threads() -> int:
 @contextmanager
 def one_thread_of_algebra() -> Iterator[None]:
     """Let libraries of linear algebra use one thread: fits solve many small systems, for which threads wait for each other."""
-    import scipy.linalg  # noqa: F401  # loads its library, which is then limited too
-    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
-
-    with threadpool_limits(limits=1, user_api="blas"):
+    with _libraries().limit(limits=1, user_api="blas"):
         yield
+
+
+@cache
+def _libraries() -> Any:
+    """Return the controller of the libraries with threads that are loaded; to find them takes some milliseconds."""
+    import scipy.linalg  # noqa: F401  # loads its library, which is then limited too
+    from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]
+
+    return ThreadpoolController()
 
 
 def side_by_side(calls: Sequence[Callable[[StepCounter], T]]) -> list[T]:

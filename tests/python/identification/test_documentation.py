@@ -41,8 +41,9 @@ def percent(share: float) -> str:
         f"stays at its end over more than {percent(sizes.MAX_CLIPPED_SHARE)} of the range of the angle",
         f"the gravity of the load is more than {comparisons.MAX_GRAVITY_OF_RATING:g} times the largest torque in the ratings",
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
-        f"with {percent(comparisons.REPEATABILITY['friction_input'])} of friction and hysteresis and "
-        f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers from run to run",
+        f"with {percent(comparisons.GAIN_SIGMA)} for the gain of two sensors",
+        f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction and "
+        f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],

@@ -17,7 +17,7 @@ from strainwave import Drive, friction
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.motion_model import INPUT, WITHIN, MotionModel
 from strainwave.identification.dynamics.log import ORDERS
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.experiments.motion_log import MotionLog, per_torque, turnover_speed
 from strainwave.statistics.linear_fit import linear_fit, own_share, solved
 from strainwave.statistics.residuals import chance_of_gain, correlation_length
 
@@ -52,7 +52,7 @@ class Wave:
     def columns(self, log: MotionLog) -> Array:
         """Return its sine and cosine at every instant of the grid [1], shape (2, m)."""
         motion = log.motion
-        sense = np.sign(np.where(motion.resting, 0.0, motion.speed)) if self.kind == "friction" else 1.0
+        sense = np.tanh(motion.speed / turnover_speed(motion.speed)) if self.kind == "friction" else 1.0
         phase = self.order * motion.angle
         return np.stack([sense * np.sin(phase), sense * np.cos(phase)])
 
