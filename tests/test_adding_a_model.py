@@ -41,6 +41,8 @@ GEAR_AND_LOAD = "whose gear and load are parameters of its type"
 NOTHING = "what a compensation has where nothing else is said"
 COMPOSED = "tuning/"  # controllers are put together from models there, whatever else they are
 TRIED = "identification/candidates/"  # where a fit of each model starts that is tried on a measurement, is said there
+DIVIDED = "whose Coulomb and viscous friction a set divides where a file determines their sum"
+ALONE = "that of a gear whose log determines no load or motor"
 WRITTEN = "export/"  # another program has a place for some models only
 ELSEWHERE = {
     "ModelFeedforward": {
@@ -102,8 +104,12 @@ ELSEWHERE = {
         "analysis/steady.py": "accelerates under any torque, so that there is no equilibrium",
         "identification/experiments/driven_log.py": "the input of a log moves as it was measured",
     },
-    "CurrentSource": {"identification/kinds/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
+    "CurrentSource": {
+        "identification/kinds/prepared_log.py": "whatever its motor, a log tells the current along a motion",
+        "identification/results/drive.py": ALONE,
+    },
     "Coulomb": {
+        "identification/results/undetermined.py": DIVIDED,
         "compensation/bristle_observer.hpp": "what follows the measured motion by default",
         "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
@@ -115,6 +121,7 @@ ELSEWHERE = {
     },
     "MaxwellSlipFriction": {"identification/kinds/at_rest.py": AT_REST},
     "Stribeck": {
+        "identification/results/undetermined.py": DIVIDED,
         "identification/kinds/at_rest.py": AT_REST,
         "friction/cyclic.hpp": "what it modulates by default",
     },
@@ -150,6 +157,7 @@ ELSEWHERE = {
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
+        "identification/results/drive.py": ALONE,
         "drive_model.hpp": MODEL,
         "diagnose/response.py": "what a joint carries besides its inertia is in the recording",
         "identification/kinds/between_encoders.py": "what the load asks for is in the log, so that the motor has none",
@@ -163,6 +171,7 @@ ELSEWHERE = {
     },
     "Stochastic": {"analysis/steady.py": STEADY_RUNNING, "drive_model.hpp": MODEL},
     "LuGre": {
+        "identification/results/undetermined.py": DIVIDED,
         "identification/kinds/at_rest.py": "whose breakaway torque ramps tell",
     },
     "Cyclic": {
@@ -179,6 +188,7 @@ ELSEWHERE = {
     "Preisach": {"parameter_drive.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {
+        "identification/results/drive.py": ALONE,
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
         "identification/kinds/between_encoders.py": "gravity of the load that was fitted, along the motion of the log",
         "identification/kinds/predicted_log.py": "gravity depends on where the angle of a log counts from",

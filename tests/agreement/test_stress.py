@@ -54,7 +54,7 @@ def test_a_recording_that_contradicts_itself_is_told(column: str, said: str) -> 
     """A run that is right, and the same with a column turned round; its end too but where the end is looked at."""
     volts = Excitation(sw.scenario.constant(1.0, 0.01))
     run = sw.simulate(SLIDING, volts.command, 1e-4)
-    inputs = volts.over(volts.time_grid(1e-4, None))[-1, -1]
+    inputs = volts.over(volts.time_grid(1e-4, None).instants)[-1, -1]
     check(SLIDING, run, inputs)
     turned = {name: -run[name] if name == column else run[name].copy() for name in run.names}
     if column != "current":
@@ -77,7 +77,7 @@ def test_powers_and_energies_that_cannot_be_are_told(column: str, said: str) -> 
     metered = SLIDING.replace(gear=SLIDING.gear.replace(damping=1.0), meter=sw.meter.EnergyMeter())
     volts = Excitation(sw.scenario.constant(1.0, 0.01))
     run = sw.simulate(metered, volts.command, 1e-4)
-    inputs = volts.over(volts.time_grid(1e-4, None))[-1, -1]
+    inputs = volts.over(volts.time_grid(1e-4, None).instants)[-1, -1]
     check(metered, run, inputs)
     changed = {name: run[name].copy() for name in run.names}
     changed[column][:-1] -= 1e-3
@@ -90,7 +90,7 @@ def test_what_sticks_and_moves_is_told() -> None:
     run = sw.simulate(SLIDING, volts.command, 1e-4)
     held = sw.Run({name: run[name] for name in run.names}, run.units, run.end.replace(input_slip_direction=0.0), run.method)
     with pytest.raises(AssertionError, match=r"^WRONG: the input sticks and moves$"):
-        check(SLIDING, held, volts.over(volts.time_grid(1e-4, None))[-1, -1])
+        check(SLIDING, held, volts.over(volts.time_grid(1e-4, None).instants)[-1, -1])
 
 
 def test_a_number_that_nobody_records_and_that_diverges_is_told() -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.support.strategies import log_uniform, models, signed
+from tests.support.strategies import log_uniform, models, signed, without_detent
 
 laws = models("friction")
 set_valued = laws.filter(lambda law: law.set_valued)
@@ -35,14 +35,6 @@ contacts = st.fixed_dictionaries(
     }
 )
 odd = laws.filter(is_odd)
-
-
-def without_detent(law: Any) -> Any:
-    """Return the friction of a law without the torque over the angle that it stores and gives back within a turn."""
-    if not hasattr(law, "law"):
-        return law
-    none = {name: () for name in ("detent_order", "detent_torque", "detent_phase") if hasattr(law, name)}
-    return law.replace(law=without_detent(law.law), **none)
 
 
 @given(laws.filter(in_bounds), speeds, contacts)

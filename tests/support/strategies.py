@@ -210,3 +210,11 @@ def quiet(sensor: Any) -> Any:
 
 
 smooth_drives = drives.map(smooth)
+
+
+def without_detent(law: Any) -> Any:
+    """Return the friction of a law without the torque over the angle that it stores and gives back within a turn."""
+    if not hasattr(law, "law"):
+        return law
+    none = {name: () for name in ("detent_order", "detent_torque", "detent_phase") if hasattr(law, name)}
+    return law.replace(law=without_detent(law.law), **none)

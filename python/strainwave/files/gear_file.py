@@ -85,12 +85,18 @@ def idle(gear_set: Contents) -> list[str]:
     """Path of every number without effect, which a file may do without: those of the parts that do nothing, and some others."""
     filled = list(_filled(gear_set))
     of_parts = [path for table, model in filled if _does_nothing(table, model) for path in own_paths(table.path, model)]
-    return of_parts + [f"{table.path}.{name}" for table, model in filled for name in at_rest(model)]
+    return of_parts + [path for table, model in filled for name in at_rest(model) for path in _paths_of(table, model, name)]
 
 
 def at_rest(model: Any) -> list[str]:
     """Return the numbers of a model that a file may leave out, and that have the value which they then have."""
     return [name for name in sorted(optional(model)) if getattr(model, name) == default_of(model, name)]
+
+
+def _paths_of(table: _Table, model: Any, name: str) -> list[str]:
+    """Return the path of a number, or of each number of a sequence."""
+    place = f"{table.path}.{name}"
+    return [path for path in own_paths(table.path, model) if path == place or path.startswith(f"{place}[")]
 
 
 # The tables of a file, as the models describe themselves
@@ -204,7 +210,7 @@ def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, Sou
             content_of = members[parameter.name]
             if content_of is None:
                 members[parameter.name] = default_of(model, parameter.name)
-                its_sources = {f"{table.path}.{parameter.name}": Entry(NOT_GIVEN)}
+                its_sources = {} if parameter.kind == "sequence" else {f"{table.path}.{parameter.name}": Entry(NOT_GIVEN)}
             else:
                 members[parameter.name], its_sources = _read_parameter(table.path, parameter, content_of)
             sources |= its_sources
@@ -366,7 +372,7 @@ def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:
         written.add("model", model.name)
     for name, kind, unit in parameters(model):
         value, place = getattr(model, name), f"{table.path}.{name}"
-        if name in at_rest(model) and sources[place].source == NOT_GIVEN:
+        if name in at_rest(model) and all(sources[path].source == NOT_GIVEN for path in _paths_of(table, model, name)):
             continue
         if kind == "choice":
             written.add(name, value)

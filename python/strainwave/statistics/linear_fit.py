@@ -119,8 +119,8 @@ def normal_inverse(columns: Array) -> Array:
 
     Directions that are not separated are left out, as in `solved`.
 
-    >>> normal_inverse(np.array([[2.0, 0.0], [0.0, 1e-9]])).tolist()
-    [[0.25, 0.0], [0.0, 1e+18]]
+    >>> normal_inverse(np.array([[2.0, 0.0], [0.0, 0.5]])).tolist()
+    [[0.25, 0.0], [0.0, 4.0]]
     """
     size = np.linalg.norm(columns, axis=0)
     size = np.where(size > 0.0, size, 1.0)
