@@ -144,6 +144,8 @@ truth = {
 print(f"{'':30} {'identified':>10} {'truth':>9}  standard deviations apart")
 for parameter in found.parameters:
     estimate = parameter.estimate
+    if estimate.path not in truth:  # a detent, which stands for the transmission error of the joint
+        continue
     distance = (estimate.value - truth[estimate.path]) / estimate.sigma
     print(f"{estimate.path:30} {estimate.value:10.4g} {truth[estimate.path]:9.4g} {distance:10.1f}")
 

@@ -101,7 +101,7 @@ for axes, constant in zip(panels, (0.0755, 0.151), strict=True):
     stated = sw.FileMapping(constants={"torque_constant": constant})
     found = sw.identify("hfuc-20-80", ["robot_log.csv"], mapping=stated)
     print(f"{constant} N.m/A: {len(found.failed)} failed checks")
-    for each in found.parameters[:4]:
+    for each in (each for each in found.parameters if "detent" not in each.estimate.path):
         print(f"  {each.estimate.path:30} {each.estimate.value:.4g} {each.estimate.unit}")
     curves = found.files[0].pictures[0].curves.between(20.0, 30.0)
     axes.plot(curves["time"], curves["current"], linewidth=1.5, alpha=0.5, label="measured")

@@ -85,7 +85,8 @@ def model(kind: Any, random: np.random.Generator) -> Any:
     """Any of its kind, drawn again where a relation between its fields does not hold."""
     while True:
         length = int(random.integers(0, 9))
-        members = {field["name"]: value(field, length, random) for field in kind.fields}
+        fields = [field for field in kind.fields if not (kind is sw.friction.Cyclic and field.get("optional"))]  # a detent
+        members = {field["name"]: value(field, length, random) for field in fields}  # is valid below the dry friction
         if "kinematics" in members:
             members |= {name: suited(members[name], members["kinematics"]) for name in SUITED}
         try:

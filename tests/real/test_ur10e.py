@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import strainwave as sw
+from strainwave.identification.candidates.friction import innermost
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "arms" / "ur10e"
 TORQUE_CONSTANT = 0.1  # N.m/A, rough
@@ -73,14 +74,16 @@ def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int,
 
 @pytest.mark.slow("identification")
 def test_the_friction_of_a_gear_of_two_joints_is_that_of_one_of_them(tmp_path: Path) -> None:
-    """Joint 1 shows another friction at low speed, joint 2 a loss under load: together they are the friction of none."""
+    """Joint 1 shows another friction at low speed, joint 2 a loss under load: it is fitted with that friction."""
     files = [tmp_path / name for name in ("a.csv", "b.csv")]
     for joint, file in zip((1, 2), files, strict=True):
         file.write_bytes((FOLDER / f"ur-20_01_22-joint_{joint}.csv").read_bytes())
     found = sw.identify("csg-20-100", files, mapping=lambda path: mapping(1 + files.index(path), TORQUE_CONSTANT))
-    coulomb, mesh = found.gear_set.gear.friction_input.coulomb, found.gear_set.gear.friction_mesh
+    coulomb, mesh = innermost(found.gear_set.gear.friction_input).coulomb, found.gear_set.gear.friction_mesh
     fitted = [each.fit.gear for each in found.files if each.fit is not None]
-    assert (coulomb, mesh) in [(each.friction_input.coulomb, each.friction_mesh) for each in fitted]
+    assert coulomb in [innermost(each.friction_input).coulomb for each in fitted]
+    losses = [each.friction_mesh.driving_forward for each in fitted if hasattr(each.friction_mesh, "driving_forward")]
+    assert not losses or mesh.driving_forward != losses[0]  # it was fitted anew with the friction of the other joint
     (check,) = (check for check in found.checks if check.name == "agreement of files")
     assert "steady_friction" in check.message
 

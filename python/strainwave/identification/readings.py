@@ -194,7 +194,7 @@ def _report(best: _Reading, others: Sequence[_Reading]) -> str:
     """Return which reading is taken, and what each leaves."""
     effort = next(name for name in ("current", *TORQUES, "voltage") if name in best.file.columns)
     least = f"read as {_described(best)}, which leaves {_percent(best)} of {best.file.columns[effort]} unexplained"
-    return f"{least} on data held out; {'; '.join(f'{_described(each)}: {_left(each)}' for each in others)}"
+    return "; ".join([f"{least} on data held out", *(f"{_described(each)}: {_left(each)}" for each in others)])
 
 
 def _asked(question: str, remaining: Sequence[_Reading]) -> str:

@@ -124,7 +124,8 @@ class Moving:
         load: smooth part without what turns over with the direction, shape (n,)
         weight: 0 at rest and at the ends, up to 1 elsewhere, shape (n,)
         outliers: number of samples that do not count
-        basis: columns of which the smooth part is a sum, shape (n, k)
+        basis: columns of which the smooth part is a sum, those of other joints last, shape (n, k)
+        own_columns: number of those of the shaft itself, which swing with the orders of its gear
     """
 
     shafts: tuple[Shaft, ...]
@@ -134,11 +135,12 @@ class Moving:
     weight: Array
     outliers: int
     basis: Array
+    own_columns: int
 
     @cached_property
     def fitted(self) -> FittedColumns:
-        """The weighted basis, orthonormal."""
-        return FittedColumns(orthonormal(self.basis * self.weight[:, None])[0])
+        """The weighted columns of the shaft itself, orthonormal."""
+        return FittedColumns(orthonormal(self.basis[:, : self.own_columns] * self.weight[:, None])[0])
 
     @property
     def own(self) -> Shaft:
@@ -164,11 +166,13 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
     shafts = (own, *(Shaft.of(name, values) for name, values in (others or {}).items()))
     fast = float(np.quantile(np.abs(own.speed), 0.95)) or 1.0
     friction = _friction(own.speed / fast, own)
-    rest = np.concatenate([_trend(angle), own.acceleration[:, None], *(_coupling(own, each) for each in shafts[1:])], axis=1)
+    rest = np.concatenate([_trend(angle), own.acceleration[:, None]], axis=1)
+    coupling = np.concatenate([np.zeros((len(angle), 0)), *(_coupling(own, each) for each in shafts[1:])], axis=1)
     gate = own.speed**2 / (own.speed**2 + (REST_SHARE * fast) ** 2)
     weight = gate * taper(len(angle))
     waves = _waves(own, per_input)
-    friction, rest = _without_ripple(friction, waves, weight), _without_ripple(rest, waves, weight)
+    friction, rest, coupling = (_without_ripple(columns, waves, weight) for columns in (friction, rest, coupling))
+    rest = np.concatenate([rest, coupling], axis=1)
     smooth, turning = _fitted(torque, friction, rest, weight)
     if own.reverses():  # a share of the load is lost, one way and the other
         lossy = np.concatenate([friction, (own.sense * np.abs(smooth - turning))[:, None]], axis=1)
@@ -182,7 +186,7 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
         smooth, turning = _fitted(torque, friction, rest, weight)
         left = torque - smooth
     basis = np.concatenate([friction, rest], axis=1)
-    return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()), basis)
+    return Moving(shafts, left, smooth, smooth - turning, weight, int(wrong.sum()), basis, basis.shape[1] - coupling.shape[1])
 
 
 def shaft_of(

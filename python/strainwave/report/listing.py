@@ -170,9 +170,10 @@ def _rows(gear_set: GearSet, path: str, model: object) -> Iterator[Row]:
         if field.kind == "choice":
             yield field.name, str(value), "", ""
             continue
-        if field.name in at_rest(model) and gear_set.sources[f"{path}.{field.name}"].source == NOT_GIVEN:
-            continue
         several = field.kind == "sequence"
+        is_given = bool(value) if several else gear_set.sources[f"{path}.{field.name}"].source != NOT_GIVEN
+        if field.name in at_rest(model) and not is_given:
+            continue
         for i, number in enumerate(value if several else [value]):
             name = f"{field.name}[{i}]" if several else field.name
             entry = gear_set.sources[f"{path}.{name}"]

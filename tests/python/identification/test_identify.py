@@ -297,4 +297,4 @@ def test_a_load_is_as_uncertain_as_the_rotor_beside_it(tmp_path: Path) -> None:
     ]  # fmt: skip
     assert inertia[1].value == inertia[0].value
     assert inertia[1].sigma == pytest.approx(np.hypot(inertia[0].sigma, 2e-6 * RATIO**2))
-    assert inertia[1].common == pytest.approx(2e-6 * RATIO**2)
+    assert inertia[1].common == pytest.approx(np.hypot(inertia[0].common, 2e-6 * RATIO**2))

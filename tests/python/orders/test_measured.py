@@ -50,7 +50,8 @@ def test_the_same_drive_is_seen_in_its_current(driven: sw.Recording) -> None:
     blind = orders_found(joint, "blind")
     assert blind.transmission is None
     assert blind.ripple is not None
-    assert any(line.kind == "order" and abs(line.order - 200.0) < 2.0 for line in blind.ripple.lines)
+    assert any(line.kind in ("order", "either") and abs(line.order - 200.0) < 2.0 for line in blind.ripple.lines)
+    assert 100 in blind.ripple.concluded
 
 
 def test_a_speed_is_summed_up_where_there_is_no_angle() -> None:

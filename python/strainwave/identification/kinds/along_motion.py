@@ -70,7 +70,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best, held_out, predicted = confirmed(models[0], models[1:], drive)
     others = [each for each in models if each.model is not best.model]
     log = best.log
-    of_model = [*_delay(best), *_other_laws(best, others, in_current), *_one_encoder(taken)]
+    other = _other_laws(best, others, in_current) if taken.has_friction else ()
+    of_model = [*_delay(best), *other, *_one_encoder(taken)]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     apart = spread_by_models(best, others)
