@@ -80,12 +80,19 @@ def linear_fit(
         rivals: further columns that may act too, one at a time, shape (samples, m): how far each moves the coefficients is part
             of their standard deviation
 
+    Raises:
+        ValueError: no more samples than columns
+
     >>> speed = np.array([10.0, 10.0, 10.0, -10.0, -10.0, -10.0])
     >>> torque = 0.064 * np.sign(speed) + 1e-4 * np.array([1.0, -1.0, 0.0, 0.0, 1.0, -1.0])
     >>> fit = linear_fit(np.stack([np.sign(speed), speed], axis=1), torque, names=("coulomb", "viscous"))
     >>> fit.rank, fit.not_separated
     (1, ('coulomb + 10 viscous = 0.064',))
     """
+    if len(target) <= columns.shape[1]:
+        raise ValueError(
+            f"{len(target)} samples do not determine {columns.shape[1]} coefficients and their standard deviations"
+        )
     rows = np.ones(len(target)) if weights is None else weights
     names = tuple(names) or tuple(f"column {place}" for place in range(columns.shape[1]))
     scaled, goal = columns * rows[:, np.newaxis], target * rows

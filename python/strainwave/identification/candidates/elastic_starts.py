@@ -101,6 +101,8 @@ def elastic_starts(
             gear = gear.replace(damping=max(float(answer.weights[-1][0]), MIN_START_DAMPING * critical))
             begun = drive.replace(gear=gear, load=_load(drive, answer.weights[-1], scaled, free, by_gravity))
             found.append(ElasticStart(begun, error))
+    if not found:
+        raise ValueError("no spring explains the angle between the shafts")
     return sorted(found, key=lambda each: each.error)
 
 

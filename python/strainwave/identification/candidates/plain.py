@@ -124,7 +124,8 @@ def gravity_sigma(log: MotionLog, drive: Drive) -> float:
     found = linear_fit(columns, target, rivals=others)
     amplitudes: Array = found.values[:2]
     share = amplitudes / max(float(np.linalg.norm(amplitudes)), 1e-300)
-    return float(np.sqrt(max(float(share @ found.covariance[:2, :2] @ share), 0.0)))
+    variance = float(share @ found.covariance[:2, :2] @ share)
+    return float(np.sqrt(variance)) if variance >= 0.0 else np.inf  # nan of an infinite variance, too
 
 
 def along_best_motion(log: MotionLog, recording: Recording, drive: Drive) -> tuple[MotionLog, bool]:

@@ -322,7 +322,7 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
-        if best.model.one_speed and estimate.path == COULOMB:
+        if best.model.one_speed and path == COULOMB:
             for each in _at_one_speed(found, best):
                 yield each.in_current() if in_current else each
             continue

@@ -19,6 +19,7 @@ from strainwave.messages import one_line
 from strainwave.parameters import gear_numbers
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
+EXACT_SPREAD = 1e-9  # relative standard deviation of a number that is stated as exact
 START_SPREAD = 0.5  # relative standard deviation of a number of a set that states none (assumed)
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
 
@@ -60,7 +61,8 @@ class GearSoFar:
         if name and getattr(self.gear_set.gear, part).name != getattr(gear, part).name and name not in STEADY_NUMBERS:
             return None
         entry, value = self.gear_set.sources.get(own[path][0], Entry("not given")), own[path][1]
-        return value, entry.sigma(value) or START_SPREAD * abs(value)
+        stated = entry.sigma(value)
+        return value, START_SPREAD * abs(value) if stated is None else max(stated, EXACT_SPREAD * abs(value))
 
     def knows_better(self, part: str, estimates: Sequence[FileEstimate]) -> bool:
         """True if an earlier file determines a part of the gear better than this one."""

@@ -123,7 +123,7 @@ def _moved(each: FileEstimate, place: int, again: Fit, found: Fit, prior: PriorO
     is_split = bool(sums) or (not each.why and abs(new.value - each.value) > MAX_SHIFT * each.sigma)
     return replace(
         each, value=new.value,
-        sigma=float(np.hypot(1.0 / np.hypot(1.0 / each.sigma, 1.0 / prior.sigma), each.common)),
+        sigma=float(np.hypot(1.0 / np.hypot(1.0 / max(each.sigma, 1e-300), 1.0 / prior.sigma), each.common)),
         why=sums or each.why or (BY_SET if is_split else ""), in_combination=each.in_combination or is_split,
     )  # fmt: skip
 
@@ -150,11 +150,12 @@ def with_friction_at(known: GearSoFar, speed: Array, estimates: Sequence[FileEst
     ratio = abs(known.gear_set.gear.kinematics.ratio) if side == "output" else 1.0
     torque, sigma = np.array([(each.value, each.sigma) for each in estimates]).T
     at, sum_of, spread = sizes_of(speed) * ratio, torque / ratio, np.maximum(sigma, MIN_RELATIVE_SIGMA * np.abs(torque)) / ratio
-    usable = np.isfinite(spread) & (sum_of > 0.0)
-    both_ways = speed.min() < 0.0 < speed.max()
+    sizes = np.round(np.log(np.abs(speed)), 1)
+    both_ways = np.array([len(np.unique(np.sign(speed[sizes == size]))) == 2 for size in np.unique(sizes)])
+    usable = np.isfinite(spread) & (sum_of > 0.0) & both_ways
     if "friction_input" in known.determined or not isinstance(law, DIVIDED) or law.coulomb <= 0.0:
         return known
-    if not both_ways or not usable.any():
+    if not usable.any():
         return known
     at, sum_of, spread = at[usable], sum_of[usable], spread[usable]
     before = np.array([law.coulomb, law.viscous])
