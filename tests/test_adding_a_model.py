@@ -105,7 +105,7 @@ ELSEWHERE = {
         "identification/experiments/driven_log.py": "the input of a log moves as it was measured",
     },
     "CurrentSource": {
-        "identification/kinds/prepared_log.py": "whatever its motor, a log tells the current along a motion",
+        "identification/kinds/prepared_log.py": "a log contains the current along a motion, whatever the motor",
         "identification/results/drive.py": ALONE,
     },
     "Coulomb": {

@@ -101,8 +101,9 @@ for axes, constant in zip(panels, (0.0755, 0.151), strict=True):
     stated = sw.FileMapping(constants={"torque_constant": constant})
     found = sw.identify("hfuc-20-80", ["robot_log.csv"], mapping=stated)
     print(f"{constant} N.m/A: {len(found.failed)} failed checks")
-    for each in (each for each in found.parameters if "detent" not in each.estimate.path):
-        print(f"  {each.estimate.path:30} {each.estimate.value:.4g} {each.estimate.unit}")
+    rigid = [parameter for parameter in found.parameters if "detent" not in parameter.estimate.path]
+    for parameter in rigid:
+        print(f"  {parameter.estimate.path:30} {parameter.estimate.value:.4g} {parameter.estimate.unit}")
     curves = found.files[0].pictures[0].curves.between(20.0, 30.0)
     axes.plot(curves["time"], curves["current"], linewidth=1.5, alpha=0.5, label="measured")
     axes.plot(curves["time"], curves["modelled"], linewidth=0.8, label="predicted")

@@ -1,4 +1,4 @@
-"""Linear least squares that says what the data separate.
+"""Linear least squares with its rank, its covariance, and the combinations that the data determine.
 
 Each column is scaled to length 1. Its own share is the part of it that no other column makes up. A direction in which the
 coefficients can change without a change of the prediction has a singular value of nearly zero: the coefficients in it are not

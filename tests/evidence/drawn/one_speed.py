@@ -9,7 +9,7 @@ from strainwave.identification.reading.mapping import FileMapping
 
 from tests.evidence.drawn.outcome import Outcome, compared
 
-RATIO = 100.0
+RATIO = 100.0  # of the gear
 
 
 def outcome(seed: int) -> Outcome:

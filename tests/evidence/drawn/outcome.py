@@ -1,4 +1,4 @@
-"""Outcome of one drawn record: right, refused, or wrong in silence."""
+"""Outcome of one drawn record: right, refused, or wrong without a message."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from tests.evidence.drawn.outcome import Outcome, compared
 from tests.evidence.drawn.spring_and_loop import Joint, drawn, identified, run
 
 CONSTANT, LOSS = 0.1, 0.04  # N.m/A; friction under load over the input torque
-FLOOR = 0.02  # relative: the current of a rigid gear lacks what the spring makes of the motion
+MAX_RELATIVE_BIAS = 0.02  # relative: the current of a rigid gear lacks what the spring makes of the motion
 WRONG = ("", "wrong inertia", "drifted constant", "")
 
 
@@ -37,7 +37,7 @@ def outcome(seed: int) -> Outcome:
     failed = "; ".join(f"{check.name}: {check.message}" for check in found.failed)
     if wrong:
         return Outcome("right", failed) if failed else Outcome("wrong", f"{wrong}, and no check fails")
-    return Outcome("refused", failed) if failed else compared(_pairs(found, joint), FLOOR)
+    return Outcome("refused", failed) if failed else compared(_pairs(found, joint), MAX_RELATIVE_BIAS)
 
 
 def _pairs(found: Identified, joint: Joint) -> Iterator[tuple[str, float, float, float]]:

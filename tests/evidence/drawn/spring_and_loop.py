@@ -23,7 +23,7 @@ from tests.evidence.drawn.outcome import Outcome, compared
 Array = NDArray[np.float64]
 
 STEP, EVERY = 1e-4, 20  # s of the integration; steps a sample
-FLOOR = 0.01  # relative: the motor's encoder, which is smoothed and noisy, moves the simulated input
+MAX_RELATIVE_BIAS = 0.01  # relative: the motor's encoder, which is smoothed and noisy, moves the simulated input
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def judged(found: Identified, joint: Joint) -> Outcome:
     named = [f"{check.name}: {check.message}" for check in found.failed]
     if named or not pairs:
         return Outcome("refused", "; ".join(named) or "nothing of the spring is identified")
-    return compared(pairs, FLOOR)
+    return compared(pairs, MAX_RELATIVE_BIAS)
 
 
 def _pairs(found: Identified, joint: Joint) -> Iterator[tuple[str, float, float, float]]:

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 RATIOS = (30, 50, 51, 80, 100, 101, 120, 160)
 MOTIONS = ("one speed", "there and back", "sine", "ramp", "steps")
 MAX_SAMPLES = 30_000
-OVERSAMPLING = 8  # of the vibration, whose input is a straight line between two samples
+STEPS_PER_SAMPLE = 8  # of the vibration, whose input is a straight line between two samples
 
 
 def speed_of(motion: str, time: Array, top: float, random: np.random.Generator) -> Array:
@@ -55,7 +55,7 @@ def outcome(seed: int) -> Outcome:
     turns *= random.uniform(0.3, 1.0) if random.random() < 0.2 else 1.0
     length = turns * ratio * tau / top
     count = int(np.clip(turns * ratio * random.uniform(20.0, 100.0), 500, MAX_SAMPLES))
-    time = np.linspace(-0.1 * length, length, OVERSAMPLING * count)
+    time = np.linspace(-0.1 * length, length, STEPS_PER_SAMPLE * count)
     speed = speed_of(motion, time - time[0], top, random)
     theta = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
     amplitudes = {2.0: random.uniform(3e-5, 3e-4), 4.0: random.uniform(1e-5, 8e-5)}
@@ -70,7 +70,7 @@ def outcome(seed: int) -> Outcome:
         if motion in ("sine", "there and back")
         else output
     )
-    kept = (time >= 0.0) & (np.arange(len(time)) % OVERSAMPLING == 0)
+    kept = (time >= 0.0) & (np.arange(len(time)) % STEPS_PER_SAMPLE == 0)
     time, theta, output = time[kept], theta[kept], output[kept]
     if random.random() < 0.3:
         counts = tau / 2.0 ** random.integers(12, 18), tau / 2.0 ** random.integers(18, 24)

@@ -11,7 +11,7 @@ from tests.evidence.drawn.joint import several_speeds, torque_of_input
 from tests.evidence.drawn.outcome import Outcome, compared
 
 STARTS = ("csg-14-100", "csg-17-100", "csg-20-100", "csg-25-100", "csg-32-100")
-RATIO = 100.0
+RATIO = 100.0  # of the gear
 MAX_ERROR_RATIO = 1.1  # between the errors on data held out from two start sets
 
 
@@ -33,7 +33,11 @@ def outcome(seed: int) -> Outcome:
         torque = carried
     torque = torque + float(random.uniform(0.01, 0.1)) * level * random.standard_normal(len(torque))
     name = "input_torque" if place != "behind the gear" else "joint_torque"
-    columns = {"time": motion.time, "output_angle": motion.angle, name: torque * (RATIO if name == "joint_torque" else 1.0)}
+    columns = {
+        "time": motion.time,
+        "output_angle": motion.angle,
+        name: torque * (RATIO if name == "joint_torque" else 1.0),
+    }
     recording = Recording(columns, {"time": "s", "output_angle": "rad", name: "N.m"})
     constants = {"motor_inertia": of_motor} if place == "at the motor" else {}
     results = [

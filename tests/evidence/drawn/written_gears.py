@@ -19,8 +19,8 @@ from tests.evidence.drawn.outcome import Outcome
 
 Array = NDArray[np.float64]
 START = "csg-20-100"
-RATE = 200.0  # Hz
-DURATION = 12.0  # s
+SAMPLE_RATE = 200.0  # Hz
+RECORD_DURATION = 12.0  # s
 MAX_DIFFERENCE = 1e-3  # relative, of the error of predict from the one stated
 MAX_FRICTION_ERROR = 0.05  # relative, at the usual speed
 MIN_NUMBER = 1e-9  # a smaller number that is not 0 is a limit or rounding
@@ -29,14 +29,14 @@ MIN_NUMBER = 1e-9  # a smaller number that is not 0 is a limit or rounding
 def record(seed: int) -> tuple[sw.Recording, float, float]:
     """Return a log, its usual speed [rad/s], and the friction there [N.m], both of the input."""
     random = np.random.default_rng(seed)
-    time = np.arange(0.0, DURATION, 1.0 / RATE)
+    time = np.arange(0.0, RECORD_DURATION, 1.0 / SAMPLE_RATE)
     speed = float(random.uniform(5.0, 80.0))
     if random.random() < 0.5:  # to and fro at one speed
         period = float(random.uniform(2.0, 5.0))
         rate = speed * np.tanh(40.0 * np.sin(2.0 * np.pi * time / period + 0.3))
     else:
         rate = sum(speed * np.sin(2.0 * np.pi * f * time + random.uniform(0.0, 6.0)) for f in random.uniform(0.1, 0.8, 3))
-    angle = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) / RATE)])
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) / SAMPLE_RATE)])
     coulomb, viscous = float(random.uniform(0.03, 0.1)), float(random.uniform(1e-4, 8e-4))
     torque = coulomb * np.tanh(rate / 0.3) + viscous * rate + 2e-5 * np.gradient(rate, time)
     torque += random.choice([0.0, 0.1]) * np.sin(angle / 100.0) + random.choice([0.0, 1e-4]) * np.gradient(rate, time)

@@ -158,7 +158,7 @@ def test_each_file_may_have_a_ratio_of_its_own(tmp_path: Path) -> None:
 
 @pytest.mark.slow("identification")
 def test_an_effort_without_a_unit_that_may_be_a_current_is_asked_about(tmp_path: Path) -> None:
-    """Of a friction of the usual size it is a torque. Of a tenth of that it may be the current of a motor of 0.1 N·m/A."""
+    """An effort is a torque if its friction has the usual size, and may be a current of a 0.1 N·m/A motor at a tenth of it."""
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("joint_position", "joint_velocity", "joint_effort"))
     assert not identify("csg-20-100", [path]).failed
     time, angle, speed, effort = np.loadtxt(path, delimiter=",", skiprows=1).T

@@ -30,7 +30,7 @@ def slow(ratio: float, *, swing: float = 40.0, play: float = 0.0, noise: float =
     return {"time": time, "input_angle": theta, "output_angle": theta / ratio - error - 0.5 * play * sense + scatter}
 
 
-def told(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: Any) -> sw.TransmissionError:
+def error_of(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: Any) -> sw.TransmissionError:
     return sw.transmission_error(sw.Recording(columns, units), **options)
 
 
@@ -54,7 +54,7 @@ def test_orders_are_those_put_in_whatever_the_zeros_and_senses(ratio: float, zer
     columns = slow(ratio)
     columns["input_angle"] = columns["input_angle"] + zero
     columns["output_angle"] = (-1.0 if back else 1.0) * columns["output_angle"] + at
-    found = told(columns)
+    found = error_of(columns)
     assert found.ratio.used == (-ratio if back else ratio)
     assert {each.order for each in found.orders if each.significant} == {2.0, 4.0}
     for which, amplitude, phase in ((2.0, 2e-4, 0.4), (4.0, 5e-5, -1.0)):
@@ -68,21 +68,21 @@ def test_orders_are_those_put_in_whatever_the_zeros_and_senses(ratio: float, zer
 
 
 def test_degrees_and_wraps_change_nothing() -> None:
-    plain = told(slow(-100.0))
+    plain = error_of(slow(-100.0))
     columns = slow(-100.0)
     wrapped = {
         "time": columns["time"],
         "input_angle": np.degrees(columns["input_angle"]) % 360.0,
         "output_angle": np.degrees(columns["output_angle"]),
     }
-    found = told(wrapped, {"time": "s", "input_angle": "deg", "output_angle": "deg"})
+    found = error_of(wrapped, {"time": "s", "input_angle": "deg", "output_angle": "deg"})
     assert found.ratio.used == plain.ratio.used
     for one, other in zip(found.orders, plain.orders, strict=True):
         assert one.amplitude == pytest.approx(other.amplitude, abs=1e-9)
 
 
 def test_lost_motion_is_the_difference_between_forward_and_backward() -> None:
-    found = told(slow(-80.0, play=3e-4))
+    found = error_of(slow(-80.0, play=3e-4))
     assert found.lost_motion is not None
     assert abs(found.lost_motion.value - 3e-4) < 4.0 * found.lost_motion.sigma
     assert found.lost_motion.sigma < 3e-5
@@ -114,7 +114,7 @@ def test_noise_alone_makes_an_order_significant_no_more_often_than_allowed() -> 
         time = np.arange(0.0, 8.0, 0.004)
         theta = 60.0 * np.sin(0.9 * time)
         coloured = np.convolve(rng.normal(0.0, 1e-5, len(time) + 30), np.exp(-np.arange(31) / 8.0), "valid")
-        found = told({"time": time, "input_angle": theta, "output_angle": theta / 100.0 + coloured}, false_alarm=0.05)
+        found = error_of({"time": time, "input_angle": theta, "output_angle": theta / 100.0 + coloured}, false_alarm=0.05)
         seen += any(each.significant for each in found.orders)
     assert seen <= 5  # of 24 at 5 %: more would happen in half a per cent of all trials
 
@@ -122,17 +122,17 @@ def test_noise_alone_makes_an_order_significant_no_more_often_than_allowed() -> 
 def test_what_cannot_be_is_refused() -> None:
     columns = slow(-80.0)
     with pytest.raises(ValueError, match="ratio = 100 is not that of the angles"):
-        told(columns, ratio=100.0)
+        error_of(columns, ratio=100.0)
     with pytest.raises(ValueError, match="do not move together"):
-        told({**columns, "output_angle": np.random.default_rng(0).normal(size=len(columns["time"]))})
+        error_of({**columns, "output_angle": np.random.default_rng(0).normal(size=len(columns["time"]))})
     with pytest.raises(ValueError, match="the two seem to be swapped"):
-        told({**columns, "input_angle": columns["output_angle"], "output_angle": columns["input_angle"]})
+        error_of({**columns, "input_angle": columns["output_angle"], "output_angle": columns["input_angle"]})
     with pytest.raises(ValueError, match="does not change"):
-        told({**columns, "output_angle": np.zeros(len(columns["time"]))})
+        error_of({**columns, "output_angle": np.zeros(len(columns["time"]))})
 
 
 def test_a_given_ratio_of_the_other_sign_says_that_an_encoder_counts_the_other_way_round() -> None:
-    found = told(slow(-80.0), ratio=80.0)
+    found = error_of(slow(-80.0), ratio=80.0)
     assert found.ratio.used == -80.0
     assert any("counts the other way round" in each for each in found.remarks)
 
@@ -142,7 +142,7 @@ def test_of_a_long_record_the_beginning_is_used_and_that_is_said() -> None:
     time = np.arange(0.0, 400.0, 0.001)
     theta = 60.0 * np.sin(0.9 * time)
     scatter = np.random.default_rng(0).normal(0.0, 1e-5, len(time))
-    found = told({"time": time, "input_angle": theta, "output_angle": theta / 50.0 - 1e-4 * np.sin(2 * theta) + scatter})
+    found = error_of({"time": time, "input_angle": theta, "output_angle": theta / 50.0 - 1e-4 * np.sin(2 * theta) + scatter})
     assert any("samples are used" in each for each in found.remarks)
     assert abs(order(found, 2.0).amplitude - 1e-4) < 4.0 * order(found, 2.0).amplitude_sigma
 
@@ -151,18 +151,18 @@ REDUCER = 1798.0 / 7.0  # of a robot's first axis, an RV gear
 
 
 def test_a_ratio_that_is_not_whole_is_obeyed_to_its_digits() -> None:
-    found = told(slow(REDUCER, swing=100.0, noise=1e-6), ratio=REDUCER)
+    found = error_of(slow(REDUCER, swing=100.0, noise=1e-6), ratio=REDUCER)
     assert found.ratio.used == REDUCER
     assert not found.ratio.whole
     assert not any("teeth" in each or "257" in each for each in found.remarks)
-    blind = told(slow(REDUCER, swing=100.0, noise=1e-6))
+    blind = error_of(slow(REDUCER, swing=100.0, noise=1e-6))
     assert abs(blind.ratio.value - REDUCER) < 3.0 * blind.ratio.sigma
     assert not any("teeth" in each for each in blind.remarks)
 
 
 def test_a_ratio_that_the_angles_contradict_is_shown_beside_theirs() -> None:
     columns = slow(-100.0, swing=400.0, noise=1e-6)
-    found = told(columns, ratio=100.5)
+    found = error_of(columns, ratio=100.5)
     assert found.ratio.used == -100.5
     assert found.ratio.sigma < 0.15
     remark = next(each for each in found.remarks if "is used as given" in each)
@@ -175,12 +175,12 @@ def test_a_motor_angle_already_divided_by_the_ratio_is_recognised() -> None:
     """As robot controllers export them: both angles in joint units."""
     columns = slow(REDUCER, swing=100.0, noise=1e-7)
     exported = {**columns, "input_angle": columns["input_angle"] / REDUCER}
-    given = told(exported, ratio=REDUCER)
+    given = error_of(exported, ratio=REDUCER)
     assert (given.ratio.used, given.ratio.in_joint_units) == (REDUCER, True)
     assert any("both are counted in joint units" in each for each in given.remarks)
     assert {each.order for each in given.orders if each.significant and each.shaft == "input"} == {2.0, 4.0}
     assert order(given, 2.0).amplitude == pytest.approx(2e-4, rel=0.02)
-    blind = told(exported, ratio_option="--constant ratio=…")
+    blind = error_of(exported, ratio_option="--constant ratio=…")
     assert blind.ratio.in_joint_units
     assert blind.orders == ()
     assert any("joint units" in each and "--constant ratio=…" in each for each in blind.remarks)
@@ -188,7 +188,7 @@ def test_a_motor_angle_already_divided_by_the_ratio_is_recognised() -> None:
 
 @pytest.mark.parametrize("option", ["--ratio", "--constant ratio=…"])
 def test_advice_names_the_option_of_the_command(option: str) -> None:
-    found = told(slow(-80.0, swing=2.5), ratio_option=option)
+    found = error_of(slow(-80.0, swing=2.5), ratio_option=option)
     assert any(f"with {option}" in each for each in found.remarks)
 
 
@@ -202,7 +202,7 @@ def test_an_order_needs_three_periods_and_a_whole_turn(turns: float, orders: set
     theta = swing * np.sin(0.4 * time)
     noise = np.random.default_rng(0).normal(0.0, 1e-6, len(time))
     columns |= {"input_angle": theta, "output_angle": theta / -80.0 - 2e-4 * np.sin(2 * theta) + noise}
-    found = told(columns, ratio=80.0)
+    found = error_of(columns, ratio=80.0)
     reported = {each.order for each in found.orders if each.shaft == "input"}
     assert reported >= orders
     assert bool(reported) == bool(orders)
@@ -226,7 +226,7 @@ def bench(seed: int) -> tuple[dict[str, Any], float]:
 def test_at_one_speed_the_measured_amplitude_stands(seed: int) -> None:
     """One speed does not determine how the output vibrates: a natural frequency fitted to it made 491 of 121 µrad."""
     columns, amplitude = bench(seed)
-    result = told(columns)
+    result = error_of(columns)
     assert result.natural_frequency is None
     assert abs(order(result, 2.0).amplitude - amplitude) < 3.0 * order(result, 2.0).amplitude_sigma
     assert order(result, 2.0).amplitude_sigma < 2e-7

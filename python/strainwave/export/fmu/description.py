@@ -123,7 +123,7 @@ def _interface(about: Description, version: int) -> Element:
     abilities = names[version] if about.states else ("canHandleVariableCommunicationStepSize", *names[version])
     chosen = [each for each in abilities if not (about.states and each == "canInterpolateInputs")]
     if about.states:
-        # FMI 2 calls completedIntegratorStep unless told otherwise; FMI 3 only where it is asked for, and memory is kept there.
+        # Hysteresis is committed in completedIntegratorStep. FMI 2 calls it by default, FMI 3 on request.
         chosen += ["providesDirectionalDerivative"] if version == 2 else ["providesDirectionalDerivatives", NEEDS_STEPS]
     kind = "ModelExchange" if about.states else "CoSimulation"
     found = Element(kind, {"modelIdentifier": about.identifier} | dict.fromkeys(chosen, "true"))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic_starts import UNREACHED, ElasticStart, elastic_starts
+from strainwave.identification.candidates.elastic_starts import UNREACHED_TORQUE, ElasticStart, elastic_starts
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.candidates.torsion.candidate import merged
 from strainwave.identification.candidates.torsion.dissipation import maxwell
@@ -284,7 +284,7 @@ def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:
     if isinstance(spring, stiffness.ThreeSegment) and spring.t2 < reach:
         first = abs(spring.k2 - spring.k1) > abs(spring.k3 - spring.k2)  # the larger bend stays
         t1, k2 = (spring.t1, spring.k2) if first else (spring.t2, spring.k3)
-        two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED)
+        two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED_TORQUE)
         yield drive.replace(gear=gear.replace(stiffness=two))
     if not isinstance(spring, stiffness.Linear):
         yield drive.replace(gear=gear.replace(stiffness=stiffness.Linear(k=float(spring.tangent(0.0)))))

@@ -32,7 +32,7 @@ MAX_ELEMENTS = 2
 SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
 MAX_ROWS = 3000  # of the regression
 MIN_START_DAMPING = 1e-3  # of critical damping: from where a fit can start
-UNREACHED = 1e6  # N.m: a knee there does nothing
+UNREACHED_TORQUE = 1e6  # N.m: a knee there does nothing
 MIN_TORQUE_SHARE = 2e-3  # of the largest torque: an element that carries less is none
 
 
@@ -120,7 +120,7 @@ def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array],
     def put_as_three(gear: Gear, weights: Array) -> Gear:
         spring: Any = put(gear, weights).stiffness
         k2 = spring.k1 + spring.k2
-        bent = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=spring.k1 * spring.knee, t2=UNREACHED)
+        bent = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=spring.k1 * spring.knee, t2=UNREACHED_TORQUE)
         return gear.replace(stiffness=bent)
 
     return put_as_three

@@ -1,4 +1,4 @@
-"""Where the torque of a log was measured, by the sizes of inertia and friction, and friction at one speed."""
+"""Place at which the torque of a log was measured, by the sizes of inertia and friction; friction at one speed."""
 
 from __future__ import annotations
 
