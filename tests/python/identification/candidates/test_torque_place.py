@@ -8,7 +8,7 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.candidates.plain import gravity_sigma, one_speed
+from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, one_speed
 from strainwave.identification.candidates.torque_place import NO_ROTOR, torque_place
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.reading.mapping import FileMapping
@@ -102,6 +102,17 @@ def test_gravity_of_a_one_way_run_is_as_uncertain_as_slow_drift_makes_it() -> No
     assert "load.gravity_torque" not in known
     log = MotionLog.of(record("input_torque", 1e-4), drive())
     assert gravity_sigma(log, drive()) < 0.1  # N.m: to and fro over a part of a turn determines it
+
+
+def test_gravity_is_as_uncertain_as_a_drift_that_resembles_it() -> None:
+    """A torque without gravity that drifts over a motion one way: fits find gravity, and it must be no more than chance."""
+    time = np.arange(0.0, 20.0, 0.005)
+    angle, speed = 0.06 * time + 0.01 * np.sin(2.0 * time), 0.06 + 0.02 * np.cos(2.0 * time)
+    torque = 0.05 + 0.04 * speed + 0.002 * np.sqrt(time / 20.0) + 1e-3 * np.random.default_rng(2).standard_normal(len(time))
+    columns = {"time": time, "output_angle": angle, "input_torque": -torque}
+    log = MotionLog.of(sw.Recording(columns, {"time": "s", "output_angle": "rad", "input_torque": "N.m"}), drive())
+    assert fit_plain(log, drive()).gravity > 0.1
+    assert fit_plain(log, drive()).gravity < 2.0 * gravity_sigma(log, drive())
 
 
 @pytest.mark.slow("identification")

@@ -10,8 +10,9 @@ from hypothesis import strategies as some
 from strainwave.identification.fitting.fit import fit
 from strainwave.identification.fitting.unknowns import Unknown
 from strainwave.identification.results.determined import friction_at, sizes_of
+from strainwave.identification.results.file_result import FileEstimate
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.undetermined import with_friction_at
+from strainwave.identification.results.undetermined import with_friction_at, with_set_before
 from strainwave.parameters import every
 
 from tests.evidence.drawn.written_gears import outcome
@@ -95,3 +96,23 @@ def test_a_log_at_one_speed_keeps_the_sum_and_the_division_of_the_set() -> None:
         (estimate,) = (each for each in found.files[0].estimates if each.path == f"gear.friction_input.{number}")
         assert abs(estimate.value - truth) < 2.5 * estimate.sigma
         assert estimate.value == getattr(law, number)
+
+
+def test_a_number_that_is_not_identified_is_that_of_the_set_and_the_sum_stays() -> None:
+    """Speeds within 2 % do not divide friction: the set does, and friction at these speeds stays as measured."""
+    speed = np.linspace(9.9, 10.1, 40)
+    torque = 1.5 * LAW.steady(speed) + 2e-3 * np.random.default_rng(0).normal(size=40)
+    table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    gear = START.gear.replace(
+        friction_input=sw.friction.Coulomb(coulomb=LAW.coulomb, breakaway=LAW.coulomb, viscous=LAW.viscous)
+    )
+    paths = ["friction_input.coulomb", "friction_input.viscous"]
+    free = fit(gear, table, paths)
+    judged = [
+        FileEstimate(f"gear.{each.path}", each.unit, each.value, each.sigma, "", why="not separable") for each in free.estimates
+    ]
+    again, estimates = with_set_before(free, judged, GearSoFar(START), "gear.")
+    before, after = (one.gear.friction_input for one in (free, again))
+    assert after.steady(10.0) == pytest.approx(1.5 * LAW.steady(10.0), rel=2e-2)
+    assert abs(after.viscous / LAW.viscous - 1.0) < 1.0 < abs(before.viscous / LAW.viscous - 1.0)
+    assert [each.value for each in estimates] == [after.coulomb, after.viscous]
