@@ -51,20 +51,6 @@ def test_a_record_without_waves_or_of_little_motion_has_none() -> None:
     assert with_ripple(model(log(0.25, 0.02, size=0.05))) is None  # less than a turn of the input
 
 
-def test_waves_that_one_direction_hardly_separates_are_one() -> None:
-    """Little of the motion goes back: a detent and friction over the angle are then one wave."""
-    time = np.arange(0.0, 40.0, 0.01)
-    angle, speed = 0.12 * time + 0.1035 * np.sin(1.2 * time), 0.12 + 0.1242 * np.cos(1.2 * time)
-    theta = RATIO * angle
-    torque = COULOMB * np.sign(speed) + 0.02 * np.sin(2.0 * theta) + 0.01 * np.sign(speed) * np.sin(2.0 * theta + 0.1)
-    torque += 1e-4 * np.random.default_rng(1).normal(size=len(time))
-    columns = {"time": time, "input_angle": theta, "input_torque": torque}
-    one_way = MotionLog.of(sw.Recording(columns, {"time": "s", "input_angle": "rad", "input_torque": "N.m"}), DRIVE)
-    found = with_ripple(model(one_way))
-    assert found is not None
-    assert len([wave for wave in waves_of(found.log) if wave.order == 2.0]) == 1
-
-
 def test_the_gear_has_the_torque_of_the_terms() -> None:
     found = with_ripple(model(log(0.25, 0.02)))
     assert found is not None
