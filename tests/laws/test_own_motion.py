@@ -13,7 +13,7 @@ from strainwave.hysteresis import FrictionalWindup, Preisach, Regimes
 from strainwave.kinematic_error import Stochastic
 from strainwave.simulation.state import StateLayout
 
-from tests.structure.test_staged import STRUCTURE
+from tests.structure.staged_gear import STRUCTURE
 
 ROTOR, LOAD, RATIO = 1e-4, 0.05, 80.0
 SOFT = sw.stiffness.Linear(k=1e-3)  # N.m/rad, nothing beside a hysteresis
