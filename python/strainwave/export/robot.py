@@ -21,6 +21,8 @@ MAX_MODEL_BYTES = 64 << 20  # of a robot's file
 POSITIONS = {"hinge": 1, "slide": 1, "ball": 4, "free": 7}  # numbers of a joint in qpos
 SPEEDS = {"hinge": 1, "slide": 1, "ball": 3, "free": 6}  # in qvel
 # What a joint or actuator of a gear must not have of a class of the robot, and the value that turns it off.
+# In one default class the actuators of all kinds have the same attributes, whichever element states them.
+ACTUATORS = {"general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion", "dcmotor"}
 NEUTRAL = {
     "limited": "false", "actuatorfrclimited": "false", "damping": "0", "stiffness": "0", "frictionloss": "0", "armature": "0",
     "springref": "0", "ref": "0", "ctrllimited": "false", "forcelimited": "false", "actlimited": "false",
@@ -87,8 +89,9 @@ class Robot:
             name, body = body.get("childclass"), self.parents.get(body)
         found: dict[str, str] = {}
         for default in self._classes(name):
-            for each in default.findall(element.tag):
-                found |= each.attrib
+            for stated in default:
+                if stated.tag == element.tag or {stated.tag, element.tag} <= ACTUATORS:
+                    found |= stated.attrib
         return found
 
     def _classes(self, name: str | None) -> list[Element]:
@@ -176,6 +179,8 @@ class Robot:
                 key.set(name, " ".join(values))
             if key.get("ctrl"):
                 key.set("ctrl", " ".join([key.attrib["ctrl"], *["0"] * controls]))
+            if key.get("act"):
+                yield f"act of the keyframe {key.get('name', '')} lacks the states of the gear's motor: add them by hand"
 
 
 def kept(names: str | None) -> tuple[str, ...]:

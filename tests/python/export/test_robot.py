@@ -83,3 +83,12 @@ def test_the_output_turns_as_far_as_the_motor_drives_it():
     mujoco.mj_step(model, data, nstep=1000)
     assert abs(data.joint("gear_input").qpos[0]) > 10.0
     assert data.joint("hip").qpos[0] == pytest.approx(data.joint("gear_input").qpos[0] / RATIO, abs=1e-3)
+
+
+def test_a_motor_is_not_limited_by_the_class_of_another_actuator():
+    """MuJoCo gives the attributes of `position` in a default class to every actuator."""
+    robot = ROBOT.replace('<motor ctrlrange="-1 1"/>', '<position ctrlrange="-1 1" forcerange="-2 2"/>')
+    model = mujoco.MjModel.from_xml_string(mjcf("csg-20-100", into=robot, joint="knee").files["gear.xml"])
+    motor = model.actuator("gear_motor").id
+    assert not model.actuator_ctrllimited[motor]
+    assert not model.actuator_forcelimited[motor]

@@ -44,7 +44,7 @@ from strainwave.identification.candidates.plain import (
     one_speed,
     stretches,
 )
-from strainwave.identification.candidates.ripple import FastDetent, settled, with_ripple
+from strainwave.identification.candidates.ripple import FastDetent, is_passive, settled, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -274,13 +274,13 @@ PARTS: tuple[Part, ...] = (with_delay, with_curved_viscous_part, with_another_fr
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:
-    """True unless a part was fitted that the motion does not show: a delay longer than a clock makes it, or a change of the
-    friction at speeds beyond the fastest motion."""
+    """True unless a part was fitted that cannot be: a delay longer than a clock makes it, a change of friction at speeds beyond
+    the fastest motion, or friction that drives the motion at some angle."""
     log, law = candidate.log, candidate.model.law
     delay = next((each.start for each in log.nuisances if each.name == "delay"), 0.0)
     falls = f"{INPUT}stribeck_speed" in candidate.model.free
     sensible = not falls or (law.stribeck_speed < float(np.abs(log.motion.speed).max()))
-    return bool(abs(delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible)
+    return bool(abs(delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible and is_passive(log, law.coulomb))
 
 
 # ---- Parts of the prediction alone -----------------------------------------------------------------------------------------

@@ -227,12 +227,10 @@ def sliding_detents(model: MotionModel) -> Sequence[float]:
 
 
 def settled(model: MotionModel) -> MotionModel:
-    """Return the model with the waves of its log in the gear; the same if it has none, or friction would become negative."""
+    """Return the model with the waves of its log in the gear; the same if it has none."""
     values = {each.name: each.start for each in model.log.nuisances}
-    waves = list(waves_of(model.log))
-    law = model.law
-    sizes = {wave: complex(*(values[name] for name in wave.names)) for wave in waves}
-    if not waves or sum(abs(size) for wave, size in sizes.items() if wave.kind == "friction") > MAX_DEPTH * law.coulomb:
+    sizes, law = sizes_of_waves(model.log), model.law
+    if not sizes:
         return model
     lists, free = dict[str, list[float]](), list[str]()
     for kind, names, unit in (
@@ -251,6 +249,17 @@ def settled(model: MotionModel) -> MotionModel:
         free=(*map(_within, model.free), *free),
         ties={_within(path): _within(other) for path, other in model.ties.items()},
     )
+
+
+def sizes_of_waves(log: MotionLog) -> dict[Wave, complex]:
+    """Return the size of sine and cosine of each wave of a log [N.m]."""
+    values = {each.name: each.start for each in log.nuisances}
+    return {wave: complex(*(values[name] for name in wave.names)) for wave in waves_of(log)}
+
+
+def is_passive(log: MotionLog, coulomb: float) -> bool:
+    """True if friction opposes the motion at every angle, with the waves of a log about a dry level [N.m]."""
+    return sum(abs(size) for wave, size in sizes_of_waves(log).items() if wave.kind == "friction") <= MAX_DEPTH * coulomb
 
 
 def _within(path: str) -> str:

@@ -218,7 +218,7 @@ def _with_priors(best: MotionCandidate, priors: Mapping[str, PriorOfSet]) -> Mot
 def _with_friction(
     known: GearSoFar, best: MotionCandidate, estimates: list[FileEstimate], name: str
 ) -> tuple[GearSoFar, list[FileEstimate]]:
-    """Return the set with the friction of a log, whole, unless an earlier file determines friction no worse; and estimates.
+    """Return the set with the friction of a log, whole, unless an earlier file determines it; and the estimates.
 
     A loss under load belongs to the friction without load that it was fitted with. If an earlier file determines that, the
     loss is fitted with the friction of that file as its prior.
@@ -323,13 +323,13 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
         if best.model.one_speed and path == COULOMB:
-            for each in _at_one_speed(found, best):
+            for each in _at_one_speed(found, best, taken.relative):
                 yield each.in_current() if in_current else each
             continue
         yield found.in_current() if in_current else found
 
 
-def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate) -> Iterator[FileEstimate]:
+def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate, relative: float) -> Iterator[FileEstimate]:
     """Yield the friction at the one speed of a record, and how the start set splits it into Coulomb and viscous friction."""
     speed, viscous = best.model.one_speed, float(best.model.law.viscous)
     at_speed = friction_at(speed, coulomb.value + speed * viscous, coulomb.sigma)
@@ -344,4 +344,5 @@ def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate) -> Iterator[File
     )
     yield at_speed if not coulomb.why else replace(at_speed, why=coulomb.why)
     yield own
-    yield FileEstimate(VISCOUS, "N.m.s/rad", viscous, spread, "", own.why, in_combination=together)
+    split = FileEstimate(VISCOUS, "N.m.s/rad", viscous, spread, "", own.why, in_combination=together)
+    yield split.resting_on(relative)

@@ -340,10 +340,12 @@ def _place(estimate: FileEstimate, fit: Fit) -> int | None:
 
 
 def _saved(drive: Drive, whole: GearSet) -> Drive:
-    """Return the drive of a log with the gear, the load and the inertia of the motor that are saved."""
+    """Return the drive of a log as saved; without inertias that its torque does not contain, as `predict` has it."""
     motor_there: Any = drive.motor
-    inertia = float(getattr(whole.motor, "inertia", motor_there.inertia))
-    return drive.replace(gear=whole.gear, load=whole.load, motor=motor_there.replace(inertia=inertia))
+    gear = whole.gear.replace(input_inertia=drive.gear.input_inertia)
+    is_of_motor = gear.input_inertia == whole.gear.input_inertia
+    inertia = float(getattr(whole.motor, "inertia", motor_there.inertia)) if is_of_motor else motor_there.inertia
+    return drive.replace(gear=gear, load=whole.load, motor=motor_there.replace(inertia=inertia))
 
 
 def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | None) -> Iterator[Validation]:
@@ -361,7 +363,8 @@ def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | 
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):
             unknown = dict(zip([part.name for part in log.nuisances], nuisances_of(each.fit).tolist(), strict=True))
             rows = moving(log)
-            saved = _saved(drive, whole) if each is best else drive.replace(gear=whole.gear)
+            saved = _saved(drive, whole)
+            saved = saved if each is best else saved.replace(load=drive.load, motor=drive.motor)
             left = log.residual(saved, nuisances_of(each.fit))[rows]
             error, varies = float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[rows]))
             zero, delay = unknown.get(f"{log.effort}_zero", 0.0), unknown.get("delay", 0.0)
