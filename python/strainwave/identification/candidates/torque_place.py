@@ -13,6 +13,7 @@ import numpy as np
 
 from strainwave import Drive
 from strainwave.identification.candidates.plain import Plain, fit_plain, inertia_with_sigma, moving
+from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 
 SIGNIFICANCE_SIGMA = 3.0  # standard deviations, by which the rotor must have more inertia than all that turns
@@ -55,8 +56,10 @@ def torque_place(log: MotionLog, drive: Drive) -> TorquePlace:
         share = _friction_share(fit_plain(log, drive), log, drive)
         if share < MIN_FRICTION_SHARE or total < ROTOR_MARGIN * rotor:
             why = "it contains no friction of the gear" if share < MIN_FRICTION_SHARE else sizes
+            behind = _with_rotor(drive, NO_ROTOR, 0.0)
             return TorquePlace(
-                _with_rotor(drive, NO_ROTOR, 0.0), 0.0 if total < rotor else rotor, share >= MIN_FRICTION_SHARE,
+                behind if share >= MIN_FRICTION_SHARE else _frictionless(behind),
+                0.0 if total < rotor else rotor, share >= MIN_FRICTION_SHARE,
                 f"{log.effort} was measured behind the rotor: {why}; the load's inertia is all that it contains",
             )  # fmt: skip
         return TorquePlace(drive, rotor if share < MIN_FRICTION_OF_INPUT else 0.0)
@@ -79,6 +82,11 @@ def _with_rotor(drive: Drive, motor: float, gear: float) -> Drive:
     return drive.replace(
         motor=drive.motor.replace(inertia=max(motor, MIN_INERTIA)), gear=drive.gear.replace(input_inertia=gear)
     )
+
+
+def _frictionless(drive: Drive) -> Drive:
+    """Return the drive without friction at input and mesh, which a torque behind the gear does not contain."""
+    return drive.replace(gear=drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS))
 
 
 def _friction_share(plain: Plain, log: MotionLog, drive: Drive) -> float:

@@ -18,6 +18,7 @@ from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validati
 from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import moving
+from strainwave.identification.candidates.torque_place import MIN_FRICTION_SHARE
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
@@ -343,9 +344,17 @@ def _saved(drive: Drive, whole: GearSet) -> Drive:
     """Return the drive of a log as saved; without inertias that its torque does not contain, as `predict` has it."""
     motor_there: Any = drive.motor
     gear = whole.gear.replace(input_inertia=drive.gear.input_inertia)
+    if not _has_friction(drive, whole):
+        gear = gear.replace(friction_input=drive.gear.friction_input, friction_mesh=drive.gear.friction_mesh)
     is_of_motor = gear.input_inertia == whole.gear.input_inertia
     inertia = float(getattr(whole.motor, "inertia", motor_there.inertia)) if is_of_motor else motor_there.inertia
     return drive.replace(gear=gear, load=whole.load, motor=motor_there.replace(inertia=inertia))
+
+
+def _has_friction(drive: Drive, whole: GearSet) -> bool:
+    """True if the torque of a log contains friction of the gear: behind the gear there is none."""
+    fitted, saved = (float(law.steady(1.0)) for law in (drive.gear.friction_input, whole.gear.friction_input))
+    return fitted > MIN_FRICTION_SHARE * saved
 
 
 def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | None) -> Iterator[Validation]:
