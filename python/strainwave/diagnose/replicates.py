@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from strainwave.diagnose.motion import MAX_SAMPLES
 from strainwave.diagnose.refusals import JointRecording
 from strainwave.orders.ripple import Ripple
-from strainwave.orders.smooth_part import Moving, floor_without, least_squares, shaft_of
+from strainwave.orders.smooth_part import Moving, floor_without, shaft_of
 from strainwave.statistics.floor import Floor
 from strainwave.statistics.linear_fit import normal_inverse, solved
 
@@ -107,7 +107,7 @@ def _without_gravity(shaft: Moving) -> Moving:
     kept = [column for column in shaft.basis.T if not any(np.array_equal(column, wave) for wave in waves)]
     basis = np.stack(kept, axis=1)
     whole = shaft.series + shaft.smooth
-    found = least_squares(basis * shaft.weight[:, None], whole * shaft.weight)
+    found = solved(basis * shaft.weight[:, None], whole * shaft.weight)
     smooth = basis @ found
     return replace(shaft, series=whole - smooth, smooth=smooth, basis=basis)
 
@@ -178,7 +178,7 @@ def _without_smooth(shaft: Moving, waves: Array) -> Array:
     Over few revolutions friction over speed follows a slow order near reversals, which would make its amplitude too small.
     """
     basis = shaft.basis * shaft.weight[:, None]
-    left: Array = waves - basis @ least_squares(basis, waves)
+    left: Array = waves - basis @ solved(basis, waves)
     return left
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave.orders.scan import Spectrum, order_spectrum_of, spread_of, time_spectrum_of
 from strainwave.orders.smooth_part import Moving, Shaft
 from strainwave.statistics.floor import Floor, floor_under
+from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
 Kind = Literal["order", "time", "joint", "either"]
@@ -318,8 +319,4 @@ def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tup
 def weighed_fit(columns: Array, series: Array, floor: Floor) -> tuple[Array, Array]:
     """Fit by least squares under coloured noise. Return coefficients and covariance, shapes (k,) and (k, k)."""
     white = floor.coordinates(columns)
-    size = np.linalg.norm(white, axis=0)
-    size[size == 0.0] = 1.0
-    inverse = np.asarray(np.linalg.pinv((white / size).T @ (white / size), rcond=1e-10)) / np.outer(size, size)
-    values: Array = inverse @ (white.T @ floor.coordinates(series))
-    return values, inverse
+    return solved(white, floor.coordinates(series)), normal_inverse(white)

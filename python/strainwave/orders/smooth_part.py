@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
 from strainwave.statistics.floor import Floor, floor_of, taper
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
@@ -224,15 +225,6 @@ def shaft_of(
     return record, replace(shaft, weight=np.where(record.measured, shaft.weight, 0.0))
 
 
-def least_squares(columns: Array, values: Array) -> Array:
-    """Return the coefficients of columns by least squares; columns are scaled, so that small ones count alike."""
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
-    scaled: Array = np.linalg.lstsq(columns / size, values, rcond=1e-8)[0]
-    coefficients: Array = (scaled.T / size).T
-    return coefficients
-
-
 def orthonormal(columns: Array) -> tuple[Array, Array]:
     """Return orthonormal columns that span the columns, and the matrix that makes them of these, shapes (n, r) and (k, r)."""
     size = np.linalg.norm(columns, axis=0)
@@ -271,7 +263,7 @@ def _without_ripple(columns: Array, waves: Array, weight: Array) -> Array:
         return columns
     weighed = columns * weight[:, None]
     constant = weight[:, None] * (weight @ weighed / max(float(weight @ weight), 1e-300))
-    shares = np.linalg.lstsq(waves * weight[:, None], weighed - constant, rcond=1e-8)[0]
+    shares = solved(waves * weight[:, None], weighed - constant)
     size = np.linalg.norm(weighed - constant, axis=0)
     left = np.linalg.norm(weighed - constant - weight[:, None] * (waves @ shares), axis=0)
     is_smooth = (left >= SMOOTH_SHARE * size) | (size <= 1e-9 * np.linalg.norm(weighed, axis=0))
@@ -282,7 +274,7 @@ def _without_ripple(columns: Array, waves: Array, weight: Array) -> Array:
 def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple[Array, Array]:
     """Return the smooth part, and the friction in it."""
     columns = np.concatenate([friction, rest], axis=1)
-    found = least_squares(columns * weight[:, None], torque * weight)
+    found = solved(columns * weight[:, None], torque * weight)
     count = friction.shape[1]
     return columns @ found, friction @ found[:count]
 

@@ -31,7 +31,7 @@ from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
-from strainwave.statistics.covariance import covariance_of
+from strainwave.statistics.linear_fit import linear_fit
 
 Array = NDArray[np.float64]
 
@@ -149,17 +149,14 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
     series = [torque, np.sign(motion.speed), motion.speed, np.ones_like(torque), *waves]
     columns = motion.filtered(np.stack(series)).T
     measured = motion.filtered(error[np.newaxis] - error.mean())[0]
-    size = np.linalg.norm(columns, axis=0)
-    weights = np.linalg.lstsq(columns / size, measured, rcond=1e-6)[0]
-    left = measured - columns / size @ weights
-    covariance, _ = covariance_of(columns / size, left[np.newaxis])
-    softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
+    regression = linear_fit(columns, measured)
+    softness, sigma = float(regression.values[0]), float(regression.sigma[0])
     reach = float(np.abs(torque[motion.compared]).max())
-    late = ratio * weights[PLACE_OF_SPEED] / size[PLACE_OF_SPEED]
+    late = ratio * regression.values[PLACE_OF_SPEED]
     if not softness > MIN_TWIST_SIGMA * sigma:
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
-            f"other effects leave {float(np.std(left)):.2g} rad unexplained, and output_angle is {1e3 * late:.3g} ms behind: "
+            f"other effects leave {regression.rms:.2g} rad unexplained, and output_angle is {1e3 * late:.3g} ms behind: "
             "load it more, or measure the angles better"
         )
     return reach, float(late)

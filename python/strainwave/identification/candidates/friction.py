@@ -28,7 +28,7 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.residuals import chance_of_gain
-from strainwave.statistics.scale import NORMAL_MAD
+from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
 
@@ -203,7 +203,7 @@ def outliers(off: Array) -> NDArray[np.bool_]:
     [6]
     """
     size = np.abs(off)
-    sigma = float(np.median(size)) / NORMAL_MAD
+    sigma = float(robust_sigma(size))
     far = size > MIN_OUTLIER_SIGMA * sigma
     return (
         far

@@ -20,6 +20,7 @@ from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -30,7 +31,6 @@ MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out res
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_STEPS = 8  # of a fit while models are compared
-MIN_SINGULAR = 1e-6  # singular values below this share of the largest are taken as zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ class MotionCandidate(ComparedByFields):
         angle = self.log.motion.angle
         waves = np.stack([wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)], axis=1)
         rows = training & moving(self.log) & ~self.log.motion.resting
-        shares = np.linalg.lstsq(waves[rows], residual[rows], rcond=MIN_SINGULAR)[0]
+        shares = solved(waves[rows], residual[rows])
         return np.asarray(residual - np.where(self.log.motion.resting, 0.0, waves @ shares))
 
     def predicted_anew(self) -> MotionCandidate:

@@ -13,7 +13,7 @@ from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MotionLog, per_torque, turnover_speed
-from strainwave.statistics.linear_fit import linear_fit, own_share
+from strainwave.statistics.linear_fit import linear_fit, own_share, solved
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -26,7 +26,6 @@ MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction beg
 MIN_OWN_SHARE_OF_SPEED = 0.1  # of the speed: if less differs from its sign, the record has one speed
 MAX_ROWS_OF_SIGMA = 4000  # samples from which the standard deviation of an inertia is computed
 BLOCKS_PER_STRETCH = 10  # over which the residual scatters
-MIN_SINGULAR_SHARE = 1e-6  # share of the largest singular value [1] below which one counts as zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +71,7 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
     torque = J a + b v + c sgn v + o + (g_s sin q + g_c cos q) / i + shares of other bodies
     """
     columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
-    weights = _solved(columns[rows], torque[rows])
+    weights = solved(columns[rows], torque[rows])
     left = (torque - columns @ weights)[rows]
     by_inertia, by_friction = columns[rows, 0] * weights[0], columns[rows, 1:3] @ weights[1:3]
     powers = np.array([np.mean(by_inertia**2), np.mean(by_friction**2)])
@@ -168,7 +167,7 @@ def held_out_residuals(log: MotionLog, drive: Drive, blocks: Sequence[Rows]) -> 
     columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
     scale, found = abs(per_torque(drive, log.effort)), []
     for block in blocks:
-        weights = _solved(columns[rows & ~block], torque[rows & ~block])
+        weights = solved(columns[rows & ~block], torque[rows & ~block])
         found.append(scale * (torque - columns @ weights)[block])
     return found
 
@@ -185,7 +184,7 @@ def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
     squares, samples = list[float](), list[int]()
     for stretch in stretches(log):
         others = rows & ~stretch
-        left = (torque - columns @ _solved(columns[others], torque[others])) ** 2 / variance
+        left = (torque - columns @ solved(columns[others], torque[others])) ** 2 / variance
         for block in np.array_split(np.flatnonzero(stretch), BLOCKS_PER_STRETCH):
             squares.append(float(left[block[rows[block]]].sum()))
             samples.append(int(rows[block].sum()))
@@ -205,10 +204,3 @@ def _torque(log: MotionLog, drive: Drive) -> Array:
     """The torque of the motor at the input without what is known of it, on the grid [N.m]."""
     torque = (log.recorded - log.induced(drive)) / per_torque(drive, log.effort)
     return np.asarray(torque - log.extra / drive.gear.kinematics.ratio)
-
-
-def _solved(columns: Array, torque: Array) -> Array:
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
-    found: Array = np.linalg.lstsq(columns / size, torque, rcond=MIN_SINGULAR_SHARE)[0] / size
-    return found

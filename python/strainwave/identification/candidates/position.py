@@ -19,6 +19,7 @@ from strainwave.friction import PositionDependent
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.statistics.covariance import covariance_of
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
@@ -79,7 +80,7 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     u, k = (angle - middle) / half, np.arange(1, ORDER_COUNT + 1)
     waves = (*np.cos(np.outer(k, angle)), *np.sin(np.outer(k, angle)))
     jacobian = np.stack([u**2, u, np.ones_like(u), *waves, *([speed] if several else [])], axis=1)
-    found = np.linalg.lstsq(jacobian, level, rcond=None)[0]
+    found = solved(jacobian, level)
     residual = level - jacobian @ found
     covariance, freedom = covariance_of(jacobian, residual[np.newaxis])
     back = np.eye(len(found))  # from the parabola in u to that in q

@@ -20,6 +20,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
@@ -162,11 +163,8 @@ def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array
     friction = (speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)))
     series = np.stack([motion.acceleration, *friction, np.sin(angle), np.cos(angle)])
     columns = motion.filtered(motion.late(series, delay)[0] if delay else series).T
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
     measured = log.measured[0]
-    left = measured - columns / size @ np.linalg.lstsq(columns / size, measured, rcond=1e-6)[0]
-    return np.asarray(left**2)
+    return np.asarray((measured - columns @ solved(columns, measured)) ** 2)
 
 
 def pendulum_length(estimates: tuple[Estimate, ...], source: str) -> Iterator[Check]:

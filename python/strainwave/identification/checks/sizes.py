@@ -26,7 +26,6 @@ MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compare
 MAX_RATIO = 1e4  # of a gear
 MAX_FACTOR = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
 MAX_FACTOR_OF_EXPLAINED = 50.0  # if the record is explained: the start set is a guess, but wrong units or sides make more
-MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a torque with less is not that of the motor
 MIN_SHARE_OF_A_UNIT = 1e-6  # of the friction of the start set: a wrong unit makes it no smaller
 STIFFNESS_SPREAD = 1.3  # factor by which gears of one kind differ in stiffness, as makers state
 MIN_SPREAD_OF_STIFFNESS = 0.3  # standard deviation of its logarithm, as makers state it
@@ -175,14 +174,11 @@ def friction_of_log(
         return
     found, before = float(law.steady(speed)), float(start.steady(speed))
     if before > 0.0:
-        share, behind = max(found / before, 0.0), effort == "joint_torque"
-        least = MIN_FRICTION_SHARE if behind else MIN_SHARE_OF_A_UNIT
+        share, least = max(found / before, 0.0), MIN_SHARE_OF_A_UNIT
         yield Check(
             "friction in the torque", source, least / max(share, 1e-300), 1.0, "1", share < least,
-            "its torque shows no friction, as that of a sensor behind the gear" if behind else
             "no friction is left: its Coulomb torque is at its bound of 0",
-            "see whether the signs of angle, speed and torque fit each other; if the torque was measured behind the gear, give "
-            "what the motor does: its current with --column current=NAME, or its torque",
+            "see whether the signs of angle, speed and torque fit each other",
         )  # fmt: skip
         if share < least:
             return

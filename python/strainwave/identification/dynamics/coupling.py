@@ -23,9 +23,10 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.identification.candidates.plain import stretches
 from strainwave.identification.dynamics.chain import Sum, best_chain, named
-from strainwave.identification.dynamics.selection import Selection, independent, shares_of
+from strainwave.identification.dynamics.selection import Selection, independent
 from strainwave.identification.experiments.motion import Motion, motion_of
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -113,7 +114,7 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
 def _loss(torque: Array, base: Array, known: Rows) -> Array:
     """Return the size of the torque by inertia and gravity, of which a gear loses a share, shape (n,)."""
     rigid = np.array([*range(END_OF_RIGID), *range(END_OF_FRICTION, base.shape[1])])
-    return np.asarray(np.abs(base[:, rigid] @ shares_of(base[known], torque[known])[rigid]))
+    return np.asarray(np.abs(base[:, rigid] @ solved(base[known], torque[known])[rigid]))
 
 
 def _with_regressors(log: MotionLog, series: Mapping[str, Array]) -> MotionLog:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.statistics.linear_fit import solved
+
 Array = NDArray[np.float64]
 
 MAX_TERMS = 40  # terms
@@ -60,7 +62,7 @@ class Selection:
     def error(self, columns: Array) -> float:
         """Return the error of the rows that check, by the shares of the others, over how much the torque varies."""
         every = np.hstack([self.base, columns])
-        left = self.torque[self.check] - every[self.check] @ shares_of(every[self.train], self.torque[self.train])
+        left = self.torque[self.check] - every[self.check] @ solved(every[self.train], self.torque[self.train])
         return float(np.sqrt(np.mean(left**2)) / np.std(self.torque))
 
 
@@ -74,11 +76,3 @@ def independent(base: Array, columns: Array, least: float = MIN_INDEPENDENT) -> 
             kept.append(place)
             orthogonal = np.column_stack([orthogonal, rest / np.linalg.norm(rest)])
     return kept
-
-
-def shares_of(columns: Array, torque: Array) -> Array:
-    """Return the shares of columns in a torque by least squares, shape (columns,)."""
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
-    found: Array = np.linalg.lstsq(columns / size, torque, rcond=1e-8)[0] / size
-    return found

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import thinned
 from strainwave.statistics.covariance import posterior_of
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import chance_of_gain, correlation_length
 from strainwave.statistics.scale import noise_sigma
 
@@ -180,11 +181,11 @@ def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array
     def left_by(found: Array) -> list[Array]:
         return np.split(torque - jacobian @ found, np.cumsum(counts)[:-1])
 
-    first = left_by(np.asarray(np.linalg.lstsq(jacobian, torque, rcond=None)[0], float))
+    first = left_by(solved(jacobian, torque))
     alike = sum(float(each @ each) * max(correlation_length(each), 1.0) for each in first) / len(torque)
     scale = max(float(np.sqrt(alike)), 1e-300)  # of a row, so that rows that are alike do not outweigh what is assumed
     rows, values = np.concatenate((jacobian / scale, known)), np.concatenate((torque / scale, np.zeros(len(known))))
-    found = np.asarray(np.linalg.lstsq(rows, values, rcond=None)[0], float)
+    found = solved(rows, values)
     residuals = left_by(found)
     covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], known)
     cosine, sine = found[many:].tolist()

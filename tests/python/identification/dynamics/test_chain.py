@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from strainwave.identification.dynamics.chain import Chain, Sum, best_chain, named
-from strainwave.identification.dynamics.selection import shares_of
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 ACROSS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # a quarter of a turn about x
@@ -63,7 +63,7 @@ def test_sums_of_angles_make_up_the_gravity_of_any_chain(relations: tuple[int, .
         angles = [sum(sense * q[place] for place, sense in each) for each in sums]
         columns = np.stack([wave(angle) for angle in angles for wave in (np.sin, np.cos)], axis=1)
         if columns.shape[1] < 400:
-            assert columns @ shares_of(columns, torques[joint]) == pytest.approx(torques[joint], abs=1e-8)
+            assert columns @ solved(columns, torques[joint]) == pytest.approx(torques[joint], abs=1e-8)
 
 
 @pytest.mark.parametrize("joint", [2, 3, 4])
@@ -86,7 +86,7 @@ def test_relations_of_axes_are_found_from_the_torque(joint: int) -> None:
     found = best_chain(torque[:2100], base[:2100], lambda each: wave(each)[:2100], joint, 6)
     assert found is not None
     columns = np.column_stack([base, *(wave(each) for each in found.sums())])
-    left = torque - columns @ shares_of(columns[:2100], torque[:2100])
+    left = torque - columns @ solved(columns[:2100], torque[:2100])
     print(f"\n{found}: {np.std(left[2100:]) / size:.3f} of the gravity is left")
     assert np.std(left[2100:]) < 0.1 * size
 

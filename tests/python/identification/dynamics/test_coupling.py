@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from strainwave.identification.dynamics.chain import Chain
 from strainwave.identification.dynamics.coupling import _Arm, in_order
-from strainwave.identification.dynamics.selection import shares_of
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.statistics.linear_fit import solved
 
 from tests.evidence import arms
 
@@ -37,7 +37,7 @@ def test_terms_of_the_energy_make_up_the_torque_of_an_arm(joint: str, named: boo
     rigid = [own.acceleration, *(wave(angle) for angle in angles for wave in (np.sin, np.cos))]
     columns = np.stack([*rigid, *(term.torque(arm) for term in arm.terms())], axis=1)
     torque = arms.Links().torques(q, dq, ddq)[int(joint) - 1]
-    assert columns @ shares_of(columns, torque) == pytest.approx(torque, abs=1e-6)
+    assert columns @ solved(columns, torque) == pytest.approx(torque, abs=1e-6)
 
 
 @pytest.mark.slow("identification")
