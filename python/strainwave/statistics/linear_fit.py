@@ -1,15 +1,15 @@
-"""Linear least squares with its rank, its covariance, and the combinations that the data determine.
+"""Linear least squares with its covariance, infinite where columns do not separate coefficients, and own shares of columns.
 
 Each column is scaled to length 1. Its own share is the part of it that no other column makes up. A direction in which the
 coefficients can change without a change of the prediction has a singular value of nearly zero: the coefficients in it are not
-separated, only their combination is determined. The covariance is that of correlated residuals (`covariance.covariance_of`).
+separated, only sums of them are determined (`determined_sum`). The covariance is that of correlated residuals
+(`covariance.covariance_of`).
 Terms that may act as well, but are not needed, are rivals: with each of them the coefficients differ, and by Akaike's weights
 that spread is part of their standard deviation (Buckland, Burnham and Augustin, Biometrics 53 (1997) 603-618, eq. 9).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -24,7 +24,6 @@ from strainwave.statistics.residuals import correlation_length
 Array = NDArray[np.float64]
 
 MIN_SINGULAR = 1e-8  # of the largest singular value of columns of length 1: a smaller one is rounding
-MIN_PART = 0.02  # of the largest change in a direction: a coefficient that changes less takes no part in the words
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,22 +31,16 @@ class LinearFit(ComparedByFields):
     """Result of `linear_fit`.
 
     Attributes:
-        names: of the columns
         values: coefficients, shape (n,); of those that are not separated, the ones of least norm in units of their columns
         covariance: of them, shape (n, n); infinite variance if a coefficient is not separated
         own_share: part of each column that no other column makes up [1], shape (n,)
-        rank: number of combinations that the columns separate
-        not_separated: sums that are determined while their terms are not, in words
         residual: target less prediction, shape (samples,)
         freedom: degrees of freedom of the covariance
     """
 
-    names: tuple[str, ...]
     values: Array
     covariance: Array
     own_share: Array
-    rank: int
-    not_separated: tuple[str, ...]
     residual: Array
     freedom: float
 
@@ -67,16 +60,14 @@ def linear_fit(
     target: Array,
     *,
     weights: Array | None = None,
-    names: Sequence[str] = (),
     rivals: Array | None = None,
 ) -> LinearFit:
-    """Return the coefficients of columns by least squares, with their covariance and what is not separated.
+    """Return the coefficients of columns by least squares, with their covariance and own shares.
 
     Args:
         columns: shape (samples, n)
         target: shape (samples,)
         weights: of the samples, as over the standard deviation of their noise, shape (samples,)
-        names: of the columns, shape (n,)
         rivals: further columns that may act too, one at a time, shape (samples, m): how far each moves the coefficients is part
             of their standard deviation
 
@@ -85,29 +76,22 @@ def linear_fit(
 
     >>> speed = np.array([10.0, 10.0, 10.0, -10.0, -10.0, -10.0])
     >>> torque = 0.064 * np.sign(speed) + 1e-4 * np.array([1.0, -1.0, 0.0, 0.0, 1.0, -1.0])
-    >>> fit = linear_fit(np.stack([np.sign(speed), speed], axis=1), torque, names=("coulomb", "viscous"))
-    >>> fit.rank, fit.not_separated
-    (1, ('coulomb + 10 viscous = 0.064',))
+    >>> fit = linear_fit(np.stack([np.sign(speed), speed], axis=1), torque)
+    >>> round(float(fit.values @ [1.0, 10.0]), 4), fit.sigma.tolist()  # the sum at this speed, not its terms
+    (0.064, [inf, inf])
     """
     if len(target) <= columns.shape[1]:
         raise ValueError(
             f"{len(target)} samples do not determine {columns.shape[1]} coefficients and their standard deviations"
         )
     rows = np.ones(len(target)) if weights is None else weights
-    names = tuple(names) or tuple(f"column {place}" for place in range(columns.shape[1]))
     scaled, goal = columns * rows[:, np.newaxis], target * rows
-    size = np.linalg.norm(scaled, axis=0)
-    unit = scaled / np.where(size > 0.0, size, 1.0)
-    _, singular, directions = np.linalg.svd(unit, full_matrices=False)
     values = solved(scaled, goal)
     left = goal - scaled @ values
     covariance, freedom = covariance_of(scaled, left[np.newaxis])
     if rivals is not None:
         covariance = covariance + _of_choice(scaled, goal, rivals * rows[:, np.newaxis], values, left)
-    live = singular > MIN_SINGULAR * singular.max(initial=0.0)
-    null = directions[~live] / np.where(size > 0.0, size, 1.0)
-    words = _in_words(null, directions[live], np.where(size > 0.0, size, 1.0), values, names)
-    return LinearFit(names, values, covariance, own_share(unit), int(live.sum()), words, target - columns @ values, freedom)
+    return LinearFit(values, covariance, own_share(scaled), target - columns @ values, freedom)
 
 
 def solved(columns: Array, target: NDArray[Any]) -> NDArray[Any]:
@@ -170,43 +154,3 @@ def _of_choice(columns: Array, target: Array, rivals: Array, values: Array, left
     shares = evidence[1:] / evidence.sum()
     steps = np.array(moved)
     return np.asarray((steps.T * shares) @ steps)
-
-
-def _in_words(null: Array, live: Array, size: Array, values: Array, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the sums that stay the same in every direction that changes nothing: reduced rows of the live ones."""
-    if not len(null):
-        return ()
-    rows = _reduced(live * size)  # combinations that are determined, per unit of the coefficients
-    words = []
-    for row in rows:
-        largest = np.abs(row / size).max()
-        places = [place for place in range(len(row)) if abs(row[place] / size[place]) > MIN_PART * largest]
-        if len(places) < 2:
-            continue
-        first, *others = places
-        terms = "".join(f" {'+' if row[k] > 0.0 else '-'} {_factor(abs(row[k] / row[first]))}{names[k]}" for k in others)
-        words.append(f"{names[first]}{terms} = {float(row @ values / row[first]):.4g}")
-    return tuple(words)
-
-
-def _factor(size: float) -> str:
-    return "" if abs(size - 1.0) < 1e-3 else f"{size:.3g} "
-
-
-def _reduced(rows: Array) -> Array:
-    """Return rows that span the same, in reduced echelon form with the largest pivots (Gauss and Jordan)."""
-    rows, done = rows.copy(), 0
-    scale = np.abs(rows).max(initial=0.0)
-    for column in range(rows.shape[1]):
-        if done == len(rows):
-            break
-        pivot = done + int(np.argmax(np.abs(rows[done:, column])))
-        if abs(rows[pivot, column]) <= 1e-9 * scale:
-            continue
-        rows[[done, pivot]] = rows[[pivot, done]]
-        rows[done] /= rows[done, column]
-        for other in range(len(rows)):
-            if other != done:
-                rows[other] -= rows[other, column] * rows[done]
-        done += 1
-    return rows[:done]

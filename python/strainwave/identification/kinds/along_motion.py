@@ -46,6 +46,7 @@ from strainwave.identification.results.motor_inertia import MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
+from strainwave.statistics.determined_sum import DeterminedSum
 
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
@@ -333,10 +334,8 @@ def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate, relative: float)
     """Yield the friction at the one speed of a record, and how the start set splits it into Coulomb and viscous friction."""
     speed, viscous = best.model.one_speed, float(best.model.law.viscous)
     at_speed = friction_at(speed, coulomb.value + speed * viscous, coulomb.sigma)
-    why = (
-        f"determined together: coulomb + {speed:.3g} viscous = {at_speed.value:.4g} ± {at_speed.sigma:.2g} {coulomb.unit}, "
-        "as the record has one speed; the split is that of the start set"
-    )
+    both = DeterminedSum((COULOMB, VISCOUS), (1.0, speed), at_speed.value, at_speed.sigma, coulomb.unit)
+    why = f"determined together, at the one speed of the record: {both}; the split is that of the start set"
     spread = max(SPREAD_OF_VISCOUS * viscous, MIN_SPREAD_OF_SHARE * at_speed.value / speed)
     together = not at_speed.why
     own = replace(

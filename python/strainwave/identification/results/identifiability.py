@@ -11,9 +11,10 @@ import numpy as np
 from strainwave.files.entries import Entry
 from strainwave.identification.candidates.friction import STEADY_NUMBERS
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.fit import Fit, solved_problem
 from strainwave.identification.fitting.influence import InfluenceOfKept
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
+from strainwave.statistics.determined_sum import DeterminedSum, sum_by_covariance, sum_by_information
 
 MAX_SIGMA_OF_PHASE = 0.5  # rad
 MAX_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
@@ -67,9 +68,11 @@ class JudgedFit:
 
     def _why(self, place: int, path: str, sources: Mapping[str, Entry], shifts: Mapping[str, float]) -> tuple[str, bool]:
         """Return why the data do not determine an estimate, and whether they do together with another; empty if they do."""
+        estimate = self.fit.estimates[place]
+        if self.explained and not np.isfinite(estimate.sigma) and (why := combination(self.fit, place)):
+            return why, True
         if why := self._undetermined(place):
             return why, False
-        estimate = self.fit.estimates[place]
         if not _is_phase(estimate) and is_uncertain(estimate.value, estimate.sigma):
             why = combination(self.fit, place)
             return why or TOO_UNCERTAIN, bool(why)
@@ -118,28 +121,32 @@ def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
 
 
 def combination(fit: Fit, place: int) -> str:
-    """Return the combination with another estimate that the data determine, although they hardly determine one; or nothing."""
+    """Return the sum with others that the data determine although they hardly determine an estimate, in words; or nothing."""
+    own = fit.estimates[place]
+    both = _with_partner(fit, place) if np.isfinite(own.sigma) else _inseparable(fit, place)
+    return "" if both is None or is_uncertain(both.value, both.sigma) else both.with_others
+
+
+def _with_partner(fit: Fit, place: int) -> DeterminedSum | None:
+    """Return the sum of an estimate with the one that it correlates with most, if it does so nearly entirely."""
     correlation, free = np.abs(fit.correlation[place]), len(fit.plan.unknowns)
     correlation[place] = 0.0
     correlation[free : free + len(fit.plan.tied)] = 0.0  # what follows another one is known as well
     if free <= place < free + len(fit.plan.tied):
         correlation[fit.plan.tied[place - free].unknown] = 0.0
-    if not np.isfinite(correlation).any():
-        return ""
-    partner = int(np.nanargmax(correlation))
+    partner = int(np.argmax(np.nan_to_num(correlation)))
     if not correlation[partner] > MAX_CORRELATION:
-        return ""
-    own, other = fit.estimates[place], fit.estimates[partner]
-    weight = -fit.covariance[place, partner] / fit.covariance[partner, partner]
-    sigma = own.sigma * np.sqrt(max(1.0 - correlation[partner] ** 2, 0.0))
-    if is_uncertain(own.value, sigma):
-        return ""
-    name, other_name = (each.path.rpartition(".")[2] for each in (own, other))
-    sign, total = "+" if weight > 0.0 else "-", own.value + weight * other.value
-    return (
-        f"determined together with {other.path}: {name} {sign} {abs(weight):.3g} {other_name} = {total:.5g} ± {sigma:.2g} "
-        f"{own.unit} (correlation {fit.correlation[place, partner]:+.3f})"
-    )
+        return None
+    values, paths = np.array([each.value for each in fit.estimates]), [each.path for each in fit.estimates]
+    return sum_by_covariance(fit.covariance, (place, partner), values, paths, fit.estimates[place].unit)
+
+
+def _inseparable(fit: Fit, place: int) -> DeterminedSum | None:
+    """Return the sum of an estimate with those that the data do not separate from it at all."""
+    problem, x = solved_problem(fit)
+    rows, (leads, _) = problem.information(x, problem.weights(x)), problem.leads()
+    paths = [fit.estimates[leads.index(unknown)].path for unknown in range(len(x))]
+    return sum_by_information(rows.T @ rows, leads[place], x, paths, fit.estimates[place].unit)
 
 
 def _is_phase(estimate: Estimate) -> bool:

@@ -17,6 +17,8 @@ from strainwave.identification.results.file_result import FileEstimate
 from strainwave.identification.results.gear_so_far import START_SPREAD, GearSoFar, plain
 from strainwave.identification.results.identifiability import MAX_CORRELATION, combination
 from strainwave.messages import listed, one_line
+from strainwave.statistics.determined_sum import DeterminedSum
+from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
 
@@ -165,10 +167,11 @@ def with_friction_at(known: GearSoFar, speed: Array, estimates: Sequence[FileEst
     by_set = START_SPREAD * np.maximum(divided, MIN_RELATIVE_SIGMA * divided.max())
     rows = np.concatenate([columns / spread[:, np.newaxis], np.diag(1.0 / by_set)])
     coulomb, viscous = nnls(rows, np.concatenate([sum_of / spread, divided / by_set]))[0].tolist()
-    sigmas = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows))).tolist()
+    sigmas = np.sqrt(np.diag(normal_inverse(rows))).tolist()
     numbers = {"coulomb": coulomb, "breakaway": law.breakaway * coulomb / law.coulomb, "viscous": viscous}
-    sums = listed(f"{total:.4g} N.m at {where:.4g} rad/s" for total, where in zip(sum_of, at, strict=True))
-    why = f"identified in combination: {one_line(name)} determines {sums} of the input; the division is that of the set before"
+    measured = zip(at.tolist(), sum_of.tolist(), spread.tolist(), strict=True)
+    sums = [DeterminedSum(("coulomb", "viscous"), (1.0, at_speed), *known_to, "N.m") for at_speed, *known_to in measured]
+    why = f"identified in combination: {one_line(name)} determines {listed(map(str, sums))}; the split is that of the start set"
     entries = {
         f"gear.friction_input.{each}": Entry(why, uncertainty=sigmas[place])
         for place, each in ((0, "coulomb"), (0, "breakaway"), (1, "viscous"))

@@ -36,7 +36,7 @@ def test_sums_are_marked_and_friction_of_a_file_before_is_kept() -> None:
         GearSoFar(START), np.array([0.1, -0.1]), [friction_at(0.1, 6.4, 0.01, side="output")], "output", "a.csv"
     )
     entry = known.gear_set.sources["gear.friction_input.viscous"]
-    assert entry.source.startswith("identified in combination: a.csv determines 0.064 N.m at 10 rad/s of the input")
+    assert entry.source.startswith("identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m")
     table = sw.Recording({"speed": [1.0, 9.0, 40.0, 90.0, 150.0], "torque": [0.05, 0.053, 0.062, 0.077, 0.095]},
                          {"speed": "rad/s", "torque": "N.m"})  # fmt: skip
     found = sw.identify(START, {"friction": table}).gear_set
