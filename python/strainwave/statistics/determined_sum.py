@@ -16,7 +16,8 @@ from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
-MIN_PART = 0.02  # of a relative change in a direction, or of a sum: a parameter with less takes no part in it
+MIN_MOVED = 1e-6  # of a direction that is not determined: a parameter that it moves less is determined by itself
+MIN_PART = 0.02  # of the first term of a sum: smaller ones are not named
 MIN_INFORMATION = 1e-4  # in relative units, a standard deviation of 100 times the value: less counts as not known
 MIN_RELATIVE_INFORMATION = 1e-13  # of the largest eigenvalue: less is rounding
 UNIT_TOLERANCE = 1e-3  # relative: a factor that is nearer to 1 is not written
@@ -92,7 +93,7 @@ def sum_by_covariance(
 
 
 def sum_by_information(information: Array, place: int, values: Array, paths: Sequence[str], unit: str) -> DeterminedSum | None:
-    """Return the sum with a parameter that data determine best, if they do not separate it from others; else None.
+    """Return a parameter, or its sum with those that data do not separate from it; None if they do not depend on it.
 
     Args:
         information: inverse covariance of all parameters, singular in directions that change nothing, shape (p, p)
@@ -108,13 +109,13 @@ def sum_by_information(information: Array, place: int, values: Array, paths: Seq
     relative = information * np.outer(size, size)
     eigenvalues, directions = np.linalg.eigh(relative)
     dead = directions[:, undetermined(eigenvalues)]
-    moved = np.abs(dead).max(axis=1, initial=0.0, where=np.abs(dead[place]) > MIN_PART)
-    chosen = [place, *(other for other in np.flatnonzero(moved > MIN_PART).tolist() if other != place)]
+    moved = np.abs(dead).max(axis=1, initial=0.0, where=np.abs(dead[place]) > MIN_MOVED)
+    chosen = [place, *(other for other in np.flatnonzero(moved > MIN_MOVED).tolist() if other != place)]
     rest = [other for other in range(len(values)) if other not in chosen]
     own, across = relative[np.ix_(chosen, chosen)], relative[np.ix_(rest, chosen)]
     row = own[0] - across[:, 0] @ solved(relative[np.ix_(rest, rest)], across)
     taking_part = np.abs(row) > MIN_PART * row[0]
-    if not row[0] > MIN_INFORMATION or not taking_part[1:].any():
+    if not row[0] > MIN_INFORMATION:
         return None
     chosen = [other for other, takes_part in zip(chosen, taking_part, strict=True) if takes_part]
     factors = size[place] / size[chosen] * row[taking_part] / row[0]

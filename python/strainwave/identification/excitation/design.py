@@ -11,10 +11,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.statistics.determined_sum import MIN_INFORMATION, MIN_MOVED, undetermined
+from strainwave.statistics.linear_fit import solved
+
 Array = NDArray[np.float64]
 Criterion = Literal["A", "D"]
-MIN_INFORMATION = 1e-4  # in relative units, a standard deviation of 100 times the value: less counts as not known
-MIN_RELATIVE_INFORMATION = 1e-13  # of the largest eigenvalue: less is rounding
 MIN_GAIN = 1e-9  # of a criterion; a smaller one is rounding
 MAX_PASSES = 50  # of exchanges; a handful is enough
 BUDGET_TOLERANCE = 1e-12  # relative, for rounding
@@ -28,7 +29,7 @@ def without_nuisances(slopes: Array, of_nuisances: Array) -> Array:
         of_nuisances: the same by the nuisances, shape (n, q)
     """
     if of_nuisances.shape[1]:
-        slopes = slopes - of_nuisances @ (np.linalg.pinv(of_nuisances) @ slopes)
+        slopes = slopes - of_nuisances @ solved(of_nuisances, slopes)
     information: Array = slopes.T @ slopes
     return information
 
@@ -95,11 +96,6 @@ def covariance_of(information: Array) -> Array:
     dead = undetermined(values)
     root = directions[:, ~dead] / np.sqrt(values[~dead])
     covariance: Array = root @ root.T
-    for place in np.flatnonzero((np.abs(directions[:, dead]) > 1e-6).any(axis=1)):
+    for place in np.flatnonzero((np.abs(directions[:, dead]) > MIN_MOVED).any(axis=1)):
         covariance[place, place] = np.inf
     return covariance
-
-
-def undetermined(eigenvalues: Array) -> NDArray[np.bool_]:
-    """Return True for eigenvalues of an information matrix whose directions count as not known, shape (p,)."""
-    return np.asarray(eigenvalues < max(MIN_INFORMATION, MIN_RELATIVE_INFORMATION * float(eigenvalues.max(initial=0.0))))

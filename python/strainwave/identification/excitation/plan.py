@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -14,13 +14,15 @@ from strainwave import Drive, Gear, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
 from strainwave.identification.excitation.candidates import CandidateMeasurement, Limits, Noise, Resolution
-from strainwave.identification.excitation.design import Criterion, best, covariance_of, undetermined
+from strainwave.identification.excitation.design import Criterion, best, covariance_of
 from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
 from strainwave.parameters import parameters as chosen
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs
+from strainwave.statistics.determined_sum import DeterminedSum, sum_by_information
 
 Array = NDArray[np.float64]
 EXPERIMENTS = ("friction", "torsion", "motion")
@@ -46,6 +48,7 @@ class PlannedMeasurement:
         settings: the same as numbers and words, with units in the names
         repeats: count of repeats
         duration: of all repeats [s]
+        determines: parameters, and sums of those it does not separate, that these repeats determine by themselves
     """
 
     kind: str
@@ -53,6 +56,7 @@ class PlannedMeasurement:
     settings: Mapping[str, float | str]
     repeats: int
     duration: float
+    determines: tuple[DeterminedSum, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -113,7 +117,10 @@ class ExperimentPlan:
             if self.steps
             else "no measurement within the limits adds information"
         )
-        lines = [head, *(f"  {step.repeats} x {step.words}" for step in self.steps)]
+        lines = [head]
+        for step in self.steps:
+            lines.append(f"  {step.repeats} x {step.words}")
+            lines += [f"      determines by itself {listed(map(str, step.determines))}"] if step.determines else []
         lines.append(f"{'parameter':40} {'value':>12} {'sigma before':>13} {'and after':>12}  unit")
         for each in self.expectations:
             before = "not known" if np.isinf(each.before) else f"{each.before:.3g}"
@@ -196,7 +203,7 @@ def plan_experiments(
     whole = _whole(model, "motion" in kinds)
     budget = arguments.seconds("time", time)
     unknowns = _unknowns(whole, wanted, unknown, kinds)
-    scale = np.array([abs(each.value) or 1.0 for each in unknowns])
+    scale = _scale(unknowns)
     limits = _limits(model, kinds, speed_limit, lowest_speed, torque_limit)
     noise = _noise(noise or {}, whole)
     sensors = _resolution(resolution or {}, whole, limits)
@@ -224,7 +231,9 @@ def plan_experiments(
     chosen_places = best(information, cost, budget, before, places, criterion) if places else []
     after = before + information[chosen_places].sum(axis=0)
     expectations = _expectations(unknowns, scale, before, after, everything, asked, kinds)
-    return ExperimentPlan(_steps(found, chosen_places), expectations, _notes(kinds, limits, noise, sensors, resolution or {}))
+    return ExperimentPlan(
+        _steps(found, chosen_places, unknowns), expectations, _notes(kinds, limits, noise, sensors, resolution or {})
+    )
 
 
 def _whole(model: object, moves: bool) -> Any:
@@ -366,11 +375,37 @@ def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
     return before
 
 
-def _steps(found: Sequence[CandidateMeasurement], places: Sequence[int]) -> tuple[PlannedMeasurement, ...]:
+def _steps(
+    found: Sequence[CandidateMeasurement], places: Sequence[int], unknowns: Sequence[Parameter]
+) -> tuple[PlannedMeasurement, ...]:
     steps = [(found[place], often) for place, often in sorted(Counter(places).items())]
     return tuple(
-        PlannedMeasurement(each.kind, each.words, each.settings, often, often * each.duration) for each, often in steps
-    )
+        PlannedMeasurement(
+            each.kind, each.words, each.settings, often, often * each.duration,
+            tuple(_determined(often * each.information, unknowns)),
+        )
+        for each, often in steps
+    )  # fmt: skip
+
+
+def _determined(information: Array, unknowns: Sequence[Parameter]) -> Iterator[DeterminedSum]:
+    """Yield what data of an information determine to half its value: parameters, then sums of those not separated."""
+    sums = {each.paths: each for place in range(len(unknowns)) if (each := _sum(information, place, unknowns)) is not None}
+    known: set[str] = set()
+    for paths, each in sorted(sums.items(), key=lambda item: len(item[0])):
+        if known.isdisjoint(paths) and not is_uncertain(each.value, each.sigma):
+            known.update(paths)
+            yield each
+
+
+def _sum(information: Array, place: int, unknowns: Sequence[Parameter]) -> DeterminedSum | None:
+    values, paths = np.array([each.value for each in unknowns]), [each.path for each in unknowns]
+    return sum_by_information(information, place, values, paths, unknowns[place].unit)
+
+
+def _scale(unknowns: Sequence[Parameter]) -> Array:
+    """Return the size of each parameter, shape (p,); 1 if it is 0."""
+    return np.array([abs(each.value) or 1.0 for each in unknowns])
 
 
 def _expectations(
@@ -384,7 +419,7 @@ def _expectations(
 ) -> tuple[Expectation, ...]:
     covariance = covariance_of(after)
     sigma_before, sigma_after = (np.sqrt(np.diag(each)) for each in (covariance_of(before), covariance))
-    reasons = _reasons([each.path for each in unknowns], covariance, everything, kinds)
+    reasons = _reasons(unknowns, covariance, everything / np.outer(scale, scale), kinds)
     return tuple(
         Expectation(
             each.path,
@@ -399,30 +434,35 @@ def _expectations(
     )
 
 
-def _reasons(paths: Sequence[str], covariance: Array, everything: Array, kinds: Sequence[str]) -> list[str]:
-    """Return what limits the uncertainty of each parameter."""
-    reach = np.diag(covariance_of(everything))
-    values, directions = np.linalg.eigh(everything)
+def _reasons(unknowns: Sequence[Parameter], covariance: Array, everything: Array, kinds: Sequence[str]) -> list[str]:
+    """Return what limits the uncertainty of each parameter.
+
+    Args:
+        unknowns: the parameters
+        covariance: of them after the plan, in relative units
+        everything: information of all measurements that could be made
+        kinds: of these measurements
+    """
+    scale, paths = _scale(unknowns), [each.path for each in unknowns]
+    reach = np.diag(covariance_of(everything * np.outer(scale, scale)))
     sigma = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore"):
         related = np.abs(covariance) / np.outer(sigma, sigma)
     reasons = []
-    for place, _ in enumerate(paths):
-        others = [other for other in range(len(paths)) if other != place]
+    for place in range(len(paths)):
         if everything[place, place] == 0.0:
             reasons.append(f"nothing that {listed(kinds)} measures depends on it; it needs another kind of experiment")
         elif np.isinf(reach[place]):
-            dead = np.abs(directions[place]) * undetermined(values)
-            direction = np.abs(directions[:, int(np.argmax(dead))])
-            joint = [paths[other] for other in others if direction[other] > 1e-3]
-            reasons.append(
-                f"determined only together with {listed(joint)}" if joint else f"{listed(kinds)} hardly depend on it"
-            )
+            both = _sum(everything, place, unknowns)
+            joint = "" if both is None or len(both.paths) == 1 else both.with_others
+            reasons.append(joint or f"{listed(kinds)} hardly depend on it")
         elif np.isinf(sigma[place]):
             reasons.append(
                 "the plan has no measurement that determines it: it does not matter for what is wanted, or time is short"
             )
-        elif correlated := [paths[other] for other in others if related[place, other] > MAX_CORRELATION]:
+        elif correlated := [
+            path for other, path in enumerate(paths) if other != place and related[place, other] > MAX_CORRELATION
+        ]:
             reasons.append(f"correlated with {listed(correlated)}; more time, or knowledge of these, reduces its uncertainty")
         else:
             reasons.append("limited by the noise; more time reduces its uncertainty")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import Fit, solved_problem
+from strainwave.statistics.determined_sum import sum_in_words
 
 Array = NDArray[np.float64]
 MAX_RELATIVE_SIGMA = 0.1  # of a change in a direction; the data leave directions with a larger one open (assumed)
@@ -172,8 +173,7 @@ def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Arr
     whole = abs(nearest - power) <= EXPONENT_TOLERANCE * abs(nearest)
     if units[0] == units[1] and not (whole and nearest < 0.0):
         factor = -moves[0] / moves[1]
-        share = "" if abs(abs(factor) - 1.0) < EXPONENT_TOLERANCE else f"{abs(factor):.3g} "
-        words = f"{paths[0]} {'+' if factor > 0.0 else '-'} {share}{paths[1]}"
+        words = sum_in_words(paths, (1.0, np.copysign(1.0, factor) if alike else factor))
         return words, float(values[0] + factor * values[1]), np.array([1.0, factor]), units[0]
     if not whole:
         return None

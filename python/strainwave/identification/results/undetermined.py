@@ -169,8 +169,10 @@ def with_friction_at(known: GearSoFar, speed: Array, estimates: Sequence[FileEst
     coulomb, viscous = nnls(rows, np.concatenate([sum_of / spread, divided / by_set]))[0].tolist()
     sigmas = np.sqrt(np.diag(normal_inverse(rows))).tolist()
     numbers = {"coulomb": coulomb, "breakaway": law.breakaway * coulomb / law.coulomb, "viscous": viscous}
-    measured = zip(at.tolist(), sum_of.tolist(), spread.tolist(), strict=True)
-    sums = [DeterminedSum(("coulomb", "viscous"), (1.0, at_speed), *known_to, "N.m") for at_speed, *known_to in measured]
+    sums = [
+        DeterminedSum(("coulomb", "viscous"), (1.0, where), total, within, "N.m")
+        for where, total, within in zip(at.tolist(), sum_of.tolist(), spread.tolist(), strict=True)
+    ]
     why = f"identified in combination: {one_line(name)} determines {listed(map(str, sums))}; the split is that of the start set"
     entries = {
         f"gear.friction_input.{each}": Entry(why, uncertainty=sigmas[place])

@@ -126,6 +126,18 @@ def test_what_friction_at_speed_cannot_tell_is_named() -> None:
     assert "not known" in plan.summary()
 
 
+def test_steps_of_a_plan_state_what_each_determines_by_itself() -> None:
+    """One speed determines the sum of Coulomb and viscous friction there; both numbers need two speeds."""
+    plan = friction_plan(COULOMB, LINE, lowest_speed=20.0, time=80.0)
+    assert [str(each) for step in plan.steps for each in step.determines] == [
+        "coulomb + 20 viscous = 0.026 ± 0.00071 N.m",
+        "coulomb + 100 viscous = 0.05 ± 0.00071 N.m",
+    ]
+    assert "determines by itself coulomb + 20 viscous = 0.026 ± 0.00071 N.m" in plan.summary()
+    one = friction_plan(COULOMB, LINE, speed_limit=20.0, lowest_speed=19.99)["friction_input.viscous"]
+    assert one.why.startswith("determined together with friction_input.coulomb: viscous + 0.05 coulomb = 0.0013 ± ")
+
+
 def test_no_noise_is_assumed_of_a_model_without_friction() -> None:
     with pytest.raises(ValueError, match="predicts zero for friction"):
         friction_plan(sw.Gear(), ["friction_input"], noise=None)

@@ -102,7 +102,9 @@ def test_uncertain_estimates_of_a_correlated_pair_are_identified_in_combination(
     states = {each.path: (each.state, each.why) for each in collinear(noise=1e-3)}
     state, why = states["gear.friction_input.viscous"]
     assert state == "identified in combination"
-    assert why.startswith("determined together with friction_input.coulomb: viscous + 0.0498 coulomb = 0.0027874 ± 1.8e-05 N.m.s/rad")
+    assert why.startswith(
+        "determined together with friction_input.coulomb: viscous + 0.0498 coulomb = 0.0027874 ± 1.8e-05 N.m.s/rad"
+    )
 
 
 def test_a_correlated_pair_with_small_standard_deviations_is_identified() -> None:
