@@ -81,7 +81,6 @@ CONVERSIONS = {
 
 def verb_of(form: Form) -> Any:
     """Return the verb of an export, which writes the files into a folder and prints the losses."""
-    from strainwave.export.exported import with_sources
     from strainwave.files.gear_set import GearSet
 
     summary, meanings = described(form.write)
@@ -94,7 +93,7 @@ def verb_of(form: Form) -> Any:
         gear, folder = GearSet.read(values.pop(form.model)), values.pop("out")
         for name in CONVERSIONS.keys() & values:
             values[name] = CONVERSIONS[name].argument(values[name])
-        _write(with_sources(form.write(gear, **values), gear), folder)
+        _write(form.write(gear, **values), folder)
 
     parameters = [first, *options, out]
     verb.__signature__ = signature(verb).replace(parameters=parameters)  # type: ignore[attr-defined]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, arguments, friction, kinematics, motor
 from strainwave.export.elements import GearElements, friction_losses
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.joint_numbers import left_out_if_rigid
 from strainwave.files.budget import read_text
 from strainwave.files.gear_set import GearSet, gear_set_of
@@ -29,6 +29,7 @@ STRIBECK_EXPONENT = 2.0  # of the laws of this package; other ones are refused
 LOAD_TERMS = "load_friction_"  # how the names of friction that grows with the load begin
 
 
+@stating_origins
 def bam(
     drive: GearSet | Drive | Gear | str | Path, *, actuator: str = DEFAULT_ACTUATOR, max_torque: float | None = None
 ) -> Exported:

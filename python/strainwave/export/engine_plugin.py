@@ -23,7 +23,7 @@ from strainwave import Drive, arguments, loads
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import ShaftFriction, max_torque_of
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import friction_attributes, inertia_on_a_hinge
 from strainwave.export.names import checked_name
@@ -56,6 +56,7 @@ numpy.save(out, rows)
 """
 
 
+@stating_origins
 def mujoco_plugin(
     drive: Drive | GearSet,
     *,

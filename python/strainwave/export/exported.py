@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import wraps
 from inspect import signature
-from typing import Any, NamedTuple, get_args
+from pathlib import Path
+from typing import Any, NamedTuple, ParamSpec, get_args
 
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.tuning.loss import ExportLoss
 
+Args = ParamSpec("Args")
+ORIGINS_FILE = "origins.txt"  # where no file of an export has comments
+XML = "<!-- "
+COMMENTS = {".xml": XML, ".urdf": XML, ".yaml": "# ", ".py": "# ", ".mo": "// "}  # beginning of a comment by ending of the name
 NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # beginnings of sources of such numbers
 
 
@@ -48,22 +55,62 @@ class Exported:
     table: Recording | None = None
 
 
-def with_sources(found: Exported, gear_set: GearSet) -> Exported:
-    """Return an export with a remark on each number of its gear that measurements do not determine by itself, and why.
+def stating_origins(write: Callable[Args, Exported]) -> Callable[Args, Exported]:
+    """Return an export that states which numbers of a set were identified: in comments of its files, and in remarks."""
+
+    @wraps(write)
+    def exported(*args: Args.args, **kwargs: Args.kwargs) -> Exported:
+        found, model = write(*args, **kwargs), (*args, *kwargs.values())[0]
+        gear_set = GearSet.read(model) if isinstance(model, str | Path) else model
+        return _with_origins(found, gear_set) if isinstance(gear_set, GearSet) else found
+
+    return exported
+
+
+def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
+    """Return an export with the origin of the numbers of its gear set, if one was identified.
 
     >>> import strainwave as sw
     >>> gear = sw.GearSet.read("csg-20-100")
-    >>> why = sw.Entry("identified in combination: a.csv determines 0.064 N.m at 10 rad/s of the input")
-    >>> gear = gear.replace(sources={**gear.sources, "gear.friction_input.viscous": why})
-    >>> with_sources(sw.export.joint(gear), gear).remarks[-1]
-    'gear.friction_input.viscous: identified in combination: a.csv determines 0.064 N.m at 10 rad/s of the input'
+    >>> why = sw.Entry("identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m")
+    >>> found = sw.export.joint(gear.replace(sources={**gear.sources, "gear.friction_input.viscous": why}))
+    >>> found.remarks[-1]
+    'gear.friction_input.viscous: identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m'
+    >>> print(found.files["joint.xml"][:45])
+    <!-- identified, with one standard deviation:
     """
     paths = dict[str, list[str]]()
     for path, entry in gear_set.sources.items():
         if entry.source.startswith(NOT_BY_ITSELF):
             paths.setdefault(entry.source, []).append(path)
     remarks = (f"{listed(names)}: {source}" for source, names in paths.items())
-    return replace(found, remarks=(*found.remarks, *remarks))
+    files = {path: _commented(path, content, gear_set.origins) for path, content in found.files.items()}
+    if gear_set.origins and files == found.files:
+        files[ORIGINS_FILE] = "\n".join(gear_set.origins) + "\n"
+    return replace(found, files=files, remarks=(*found.remarks, *remarks))
+
+
+def _commented(path: str, content: str | bytes, lines: Sequence[str]) -> str | bytes:
+    """Return a file with lines as a comment at its beginning; unchanged if its language has none."""
+    ending = Path(path).suffix
+    if isinstance(content, bytes) or not lines or ending not in COMMENTS:
+        return content
+    comment = comment_of(lines, COMMENTS[ending])
+    declaration = re.match(r"<\?xml[^>]*\?>\n", content)
+    first = "" if declaration is None else declaration.group()
+    return f"{first}{comment}{content.removeprefix(first)}"
+
+
+def comment_of(lines: Sequence[str], begin: str) -> str:
+    """Return lines as a comment that begins with `begin`; empty for none.
+
+    >>> print(comment_of(["a", "b"], "// "), end="")
+    // a
+    // b
+    """
+    if lines and begin == XML:
+        return XML + "\n".join(lines).replace("--", "- -") + " -->\n"
+    return "".join(f"{begin}{line}\n" for line in lines)
 
 
 class Form(NamedTuple):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, twist_at_largest
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.mujoco import friction_attributes
 from strainwave.export.robot import DEFAULT_TIMESTEP
 from strainwave.files.gear_set import GearSet, gear_set_of
@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 SIGNIFICANT_DIGITS = 12  # of exported numbers: without the last digits of products, as in 3.4919999999999995
 
 
+@stating_origins
 def joint(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None = None, name: str = "gear") -> Exported:
     """Return the numbers of a rigid joint: MuJoCo's attributes, and dynamics and transmission of URDF.
 

@@ -17,7 +17,7 @@ from strainwave import Drive, arguments
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import max_torque_of
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.internal_step import internal_step
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet
@@ -33,6 +33,7 @@ FOLDERS = {"x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux", "x86_64-
 UNITS = {"1": "1", "A": "A", "V": "V", "N.m": "N.m", "rad": "rad", "rad/s": "rad/s"}  # of commands, as Modelica spells them
 
 
+@stating_origins
 def modelica(
     drive: Drive | GearSet,
     *,

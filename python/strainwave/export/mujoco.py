@@ -17,7 +17,7 @@ import numpy as np
 
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.robot import Element, Robot, child, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.tuning.drawn import drawn_gears
@@ -33,6 +33,7 @@ RANDOMISED_ATTRIBUTES = (  # that drawn gears differ in
 PLACING_ATTRIBUTES = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")  # of a body
 
 
+@stating_origins
 def mjcf(
     drive: GearSet | Drive | Gear | str | Path,
     *,

@@ -8,12 +8,13 @@ from xml.sax.saxutils import quoteattr
 
 from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.joint_numbers import joint, remark_on_rotor
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet, gear_set_of
 
 
+@stating_origins
 def ros2(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None = None, name: str = "joint") -> Exported:
     """Return parameters of a joint for ros2_control, and a node that simulates its drive.
 

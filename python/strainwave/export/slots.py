@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
 from strainwave import Drive, Gear, arguments, loads, motor
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
@@ -148,6 +148,7 @@ class Request:
         )
 
 
+@stating_origins
 def slot(
     drive: GearSet | Drive | Gear | str | Path,
     name: str,

@@ -27,6 +27,7 @@ from strainwave.files.identified_tables import (
     read_validation,
     validation_tables,
 )
+from strainwave.files.origins import origin_lines
 from strainwave.files.writing import replacing
 from strainwave.messages import one_line, quoted
 
@@ -79,6 +80,13 @@ def write(gear_set: Contents, path: Path) -> None:
 def left_out(gear_set: Contents) -> frozenset[str]:
     """Tables that the file of a set does without, by path."""
     return frozenset(table.path for table, model in _filled(gear_set) if _is_left_out(table, model, gear_set.sources))
+
+
+def origins(gear_set: Contents) -> list[str]:
+    """Return lines that state which numbers of a set were identified, and the others; empty if none was."""
+    names = dict.fromkeys(table.path.partition(".")[0] for table in _tables())
+    models = {name: getattr(gear_set, name) for name in names}
+    return origin_lines({name: model for name, model in models.items() if model is not None}, gear_set.sources)
 
 
 def idle(gear_set: Contents) -> list[str]:
@@ -335,6 +343,8 @@ def text(gear_set: Contents) -> str:
     import tomlkit
 
     document = tomlkit.document()
+    for line in origins(gear_set):
+        document.add(tomlkit.comment(line))
     for key in _TEXTS:
         if given := getattr(gear_set, key):
             document.add(key, given)

@@ -131,6 +131,11 @@ class GearSet:
         return _drive(vars(self))
 
     @property
+    def origins(self) -> list[str]:
+        """Lines that state which numbers were identified, with ±, and the others; empty if none was."""
+        return gear_file.origins(self)
+
+    @property
     def left_out(self) -> frozenset[str]:
         """Tables that a file of the set does without, by path: parts that do nothing, of whose numbers no source is given.
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from strainwave import Drive, Gear, arguments
 from strainwave.export import cplusplus
-from strainwave.export.exported import Form
+from strainwave.export.exported import Form, comment_of
 from strainwave.export.firmware import source
 from strainwave.export.firmware.step import Member, step
 from strainwave.export.names import checked_name
@@ -113,7 +113,8 @@ def firmware(
     if scalar == "float":
         _check_range(found.model)
     folder = Path(folder)
-    texts: dict[Path, str | bytes] = {folder / file: text for file, text in source.texts(found, name, scalar).items()}
+    origins = comment_of(drive.origins, "// ") if isinstance(drive, GearSet) else ""
+    texts: dict[Path, str | bytes] = {folder / file: origins + text for file, text in source.texts(found, name, scalar).items()}
     with ExitStack() as stack:
         stack.enter_context(making(folder))
         write_all(texts)

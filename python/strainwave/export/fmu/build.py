@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from strainwave import Drive, _core, arguments
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.fmu.comparison import difference_to_simulation
 from strainwave.export.fmu.description import Description, build_description, model_description, terminals
 from strainwave.export.fmu.source import sources
@@ -60,6 +60,7 @@ PLATFORMS = {
 ALIASES = {found.folder: name for name, found in PLATFORMS.items()}
 
 
+@stating_origins
 def fmu(
     drive: Drive | GearSet,
     *,

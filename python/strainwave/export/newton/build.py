@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, loads, meter
-from strainwave.export.exported import Exported, Form
+from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.internal_step import internal_step
 from strainwave.export.newton import source
 from strainwave.files.gear_set import GearSet
@@ -46,6 +46,7 @@ DIGEST_LENGTH = 16  # hexadecimal digits
 TEMPERATURE = "temperature"  # the last of the numbers
 
 
+@stating_origins
 def newton(
     drive: Drive | GearSet,
     *,

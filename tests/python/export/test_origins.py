@@ -1,0 +1,56 @@
+"""Origin of the numbers of a gear in the files of every export."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+import strainwave as sw
+import yaml
+from strainwave.export import FIRMWARE, FORMS
+from strainwave.export.exported import ORIGINS_FILE, Exported
+
+JOINT = sw.GearSet.read("robot-joint")
+DAMPING = "gear.damping"
+IDENTIFIED = JOINT.replace(sources={**JOINT.sources, DAMPING: sw.Entry("identified from run--a.csv", uncertainty=1e-6)})
+LINE = f"{DAMPING} = {JOINT.gear.damping:.6g} ± 1e-06 N.m.s/rad, identified from run"
+
+
+@pytest.mark.parametrize(
+    ("found", "files"),
+    [
+        (sw.export.joint(IDENTIFIED), ["joint.xml", "joint.urdf"]),
+        (sw.export.mjcf(IDENTIFIED), ["gear.xml"]),
+        (sw.export.ros2(IDENTIFIED, name="elbow"), ["elbow_limits.yaml", "elbow.ros2_control.xml", "drive_node.py"]),
+        (sw.export.fmu(IDENTIFIED, platforms=(), name="block"), [ORIGINS_FILE]),
+        (sw.export.slot(IDENTIFIED, "coulomb-viscous"), [ORIGINS_FILE]),
+    ],
+    ids=lambda each: each.kind if isinstance(each, Exported) else "",
+)
+def test_files_state_what_was_identified_and_are_read_as_without(found: Exported, files: list[str]) -> None:
+    for name in files:
+        text = found.files[name]
+        assert isinstance(text, str)
+        assert LINE in text
+        assert "gear.input_inertia = " in text
+        if name.endswith((".xml", ".urdf")):
+            ElementTree.fromstring(text)
+        elif name.endswith(".yaml"):
+            assert isinstance(yaml.safe_load(text), dict)
+        elif name.endswith(".py"):
+            compile(text, name, "exec")
+
+
+def test_firmware_and_gear_files_state_what_was_identified(tmp_path: Path) -> None:
+    written = sw.export.firmware(IDENTIFIED, tmp_path, part="gear.friction_input")
+    IDENTIFIED.save(tmp_path / "gear.toml")
+    for path, comment in ((written.header, "//   "), (written.source, "//   "), (tmp_path / "gear.toml", "#   ")):
+        assert f"{comment}{LINE}--a.csv" in path.read_text().splitlines()
+    assert sw.GearSet.read(tmp_path / "gear.toml") == IDENTIFIED
+
+
+def test_every_export_states_origins_but_not_those_of_a_set_of_which_nothing_was_identified() -> None:
+    assert [form for form in FORMS if not hasattr(form.write, "__wrapped__")] == [FIRMWARE]
+    assert JOINT.origins == []
+    assert "<!--" not in str(sw.export.mjcf(JOINT).files["gear.xml"])
