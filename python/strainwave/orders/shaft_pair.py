@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.turning import Evenly, direction, reach_of, smooth_speed
+from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
 
@@ -138,10 +139,10 @@ def _slow_ratio(pair: Pair, near: float) -> tuple[float, float]:
     turned = pair.input / near - float(np.mean(pair.input / near))
     columns = np.concatenate([turned[:, None], wound[:, kept] / size[kept]], axis=1)
     compared = pair.output - pair.output.mean()
-    noise = compared - columns @ np.linalg.lstsq(columns, compared, rcond=1e-9)[0]
+    noise = compared - columns @ solved(columns, compared)
     weight = INDEPENDENT_SAMPLES / len(compared) / max(float(np.mean(noise**2)), MIN_ENCODER_NOISE**2)
-    known = np.diag([0.0, *[WINDUP_SIGMA**-2.0] * int(kept.sum())])
-    covariance = np.linalg.inv(weight * columns.T @ columns + known)
+    known = np.diag([0.0, *[1.0 / WINDUP_SIGMA] * int(kept.sum())])
+    covariance = normal_inverse(np.concatenate([np.sqrt(weight) * columns, known]))
     found = covariance @ (weight * columns.T @ compared)
     unsure = WINDUP_SPREAD * float(np.std(columns[:, 1:] @ found[1:])) / float(np.std(turned))
     sigma = hypot(float(np.sqrt(covariance[0, 0])), unsure)

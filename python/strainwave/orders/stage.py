@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.statistics.floor import floor_of
-from strainwave.statistics.linear_fit import own_share
+from strainwave.statistics.linear_fit import normal_inverse, own_share, solved
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -240,9 +240,7 @@ class _Lines:
         if found.stage is not None:
             columns.append(np.stack([self._slope(found, k, weight) for k in (0, 1)], axis=1))
         jacobian = np.concatenate(columns, axis=1)
-        size = np.linalg.norm(jacobian, axis=0)
-        size[size == 0.0] = 1.0
-        inverse = np.asarray(np.linalg.pinv((jacobian / size).T @ (jacobian / size), rcond=1e-12)) / np.outer(size, size)
+        inverse = normal_inverse(jacobian)
         left = self.left(found.stage, found.values)
         scores = self._scores(jacobian, _stacked(left * weight))
         freedom = max(len(scores) - jacobian.shape[1], 1)
@@ -250,7 +248,7 @@ class _Lines:
         spread = (float("nan"), float("nan"))
         if found.stage is not None:
             spread = (float(np.sqrt(covariance[-2, -2])), float(np.sqrt(covariance[-1, -1])))
-            covariance[:-2, :-2] += self._considered(jacobian[:, :-2] / size[:-2], jacobian[:, -2:], size[:-2])
+            covariance[:-2, :-2] += self._considered(jacobian[:, :-2], jacobian[:, -2:])
         kept = self.orders.shape[1] + self.loads.shape[1]
         whole = np.zeros(self.count // 2 + 1, complex)
         whole[1 : len(left) + 1] = left * np.sqrt(self.count)
@@ -274,14 +272,13 @@ class _Lines:
         below, above = (self.left(_stage(at + sign * step), found.values) for sign in (-1.0, 1.0))
         return _stacked((below - above) / 2e-4 * weight)
 
-    def _considered(self, linear: Array, slopes: Array, size: Array) -> Array:
+    def _considered(self, linear: Array, slopes: Array) -> Array:
         """Return the covariance added by a gear that is no linear spring: stiffness and damping differ for ripple and motion.
 
         They are not estimated but considered, each with its spread (Schmidt's consider covariance: Jazwinski1970).
         """
-        moved = np.linalg.lstsq(linear, slopes, rcond=1e-9)[0] * np.array([0.5 * STIFFNESS_SPREAD, DAMPING_SPREAD])
-        added: Array = (moved / size[:, None]) @ (moved / size[:, None]).T
-        return added
+        moved = solved(linear, slopes) * np.array([0.5 * STIFFNESS_SPREAD, DAMPING_SPREAD])
+        return np.asarray(moved @ moved.T)
 
     def _scores(self, jacobian: Array, left: Array) -> Array:
         """Return sums of series times residual over blocks of time, shape (blocks, n), so that noise may vary in time."""

@@ -95,13 +95,12 @@ def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
             EXPONENT_GRID if curved else (1.0,),
         )
     )
-    columns = [
+    shapes = [
         np.stack([np.ones_like(speed), (speed / fastest) ** p, *([np.exp(-((speed / v_s) ** 2))] if falls else [])], axis=1)
         for v_s, p in grid
     ]
-    stacked = np.array(columns)
-    found = (np.linalg.pinv(stacked, rcond=1e-10) @ torque[:, np.newaxis])[..., 0]
-    left = np.sum((np.einsum("gnk,gk->gn", stacked, found) - torque) ** 2, axis=1)
+    found = np.array([solved(columns, torque) for columns in shapes])
+    left = np.array([np.sum((columns @ each - torque) ** 2) for columns, each in zip(shapes, found, strict=True)])
     possible = np.all(found >= 0.0, axis=1)
     best = int(np.argmin(np.where(possible, left, np.inf) if possible.any() else left))
     least = 1e-3 * float(np.abs(torque).max())

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.problem import Problem
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 TIME_BLOCKS = 12  # of a record, which differ in their motion
@@ -40,7 +41,7 @@ def sigma_by_blocks(problem: Problem, x: Array, estimates: Sequence[Estimate]) -
     for block in range(TIME_BLOCKS):
         here = place == block
         rest = whole - rows[here].T @ rows[here]
-        steps.append(np.linalg.lstsq(rest, moved - rows[here].T @ left[here], rcond=1e-12)[0] / size)
+        steps.append(solved(rest, moved - rows[here].T @ left[here]) / size)
     off = np.array(steps) - np.mean(steps, axis=0)
     by_blocks = np.sqrt((TIME_BLOCKS - 1) / TIME_BLOCKS * np.sum(off**2, axis=0))
     sigmas: Array = np.maximum(np.array([each.sigma for each in estimates]), by_blocks)

@@ -14,6 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.parameters import every
+from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
 
@@ -149,8 +150,7 @@ def changes_of(
     asked = [each for each in directions if np.linalg.norm(each.effect) > 0.0]
     while asked:
         columns = np.stack([each.effect for each in asked], axis=1)
-        size = np.linalg.norm(columns, axis=0)
-        inverse = np.linalg.pinv(columns / size) / size[:, np.newaxis]
+        inverse = normal_inverse(columns) @ columns.T
         values = inverse @ left
         explained = columns @ values
         by_laws = coherent**2 * (_blocks(np.abs(inverse)) ** 2).sum(axis=0)

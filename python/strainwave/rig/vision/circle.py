@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
 Series = Sequence[float] | Array
@@ -65,7 +66,7 @@ def kasa(x: Series, y: Series) -> Circle:
     (-0.019256772, 0.017582826, 5.019737017)
     """
     points = _Points.of(x, y)
-    (a, b, rest), *_ = np.linalg.lstsq(np.column_stack((2.0 * points.u, 2.0 * points.v, np.ones(points.count))), points.square)
+    a, b, rest = solved(np.column_stack((2.0 * points.u, 2.0 * points.v, np.ones(points.count))), points.square)
     return points.circle(a, b, float(np.sqrt(rest + a * a + b * b)))
 
 
@@ -196,8 +197,7 @@ class _Points:
         distance, slopes = self.distances(a, b, radius)
         total = float(distance @ distance)
         if self.count > 3:
-            inverse: Array = np.linalg.inv(slopes.T @ slopes).astype(np.float64)
-            covariance = inverse * (total / (self.count - 3)) * self.scale**2
+            covariance = normal_inverse(slopes) * (total / (self.count - 3)) * self.scale**2
         else:
             covariance = np.full((3, 3), np.inf)
         covariance.flags.writeable = False

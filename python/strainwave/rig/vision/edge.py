@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from strainwave.rig.vision.circle import geometric
 from strainwave.rig.vision.ellipse import Ellipse, centre_covariance, circle, fit_ellipse
 from strainwave.rig.vision.outline import Outline, median, near_curve, scatter, turns
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -270,7 +271,7 @@ def oblong(x: Array, y: Array, curve: Ellipse, residual: float) -> tuple[complex
     turn = np.arctan2(curve.y - y, x - curve.x)
     reach = np.hypot(x - curve.x, y - curve.y)
     columns = np.column_stack((np.ones_like(turn), np.cos(turn), np.sin(turn), np.cos(2.0 * turn), np.sin(2.0 * turn)))
-    found = np.linalg.lstsq(columns, reach)[0]
+    found = solved(columns, reach)
     n, twice = len(x), 2.0 / float(found[0])
     sigma = twice * residual * float(np.sqrt(2.0 / max(n - 5, 1)))
     return complex(-twice * found[3], -twice * found[4]), sigma

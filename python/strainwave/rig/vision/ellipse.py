@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.statistics.linear_fit import normal_inverse
+
 Array = NDArray[np.float64]
 _MAX_ITERATIONS = 20  # of the ellipse fit
 
@@ -109,8 +111,7 @@ def fit_ellipse(x: Array, y: Array, start: Ellipse, tolerance: float = 1e-8) -> 
 def centre_covariance(curve: Ellipse, x: Array, y: Array) -> Array:
     """Return the covariance of a fitted ellipse's centre over the variance of a distance, shape (2, 2)."""
     _, slopes = _slopes(curve, x, y)
-    covariance: Array = np.linalg.inv(slopes.T @ slopes)[:2, :2].astype(np.float64)
-    return covariance
+    return normal_inverse(slopes)[:2, :2]
 
 
 def _slopes(curve: Ellipse, x: Array, y: Array) -> tuple[Array, Array]:

@@ -17,6 +17,7 @@ from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, slopes_
 from strainwave.rig.vision.frame import Frame
 from strainwave.rig.vision.image import by_number
 from strainwave.rig.vision.marker import Marker
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 _MAX_RELATIVE_DIFFERENCE = 0.05  # of radii or distances by errors of measurement or a tilted view [1]
@@ -272,7 +273,7 @@ def _centre(sights: Sequence[_Sight], angle: Array) -> tuple[float, float, float
             rows.append(np.column_stack(parts))
             values.append([sight.centres[marker, axis] for sight in sights])
     matrix, target = np.concatenate(rows), np.concatenate(values)
-    found, *_ = np.linalg.lstsq(matrix, target)
+    found = solved(matrix, target)
     rest = target - matrix @ found
     rms = float(np.sqrt(np.sum(rest**2) / (2 * len(sights))))
     return float(found[0]), float(found[1]), rms
