@@ -94,3 +94,12 @@ def gear_numbers(gear: Gear) -> dict[str, tuple[float, str]]:
     (0.0, 'N.m.s/rad')
     """
     return {f"gear.{path}": (value, unit) for path, value, unit, *_ in _core.parameters(gear)}
+
+
+def plain(path: str) -> str:
+    """Return the path of a number without the laws that it stands inside.
+
+    >>> plain("gear.friction_input.law.law.coulomb")
+    'gear.friction_input.coulomb'
+    """
+    return ".".join(part for part in path.split(".") if part != "law")

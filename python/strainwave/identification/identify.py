@@ -35,11 +35,12 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
 from strainwave.identification.results.drive import drive_set, name_of_files
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.parameters import plain
 from strainwave.simulation.threads import one_thread_of_algebra
 
 if TYPE_CHECKING:

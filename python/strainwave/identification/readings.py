@@ -21,15 +21,14 @@ from strainwave.identification.reading.recognise import Alternative, Recognised,
 from strainwave.identification.reading.sides import GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.messages import as_option, listed, one_line
+from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 
-MAX_UNEXPLAINED = 0.5  # of what varies: a reading that leaves more decides nothing
 MAX_OF_ANOTHER = 0.95  # of the error of another reading: what leaves more is no better
 MAX_OF_USUAL = 0.7  # of the error of the usual reading, which nothing but the fit puts in question
-MIN_GAIN_SIGMA = 3.0  # standard deviations of the difference of squares over the blocks of the motion
-MAX_GAIN = 3.0  # times the upper quartile of the differences of blocks: a larger one counts as that
 MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction drives the motion
 UNITS_OPEN = "no unit is stated, and another one than the usual explains more"
 UNITS_EQUAL = "no unit is stated, and several explain it equally well"
@@ -67,11 +66,8 @@ class _Reading:
 
     def is_better_than(self, other: _Reading, share: float) -> bool:
         """True if it leaves at most this share of what another one leaves, and less over the whole motion, beyond chance."""
-        gains = other.squares - self.squares
-        limit = MAX_GAIN * float(np.quantile(np.abs(gains), 0.75))  # so that a single event decides nothing
-        gains = np.clip(gains, -limit, limit)
-        is_sure = float(gains.sum()) > MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(len(gains))
-        return is_sure and self.error < share * other.error
+        gains = without_single_events(other.squares - self.squares)
+        return sigmas_of_gain(gains) > MIN_READING_GAIN_SIGMA and self.error < share * other.error
 
 
 def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:

@@ -9,7 +9,7 @@ from importlib import metadata
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.results.changes import SIGNIFICANCE_SIGMA, PartChange
+from strainwave.identification.results.changes import PartChange
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.prediction import Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
@@ -19,6 +19,7 @@ from strainwave.report.orders import line_numbers, line_words
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 
 MAX_LINES = 4  # of the spectrum of a residual, on a terminal

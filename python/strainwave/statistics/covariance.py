@@ -27,6 +27,7 @@ from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 MIN_SINGULAR = 1e-10  # singular values below this share of the largest carry no information
+MAX_OPEN_PART = 1e-6  # of an unknown in directions that are not determined: one with more is not determined either
 MAX_TAKEN_POWER = 0.8  # of the power of the noise, that a fit takes; residuals do not determine a larger share (assumed)
 
 
@@ -73,7 +74,7 @@ def posterior_of(
     covariance = of_data + of_priors @ of_priors.T
     variance = np.diag(covariance)
     share = np.diag(of_data) / np.where(variance > 0.0, variance, 1.0)
-    undetermined = (np.abs(directions[dead]) > 1e-6).any(axis=0) | ~np.any(rows, axis=0)
+    undetermined = (1.0 - np.sum(directions[~dead] ** 2, axis=0) > MAX_OPEN_PART**2) | ~np.any(rows, axis=0)
     covariance = covariance / np.outer(size, size)
     covariance[undetermined, undetermined] = np.inf
     return covariance, freedom / np.maximum(share, 1e-12) ** 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
+SIGNIFICANCE_SIGMA = 3.0  # standard deviations: numbers that are farther apart differ
 
 
 def student(confidence: float, freedom: float) -> float:

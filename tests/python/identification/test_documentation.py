@@ -23,7 +23,7 @@ def percent(share: float) -> str:
 @pytest.mark.parametrize(
     "statement",
     [
-        f"kept parameters may change it by more than {percent(identifiability.MAX_SHIFT)}",
+        f"kept parameters may change it by more than {percent(identifiability.MAX_RELATIVE_SHIFT)}",
         f"kept parameters that move it by more than {percent(identifiability.MIN_SHIFT_LISTED)}",
         f"would change this one by more than {percent(identifiability.MAX_SHIFT_BY_WRONG)}",
         f"standard deviation exceeds half the value (of a phase: {identifiability.MAX_SIGMA_OF_PHASE:g} rad)",
@@ -42,8 +42,8 @@ def percent(share: float) -> str:
         f"the gravity of the load is more than {comparisons.MAX_GRAVITY_OF_RATING:g} times the largest torque in the ratings",
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
         f"with {percent(comparisons.GAIN_SIGMA)} for the gain of two sensors",
-        f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction and "
-        f"{percent(comparisons.REPEATABILITY_OF_OTHERS)} of other numbers",
+        f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction at the input, "
+        f"{percent(comparisons.REPEATABILITY['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.determined_sum import sum_by_covariance, sum_by_information
 
 NAMES = ("inertia", "coulomb", "viscous")
@@ -35,6 +36,12 @@ def test_sum_at_one_speed_is_that_of_a_fit_of_the_sum(
 
 def test_a_parameter_that_data_do_not_depend_on_has_no_sum() -> None:
     assert sum_by_information(np.diag([1.0, 0.0]), 1, np.ones(2), ("a", "b"), "1") is None
+
+
+def test_fewer_samples_than_unknowns_determine_what_they_separate() -> None:
+    jacobian = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 1.0, 0.0]])
+    covariance, _ = posterior_of(jacobian, [np.array([[0.1, -0.1]])], np.zeros((0, 4)))
+    assert np.isfinite(np.diag(covariance)).tolist() == [True, False, False, False]
 
 
 @given(st.integers(0, 2**31), st.floats(0.9, 0.9999))

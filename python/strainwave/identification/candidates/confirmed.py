@@ -15,8 +15,8 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import held_out_residuals, moving
 from strainwave.identification.fitting.fit import solved_problem
-from strainwave.identification.results.gear_so_far import plain
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.parameters import plain
 
 Array = NDArray[np.float64]
 

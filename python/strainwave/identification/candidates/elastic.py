@@ -31,6 +31,7 @@ from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import linear_fit
 
 Array = NDArray[np.float64]
@@ -47,7 +48,6 @@ MAX_TRIALS = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
 GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
 MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
-MIN_GAIN_SIGMA = 2.5  # standard deviations of the gain that a further part must have
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
 CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
@@ -233,9 +233,8 @@ class _TriedModel(ComparedByFields):
 
     def predicts_as_well_as(self, other: _TriedModel) -> bool:
         """True if its squared residuals are larger by no more than chance over the record makes, or by nearly nothing."""
-        gains = [float(each.mean()) for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)]
-        chance = MIN_GAIN_SIGMA * float(np.std(gains, ddof=1)) / np.sqrt(GAIN_BLOCKS)
-        by_chance = self.error <= MAX_CHANCE_ERROR * other.error and float(np.mean(gains)) < chance
+        losses = np.array([each.mean() for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)])
+        by_chance = self.error <= MAX_CHANCE_ERROR * other.error and sigmas_of_gain(losses) < MIN_GAIN_SIGMA
         return MAX_RELATIVE_ERROR * self.error <= other.error or by_chance
 
     @cached_property

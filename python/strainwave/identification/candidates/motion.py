@@ -46,7 +46,7 @@ from strainwave.identification.candidates.plain import (
 )
 from strainwave.identification.candidates.ripple import FastDetent, is_passive, settled, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
-from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, per_torque
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, MIN_INERTIA_SHARE, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
@@ -61,7 +61,6 @@ MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is c
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
 SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
-MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
 
 
 def fit_motion(

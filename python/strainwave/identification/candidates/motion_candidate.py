@@ -20,14 +20,13 @@ from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves more is not worth a part more
-MAX_GAIN = 3.0  # times the upper quartile of the gains of blocks: a larger one counts as that
-MIN_GAIN_SIGMA = 2.5  # standard deviations by which the squares of held-out residuals must become smaller
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_STEPS = 8  # of a fit while models are compared
@@ -160,10 +159,7 @@ class MotionCandidate(ComparedByFields):
     def gain_over(self, other: MotionCandidate) -> float:
         """Return by how many standard deviations the squares of the residuals are smaller than those of another model."""
         gains = np.array([block.sum() for pair in zip(other.residuals, self.residuals, strict=True) for block in _gain(*pair)])
-        limit = MAX_GAIN * float(np.quantile(np.abs(gains), 0.75))  # so that a single event, as a jolt, decides nothing
-        gains = np.clip(gains, -limit, limit)
-        spread = float(np.std(gains, ddof=1)) * np.sqrt(len(gains))
-        return float(gains.sum()) / spread if spread > 0.0 else 0.0
+        return sigmas_of_gain(without_single_events(gains))
 
     def predicts_as_well_as(self, other: MotionCandidate) -> bool:
         """True if its error in the pass band is no larger, but for chance: what bends at reversals is compared nowhere else."""

@@ -20,6 +20,7 @@ from strainwave.identification.dynamics.log import ORDERS
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque, turnover_speed
 from strainwave.statistics.linear_fit import linear_fit, own_share, solved
 from strainwave.statistics.residuals import chance_of_gain, correlation_length
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 
@@ -33,7 +34,6 @@ MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller
 MIN_FAST_SIZE = 0.1  # of the largest wave that the full band alone shows
 FAST_BIAS = 0.05  # of a wave in the full band: what numbers by the pass band and a smoothed angle make of it (assumed)
 MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
-SIGNIFICANCE_SIGMA = 3.0  # of a wave in the full band: a smaller one is left out
 MAX_DEPTH = 0.95  # of dry friction, that its waves take in all: friction stays positive
 
 

@@ -13,14 +13,13 @@ import numpy as np
 
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import LOSSES
-from strainwave.identification.experiments.motion_log import inertia_of
+from strainwave.identification.experiments.motion_log import MIN_INERTIA_SHARE, inertia_of
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.statistics.linear_fit import solved
 
 MOTOR, LOAD = "motor.inertia", "load.inertia"
 RELATIVE_STEP = 1e-3  # of all that turns, for a derivative
 SHARE_OF_UNKNOWN_ROTOR = 3.0**-0.5  # rms share of the rotor in all that turns, if any share is as likely as another
-MIN_INERTIA_SHARE = 0.02  # of the load before: from where its fit starts
 
 
 def inertia_at_input(best: MotionCandidate) -> float:

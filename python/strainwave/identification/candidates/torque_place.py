@@ -15,8 +15,8 @@ from strainwave import Drive
 from strainwave.identification.candidates.plain import Plain, fit_plain, inertia_with_sigma, moving
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
-SIGNIFICANCE_SIGMA = 3.0  # standard deviations, by which the rotor must have more inertia than all that turns
 ROTOR_MARGIN = 1.2  # times the inertia of the rotor: a joint torque with less of it was measured behind the rotor
 MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a joint torque with less was measured behind the gear
 MIN_FRICTION_OF_INPUT = 0.1  # of the friction of the start set: with less, a joint torque may lack the rotor (assumed)

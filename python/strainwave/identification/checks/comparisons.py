@@ -34,11 +34,9 @@ FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")
 SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
 MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
-# Standard deviation of a part from run to run, in logarithms.
-REPEATABILITY = dict.fromkeys(("friction_input", "friction_mesh", "steady_friction", "hysteresis"), 0.2)
-REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
-CHANGING = ("gear.friction_input.", "steady_friction", "load.")  # with temperature, running-in and pose
-GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench (assumed)
+# Relative standard deviation of numbers from run to run of one gear, by temperature, running-in and pose (assumed).
+REPEATABILITY = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
+GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench: of all other numbers (assumed)
 
 
 @dataclass(frozen=True)
@@ -263,7 +261,7 @@ def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, File
 
 def repeatability(path: str) -> float:
     """Return the relative standard deviation of a parameter from run to run of one gear, by its path."""
-    return REPEATABILITY.get(path.removeprefix("gear.").partition(".")[0], REPEATABILITY_OF_OTHERS)
+    return REPEATABILITY.get(path.removeprefix("gear.").partition(".")[0], GAIN_SIGMA)
 
 
 class _Contradiction(NamedTuple):
@@ -275,7 +273,7 @@ class _Contradiction(NamedTuple):
 
 def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     best = min(one, other, key=lambda each: each.sigma)
-    spread = (repeatability(best.path) if best.path.startswith(CHANGING) else GAIN_SIGMA) * abs(best.value)
+    spread = repeatability(best.path) * abs(best.value)
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     words = (
         f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}, "

@@ -14,14 +14,13 @@ from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.held_out import MAX_UNEXPLAINED, HeldOut
 from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
-MAX_UNEXPLAINED = 0.5  # of what varies on data held out
 FRICTION_BIAS = 0.02  # of an inertia by the torque of a motor: what a law of friction lacks goes into it (assumed)
 MIN_RATIO_SIGMA = 3.0  # standard deviations beyond which a measured ratio is another one
 MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by less

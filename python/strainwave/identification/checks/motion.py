@@ -20,6 +20,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
@@ -28,7 +29,6 @@ STANDARD_GRAVITY = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
 MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
 RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
-MIN_READING_GAIN_SIGMA = 3.0  # standard deviations of a gain over the blocks of the motion
 MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
 MOTION_BLOCKS = 10  # of the motion
 MIN_ROWS_PER_BLOCK = 5
@@ -138,7 +138,7 @@ def _best_scale(best: MotionCandidate, drive: Drive) -> float:
 def _is_less(squares: Array, usual: Array) -> bool:
     """True if squares are smaller than the usual ones all over the motion, beyond chance."""
     gains = np.array([block.sum() for block in np.array_split(usual - squares, MOTION_BLOCKS)])
-    return bool(gains.sum() > MIN_READING_GAIN_SIGMA * float(np.std(gains, ddof=1)) * np.sqrt(MOTION_BLOCKS))
+    return sigmas_of_gain(gains) > MIN_READING_GAIN_SIGMA
 
 
 def _delay(best: MotionCandidate) -> float:

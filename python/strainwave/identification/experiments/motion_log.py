@@ -43,6 +43,7 @@ OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # nu
 TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
 FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
+MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
 INPUT_COUNT, LOAD_PLACE, TEMPERATURE_PLACE = 6, 2, 4  # inputs of the inverse dynamics, and places of two of them
 
 

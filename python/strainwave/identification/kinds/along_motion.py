@@ -20,7 +20,6 @@ from strainwave.identification.candidates.rotor import (
     with_rotor,
 )
 from strainwave.identification.checks.logs import (
-    MAX_UNEXPLAINED,
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
@@ -39,13 +38,15 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.determined import friction_at
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
-from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA
 from strainwave.identification.results.motor_inertia import MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
+from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
 
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
@@ -198,14 +199,7 @@ def _judged(
     Of a record at one speed the fit itself splits friction as the set does.
     """
     estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
-    return (best, estimates) if taken.in_current or best.model.one_speed else _with_set_before(best, estimates, known)
-
-
-def _with_set_before(
-    best: MotionCandidate, estimates: list[FileEstimate], known: GearSoFar
-) -> tuple[MotionCandidate, list[FileEstimate]]:
-    """Return a model and its estimates with the set before the log as the prior of what the log does not determine."""
-    priors = priors_of_undetermined(best.fit, estimates, known)
+    priors = {} if taken.in_current or best.model.one_speed else priors_of_undetermined(best.fit, estimates, known)
     if not priors:
         return best, estimates
     again = _with_priors(best, priors)

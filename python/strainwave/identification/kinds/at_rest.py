@@ -20,7 +20,6 @@ from strainwave.identification.reading.roles import ColumnRoles, first, measured
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 
-SIGNIFICANCE_SIGMA = 3.0  # beyond which two numbers differ
 SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
 BRISTLES = (friction.LuGre, friction.MaxwellSlipFriction)
 WITH_BREAKAWAY = (*SLIDING, friction.LuGre)  # laws with a torque of breakaway

@@ -14,7 +14,6 @@ from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, on
 from strainwave.identification.experiments.presliding import breakaways
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.kinds.at_rest import (
-    SIGNIFICANCE_SIGMA,
     WITH_BREAKAWAY,
     AtRest,
     angle_and_effort,
@@ -29,8 +28,10 @@ from strainwave.identification.reading.motions import MAX_SPEED_AT_REST, runs_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import first
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.parameters import plain
 from strainwave.statistics.residuals import rms
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 

@@ -18,10 +18,10 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, measured
 from strainwave.identification.reading.sides import UndecidedError, pair
-from strainwave.identification.readings import MAX_UNEXPLAINED
 from strainwave.identification.results.determined import MIN_SPEEDS
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.ratio import with_ratio
 from strainwave.messages import listed
 

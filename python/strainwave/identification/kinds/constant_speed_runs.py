@@ -28,6 +28,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.undetermined import with_friction_at
 from strainwave.messages import listed
 from strainwave.statistics.residuals import rms
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Together = tuple[tuple[FileResult, ...], GearSoFar]  # the results of several files, and the gear with them
@@ -35,7 +36,6 @@ Together = tuple[tuple[FileResult, ...], GearSoFar]  # the results of several fi
 MAX_CHANGE = 0.05  # of the median speed, by which the speed of a record at one speed varies
 MIN_SHARE_OF_ROWS = 0.95  # of a record at one speed, whose speed varies by no more
 WHOLE_TURN = 0.98  # of a turn, from which on it counts as whole
-SIGNIFICANCE_SIGMA = 3.0  # a parabola over the angle that is smaller is not significant
 MAX_CHANCE = 1e-3  # probability, over all orders, that chance alone gives a wave
 JOINED = "records at constant speed"
 WHAT = "friction over the angle, at constant speed"

@@ -15,7 +15,6 @@ from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING
 from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.kinds.at_rest import (
     BRISTLES,
-    SIGNIFICANCE_SIGMA,
     SLIDING,
     WITH_BREAKAWAY,
     AtRest,
@@ -28,9 +27,11 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
-from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.parameters import plain
 from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 
 class Presliding(AtRest):

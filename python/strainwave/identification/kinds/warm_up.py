@@ -20,7 +20,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 Array = NDArray[np.float64]
 
 EFFORTS = ("joint_torque", "input_torque", "current")
-SIGNIFICANCE_SIGMA = 2.0  # beyond which friction changes with the temperature
+MIN_CHANGE_SIGMA = 2.0  # beyond which friction changes with the temperature
 TEMPERATURE_CLASSES = 24  # in the figure
 MIN_SAMPLES_PER_CLASS = 10
 
@@ -43,7 +43,7 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     except ValueError:
         return None
     fall, slope, level = found.fall, found.slope, found.friction
-    sure = abs(fall.value) > SIGNIFICANCE_SIGMA * fall.sigma
+    sure = abs(fall.value) > MIN_CHANGE_SIGMA * fall.sigma
     why = "" if sure else "the friction does not change with the temperature beyond chance"
     low, high = slope.interval(0.95)
     remarks = (

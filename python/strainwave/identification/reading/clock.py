@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 MAX_SCATTER = 0.2  # of a step: root mean square of stamps about a regular clock, above which ticks could not be counted
 MAX_SCATTER_OF_EXACT = 1e-3  # of a step: such stamps are taken as they are
-SIGNIFICANCE_SIGMA = 3.0  # by which an angle follows its stamps rather than a clock
 REPEAT_WINDOW = 0.5  # of a step: a row with the values of the row before it and a stamp so near is a repetition
 MIN_STEPS_BACK = 10.0  # of a clock that has begun anew
 MAX_SHARED_STAMPS = 0.05  # of the rows: if more share the stamp of the row before, stamps are coarser than the samples

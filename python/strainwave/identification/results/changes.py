@@ -15,10 +15,10 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.parameters import every
 from strainwave.statistics.linear_fit import normal_inverse
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 
-SIGNIFICANCE_SIGMA = 3.0  # standard deviations by which a change must differ from none
 MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
 MIN_CHANGE_TEXT = f"{100.0 * MIN_CHANGE:g} %"
 MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it

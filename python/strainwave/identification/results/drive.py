@@ -23,10 +23,10 @@ from strainwave.identification.experiments.motion_log import MIN_INERTIA, Motion
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
 from strainwave.identification.results.file_result import IN_CURRENT, FileEstimate, FileResult
-from strainwave.identification.results.gear_so_far import is_of, plain, source_of
+from strainwave.identification.results.gear_so_far import is_of, source_of
 from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
-from strainwave.parameters import gear_numbers
+from strainwave.parameters import gear_numbers, plain
 
 Array = NDArray[np.float64]
 

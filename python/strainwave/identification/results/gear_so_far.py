@@ -16,7 +16,7 @@ from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.messages import one_line
-from strainwave.parameters import gear_numbers
+from strainwave.parameters import gear_numbers, plain
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
 EXACT_SPREAD = 1e-9  # relative standard deviation of a number that is stated as exact
@@ -170,15 +170,6 @@ def is_of(path: str, parts: Collection[str]) -> bool:
     (True, True, False)
     """
     return path.startswith("gear.") and path.removeprefix("gear.").partition(".")[0] in parts
-
-
-def plain(path: str) -> str:
-    """Return the path of a number without the laws that it stands inside.
-
-    >>> plain("gear.friction_input.law.law.coulomb")
-    'gear.friction_input.coulomb'
-    """
-    return ".".join(part for part in path.split(".") if part != "law")
 
 
 def source_of(estimate: FileEstimate, name: str) -> Entry:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
 MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
 MAX_IN_BAND = 0.01  # of what varies in the pass band

@@ -17,7 +17,7 @@ from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEst
 from strainwave.statistics.determined_sum import DeterminedSum, sum_by_covariance, sum_by_information
 
 MAX_SIGMA_OF_PHASE = 0.5  # rad
-MAX_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
+MAX_RELATIVE_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
 MAX_SHIFT_BY_WRONG = 0.05  # relative shift by a kept parameter that the measurement contradicts
 MIN_SHIFT_LISTED = 0.02  # relative shift; smaller ones are not listed
 MAX_LISTED = 3  # kept parameters named with an estimate
@@ -116,7 +116,7 @@ def _law(path: str, gear: Any) -> str:
 def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
     """Return the kept parameters whose uncertainty shifts an estimate far; empty if none does."""
     size = _size(estimate)
-    far = [f"{path} by {100.0 * shift / size:.2g} %" for path, shift in shifts.items() if shift > MAX_SHIFT * size]
+    far = [f"{path} by {100.0 * shift / size:.2g} %" for path, shift in shifts.items() if shift > MAX_RELATIVE_SHIFT * size]
     return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_LISTED])}" if far else ""
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.results.combined_parameter import CombinedParameter
 from strainwave.identification.results.file_result import FileResult, State
-from strainwave.identification.results.gear_so_far import plain
-from strainwave.parameters import gear_numbers
+from strainwave.parameters import gear_numbers, plain
 
 UNDETERMINED = "no file determines it"
 

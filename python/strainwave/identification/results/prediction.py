@@ -11,10 +11,12 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
-from strainwave.identification.results.changes import DRY, FRICTION, GRAVITY, INERTIA, SIGNIFICANCE_SIGMA, PartChange
+from strainwave.identification.results.changes import DRY, FRICTION, GRAVITY, INERTIA, PartChange
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import Picture
+from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.orders.lines import SpectrumLine
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
 MAX_SHARE_LEFT = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
-MAX_UNEXPLAINED = 0.5  # of what varies, for a gear without errors on its own files of this kind
 
 Verdict = Literal["agrees", "differs", "contradicts", "refused"]
 

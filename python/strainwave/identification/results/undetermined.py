@@ -14,9 +14,10 @@ from strainwave.files.entries import Entry
 from strainwave.identification.fitting.fit import Fit, solved_problem, with_priors
 from strainwave.identification.results.determined import sizes_of
 from strainwave.identification.results.file_result import FileEstimate
-from strainwave.identification.results.gear_so_far import START_SPREAD, GearSoFar, plain
+from strainwave.identification.results.gear_so_far import START_SPREAD, GearSoFar
 from strainwave.identification.results.identifiability import MAX_CORRELATION, combination
 from strainwave.messages import listed, one_line
+from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.linear_fit import normal_inverse
 
@@ -25,7 +26,7 @@ Array = NDArray[np.float64]
 BY_SET = "determined together with numbers that are not identified, between which the set before the file divides"
 DIVIDED = friction.Coulomb | friction.Stribeck | friction.LuGre  # laws with Coulomb and viscous friction
 MIN_RELATIVE_SIGMA = 1e-3  # of a torque: friction is repeated no better
-MAX_SHIFT = 1.0  # standard deviations: an estimate that its prior moves farther is determined in combination only
+MAX_SHIFT_SIGMA = 1.0  # standard deviations: an estimate that its prior moves farther is determined in combination only
 
 
 def with_set_before(
@@ -122,7 +123,7 @@ def _moved(each: FileEstimate, place: int, again: Fit, found: Fit, prior: PriorO
     if prior is None:
         return replace(each, value=new.value)
     sums = combination(found, place)
-    is_split = bool(sums) or (not each.why and abs(new.value - each.value) > MAX_SHIFT * each.sigma)
+    is_split = bool(sums) or (not each.why and abs(new.value - each.value) > MAX_SHIFT_SIGMA * each.sigma)
     return replace(
         each, value=new.value,
         sigma=float(np.hypot(1.0 / np.hypot(1.0 / max(each.sigma, 1e-300), 1.0 / prior.sigma), each.common)),

@@ -32,6 +32,7 @@ from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.soft_spot import SoftSpot, soft_spots
 from strainwave.rig.analysis.stiffness import Stiffness, segments_of, stiffness_of
 from strainwave.rig.loop import Loop
+from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Definition = Literal["secant", "regression", "softest"]
 DEFINITIONS: dict[Definition, str] = {
@@ -41,7 +42,6 @@ DEFINITIONS: dict[Definition, str] = {
 }
 MAX_MISFIT = 4.0  # chi-square per degree of freedom of a regime that is one straight line
 PEAK_TOLERANCE = 0.1  # of the rated torque, for the peaks of a cycle at rated torque
-SIGNIFICANCE_SIGMA = 3.0  # of a closure error that is reported
 MIN_CLOSURE = 0.02  # of the hysteresis: a smaller closure error is not reported
 MAX_LOST_MOTION = 3.0  # arcmin; makers allow 1 to 3: a cycle that turns by more is no test of lost motion
 MAX_POINTS = 100_000  # of a loop; of a longer one the means of so many stretches are evaluated

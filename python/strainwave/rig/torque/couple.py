@@ -24,7 +24,7 @@ from strainwave.rig.vision.camera import changes_nothing, flat
 from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
-SIGNIFICANCE_SIGMA = 4.0  # standard deviations beyond which a shift is reported
+MIN_SHIFT_SIGMA = 4.0  # standard deviations beyond which a shift is reported
 MIN_PHOTOGRAPHS = 6  # three vectors are fitted
 
 
@@ -54,7 +54,7 @@ class Couple:
     @property
     def pure(self) -> bool:
         """True if the shift can be chance."""
-        return self.size <= SIGNIFICANCE_SIGMA * self.sigma
+        return self.size <= MIN_SHIFT_SIGMA * self.sigma
 
     def __str__(self) -> str:
         """The finding in one line."""
