@@ -130,7 +130,7 @@ def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
     best = search.grown(best, [*PARTS, with_ripple])
-    return _with(best, _with_ripple(best))
+    return _with(best, replace(best, rippled=True).predicted_anew())
 
 
 def _check_compared(log: MotionLog, held_out: Sequence[Rows]) -> None:
@@ -302,11 +302,6 @@ def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
 
     coarse = min(BENDS.tolist(), key=error)
     return replace(best, bend=min((coarse * NEAR_BENDS).tolist(), key=error)).predicted_anew()
-
-
-def _with_ripple(best: MotionCandidate) -> MotionCandidate:
-    """Return the same with a torque that repeats with the input's rotation."""
-    return replace(best, rippled=True).predicted_anew()
 
 
 # ---- Fit -----------------------------------------------------------------------------------------------------------------

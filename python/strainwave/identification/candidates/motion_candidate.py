@@ -158,8 +158,9 @@ class MotionCandidate(ComparedByFields):
 
     def gain_over(self, other: MotionCandidate) -> float:
         """Return by how many standard deviations the squares of the residuals are smaller than those of another model."""
-        gains = np.array([block.sum() for pair in zip(other.residuals, self.residuals, strict=True) for block in _gain(*pair)])
-        return sigmas_of_gain(without_single_events(gains))
+        stretches = [before**2 - after**2 for before, after in zip(other.residuals, self.residuals, strict=True)]
+        gains = [block.sum() for stretch in stretches for block in np.array_split(stretch, GAIN_BLOCKS)]
+        return sigmas_of_gain(without_single_events(np.array(gains)))
 
     def predicts_as_well_as(self, other: MotionCandidate) -> bool:
         """True if its error in the pass band is no larger, but for chance: what bends at reversals is compared nowhere else."""
@@ -175,11 +176,6 @@ class MotionCandidate(ComparedByFields):
         """True if it explains more of its own, narrower band, and predicts no worse."""
         is_narrower = self.log.motion.cutoff < other.log.motion.cutoff
         return is_narrower and self.unexplained < other.unexplained and MAX_ERROR * self.error < other.error
-
-
-def _gain(before: Array, after: Array) -> list[Array]:
-    """Return by how much the squares of residuals become smaller, in blocks of a stretch."""
-    return np.array_split(before**2 - after**2, GAIN_BLOCKS)
 
 
 def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> MotionCandidate:

@@ -73,7 +73,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     if not {"input_angle", "output_angle"} & set(recording.names):
         recording, remark = _with_angle(recording)
         remarks.append(remark)
-    if not in_current and "current" in recording and not _constant_known(file, known.gear_set):
+    constant_known = "torque_constant" in file.constants or hasattr(known.gear_set.motor, "torque_constant")
+    if not in_current and "current" in recording and not constant_known:
         remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
         recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive, regressors=file.regressors)
@@ -134,10 +135,6 @@ def _joint(file: Recognised) -> str:
     """Return the name of the joint, as the columns of other joints have theirs."""
     own = next(column for name, column in file.columns.items() if name.endswith(("_angle", "_speed")))
     return file.joint or which_of(words_of(own))
-
-
-def _constant_known(file: Recognised, gear_set: GearSet) -> bool:
-    return "torque_constant" in file.constants or hasattr(gear_set.motor, "torque_constant")
 
 
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:

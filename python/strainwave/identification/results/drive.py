@@ -164,7 +164,8 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
             sources[path] = replace(stated, source=f"assumed: that of the start set, as {log.name} does not determine it")
         else:
             sources[path] = Entry(f"assumed: {log.name} does not determine it")
-    least = MIN_LOAD_SHARE * _rotor_of(drive)
+    rotor = (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2  # as the output has it
+    least = MIN_LOAD_SHARE * float(rotor)
     if hasattr(load, "inertia") and load.inertia < least:  # with less, no step of a simulation would be short enough
         load = load.replace(inertia=least)
         sources[LOAD] = Entry(f"assumed: {100.0 * MIN_LOAD_SHARE:g} % of the rotor's; {log.name} shows none")
@@ -196,11 +197,6 @@ def _motor_of(log: FileResult) -> Any:
         return drive.motor
     given = {} if log.recognised is None else log.recognised.constants
     return motor.CurrentSource(torque_constant=given["torque_constant"]) if "torque_constant" in given else motor.TorqueSource()
-
-
-def _rotor_of(drive: Drive) -> float:
-    """Return the inertia that turns at the input, as the output has it [kg.m2]."""
-    return float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
 
 
 def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
