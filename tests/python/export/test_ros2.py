@@ -10,7 +10,6 @@ import strainwave as sw
 import yaml
 from typer.testing import CliRunner
 
-
 ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:include filename="{folder}/elbow.xacro"/>
   <link name="upper_arm"/><link name="forearm"/>
@@ -39,7 +38,9 @@ def test_macros_make_a_joint_of_a_robot(tmp_path):
     assert (joint.parent, joint.child, joint.origin.xyz) == ("upper_arm", "forearm", [0.0, 0.0, 0.3])
     assert (joint.limit.lower, joint.limit.upper) == (-2.6, 2.6)
     assert joint.limit.effort == pytest.approx(gear_set.ratings["peak_torque"].value)
-    assert joint.limit.velocity * abs(gear_set.gear.kinematics.ratio) == pytest.approx(3500.0 * np.pi / 30.0)  # average input speed of the ratings
+    assert joint.limit.velocity * abs(gear_set.gear.kinematics.ratio) == pytest.approx(
+        3500.0 * np.pi / 30.0
+    )  # average input speed of the ratings
     assert joint.dynamics.friction == found.numbers["frictionloss"][0]
     (system,) = ElementTree.fromstring(text).findall("ros2_control")
     assert (system.get("type"), system.findtext("hardware/plugin")) == ("system", "mine/System")
