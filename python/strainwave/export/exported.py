@@ -18,7 +18,14 @@ from strainwave.tuning.loss import ExportLoss
 Args = ParamSpec("Args")
 ORIGINS_FILE = "origins.txt"  # where no file of an export has comments
 XML = "<!-- "
-COMMENTS = {".xml": XML, ".urdf": XML, ".yaml": "# ", ".py": "# ", ".mo": "// "}  # beginning of a comment by ending of the name
+COMMENTS = {
+    ".xml": XML,
+    ".urdf": XML,
+    ".xacro": XML,
+    ".yaml": "# ",
+    ".py": "# ",
+    ".mo": "// ",
+}  # beginning of a comment by ending of the name
 NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # beginnings of sources of such numbers
 
 
@@ -61,8 +68,9 @@ def stating_origins(write: Callable[Args, Exported]) -> Callable[Args, Exported]
     @wraps(write)
     def exported(*args: Args.args, **kwargs: Args.kwargs) -> Exported:
         found, model = write(*args, **kwargs), (*args, *kwargs.values())[0]
-        gear_set = GearSet.read(model) if isinstance(model, str | Path) else model
-        return _with_origins(found, gear_set) if isinstance(gear_set, GearSet) else found
+        if isinstance(model, str | Path) and Path(model).suffix == ".toml":  # nothing of a catalogue was identified
+            model = GearSet.read(model)
+        return _with_origins(found, model) if isinstance(model, GearSet) else found
 
     return exported
 
@@ -76,17 +84,19 @@ def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
     >>> found = sw.export.joint(gear.replace(sources={**gear.sources, "gear.friction_input.viscous": why}))
     >>> found.remarks[-1]
     'gear.friction_input.viscous: identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m'
-    >>> print(found.files["joint.xml"][:45])
-    <!-- identified, with one standard deviation:
+    >>> print(found.files["joint.xml"][:67])
+    <!-- numbers of CSG-20-100
+    identified, with one standard deviation:
     """
     paths = dict[str, list[str]]()
     for path, entry in gear_set.sources.items():
         if entry.source.startswith(NOT_BY_ITSELF):
             paths.setdefault(entry.source, []).append(path)
     remarks = (f"{listed(names)}: {source}" for source, names in paths.items())
-    files = {path: _commented(path, content, gear_set.origins) for path, content in found.files.items()}
-    if gear_set.origins and files == found.files:
-        files[ORIGINS_FILE] = "\n".join(gear_set.origins) + "\n"
+    lines = [f"numbers of {gear_set.name}", *origins] if (origins := gear_set.origins) else []
+    files = {path: _commented(path, content, lines) for path, content in found.files.items()}
+    if lines and files == found.files:
+        files[ORIGINS_FILE] = "\n".join(lines) + "\n"
     return replace(found, files=files, remarks=(*found.remarks, *remarks))
 
 

@@ -18,7 +18,7 @@ def sigmas_of_gain(gains: Array) -> float:
     >>> round(sigmas_of_gain(np.array([1.0, 2.0, 3.0])), 2)
     3.46
     """
-    spread = float(np.std(gains, ddof=1)) * np.sqrt(len(gains))
+    spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains)))
     return float(gains.sum()) / spread if spread > 0.0 else 0.0
 
 

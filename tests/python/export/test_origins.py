@@ -22,7 +22,7 @@ LINE = f"{DAMPING} = {JOINT.gear.damping:.6g} ± 1e-06 N.m.s/rad, identified fro
     [
         (sw.export.joint(IDENTIFIED), ["joint.xml", "joint.urdf"]),
         (sw.export.mjcf(IDENTIFIED), ["gear.xml"]),
-        (sw.export.ros2(IDENTIFIED, name="elbow"), ["elbow_limits.yaml", "elbow.ros2_control.xml", "drive_node.py"]),
+        (sw.export.ros2(IDENTIFIED, name="elbow"), ["elbow.xacro", "elbow_controllers.yaml", "drive_node.py"]),
         (sw.export.fmu(IDENTIFIED, platforms=(), name="block"), [ORIGINS_FILE]),
         (sw.export.slot(IDENTIFIED, "coulomb-viscous"), [ORIGINS_FILE]),
     ],
@@ -34,7 +34,7 @@ def test_files_state_what_was_identified_and_are_read_as_without(found: Exported
         assert isinstance(text, str)
         assert LINE in text
         assert "gear.input_inertia = " in text
-        if name.endswith((".xml", ".urdf")):
+        if name.endswith((".xml", ".urdf", ".xacro")):
             ElementTree.fromstring(text)
         elif name.endswith(".yaml"):
             assert isinstance(yaml.safe_load(text), dict)
