@@ -55,9 +55,9 @@ Angle<double> turned(double angle) {
     return {angle - 2.0 * pi * turns, turns};
 }
 
-void check_domain(const std::string& law, const Domain<double>& domain) {
+void check_domain(std::string_view law, const Domain<double>& domain) {
     if (domain.holds()) return;
-    throw nb::value_error((law + ": " + outside(domain)).c_str());
+    throw nb::value_error((std::string(law) + ": " + outside(domain)).c_str());
 }
 
 namespace {

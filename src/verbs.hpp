@@ -24,7 +24,7 @@ std::pair<Values, double*> like(const Argument& model);
 Angle<double> turned(double angle);
 
 /// Refuses an argument outside of where a law is valid.
-void check_domain(const std::string& law, const Domain<double>& domain);
+void check_domain(std::string_view law, const Domain<double>& domain);
 
 /// A part of the general drive by itself.
 template <class Part>

@@ -205,7 +205,10 @@ struct Gear {
     /// the stiffness is `factor` times its mean.
     constexpr S held_torque(const S& twist, const typename Hysteresis::State& held, const S& moved, const S& temperature,
                             const S& factor = S(1.0)) const {
-        const S elastic = factor * stiffness.torque(twist), remembered = hysteresis.torque(held, moved);
+        return softened(factor * stiffness.torque(twist), hysteresis.torque(held, moved), temperature);
+    }
+    /// Sum of the torques of spring and hysteresis [N.m] at a temperature [K].
+    constexpr S softened(const S& elastic, const S& remembered, const S& temperature) const {
         if (!softening.active()) return elastic + remembered;
         return softening.of_stiffness(temperature) * elastic + softening.of_hysteresis(temperature) * remembered;
     }

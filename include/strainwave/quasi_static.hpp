@@ -9,7 +9,7 @@ template <class S, class Gear>
 class QuasiStatic {
     const Gear& gear;
     const S temperature;
-    typename decltype(Gear{}.hysteresis)::State held;
+    decltype(initial_state(gear.hysteresis)) held;
     S at, factor{1.0};
 
 public:
@@ -21,7 +21,10 @@ public:
     /// The stiffness of the spring, relative to its mean, for all later calls.
     constexpr void vary(const S& stiffness_factor) { factor = stiffness_factor; }
     constexpr void move(const S& twist) {
-        held = gear.hysteresis.advance(held, twist - at);
+        if constexpr (requires { gear.hysteresis.move(held, twist - at); })
+            gear.hysteresis.move(held, twist - at);
+        else
+            held = gear.hysteresis.advance(held, twist - at);
         at = twist;
     }
 

@@ -1,9 +1,8 @@
 #include "../kernel/differentiate.hpp"
 
-#include <strainwave/quasi_static.hpp>
-
 #include "../kernel/entries.hpp"
 #include "drives.hpp"
+#include "hysteresis_laws.hpp"
 #include "verbs.hpp"
 
 namespace strainwave::general {
@@ -63,22 +62,25 @@ void differentiate_rates(const Set& set, const State& x, const Input& u, std::si
 
 void differentiate_loop(const Set& set, const double* twist, std::size_t n, const std::vector<int>& parameters, double* out,
                         double* by_number, const AtPoint& at_point) {
+    if (n == 0) return;
     const std::size_t shift = parameters.size();
     for (std::size_t first = 0; first <= shift; first += slopes)
         with_seeded_gear(set, parameters, first, [&](const auto& gear) {
-            const auto point = [&](std::size_t i) {
-                Slope x(twist[i]);
-                if (i > 0 && shift < first + slopes) x.slope[shift - first] = 1.0;
-                return x;
-            };
-            QuasiStatic<Slope, GeneralGear<Slope>> moved(gear, Slope(room_temperature), point(0));
-            for (std::size_t i = 0; i < n; ++i) {
-                at_point(i);
-                if (i > 0) moved.move(point(i));
-                const Slope torque = moved.torque(point(i));
-                out[i] = torque.value;
-                for (std::size_t p = first; p < first + slopes && p <= shift; ++p) by_number[p * n + i] = torque.slope[p - first];
-            }
+            const std::size_t last = std::min(shift + 1, first + slopes);
+            with_quasi_static(gear, Slope(twist[0]), [&](auto moved) {
+                const auto write = [&](std::size_t i, const Slope& torque) {
+                    out[i] = torque.value;
+                    for (std::size_t p = first; p < last; ++p) by_number[p * n + i] = torque.slope[p - first];
+                };
+                write(0, moved.torque(Slope(twist[0])));
+                Slope point = seeded(0.0, int(shift - first));
+                for (std::size_t i = 1; i < n; ++i) {
+                    at_point(i);
+                    point.value = twist[i];
+                    moved.move(point);
+                    write(i, moved.torque(point));
+                }
+            });
         });
 }
 

@@ -1,8 +1,7 @@
 #include "../kernel/run.hpp"
 
-#include <strainwave/quasi_static.hpp>
-
 #include "drives.hpp"
+#include "hysteresis_laws.hpp"
 #include "verbs.hpp"
 
 namespace strainwave::general {
@@ -160,25 +159,27 @@ std::vector<double> observe(const Set& set, const State& x, const Input& u) {
 
 void trace(const Set& set, const double* twist, std::size_t n, double* torque, const AtPoint& at_point) {
     with_gear(set, [&](const auto& gear) {
-        QuasiStatic<double, GeneralGear<double>> moved(gear, room_temperature);
-        for (std::size_t i = 0; i < n; ++i) {
-            at_point(i);
-            moved.move(twist[i]);
-            torque[i] = moved.torque(twist[i]);
-        }
+        with_quasi_static(gear, 0.0, [&](auto moved) {
+            for (std::size_t i = 0; i < n; ++i) {
+                at_point(i);
+                moved.move(twist[i]);
+                torque[i] = moved.torque(twist[i]);
+            }
+        });
     });
 }
 
 std::size_t twist(const Set& set, const double* torque, std::size_t n, double* twist, const AtPoint& at_point) {
     return with_gear(set, [&](const auto& gear) {
-        QuasiStatic<double, GeneralGear<double>> moved(gear, room_temperature);
-        for (std::size_t i = 0; i < n; ++i) {
-            at_point(i);
-            twist[i] = moved.twist(torque[i]);
-            if (!(abs(twist[i]) <= unbounded) || !domain<double>(gear.stiffness, twist[i]).holds()) return i;
-            moved.move(twist[i]);
-        }
-        return n;
+        return with_quasi_static(gear, 0.0, [&](auto moved) {
+            for (std::size_t i = 0; i < n; ++i) {
+                at_point(i);
+                twist[i] = moved.twist(torque[i]);
+                if (!(abs(twist[i]) <= unbounded) || !domain<double>(gear.stiffness, twist[i]).holds()) return i;
+                moved.move(twist[i]);
+            }
+            return n;
+        });
     });
 }
 

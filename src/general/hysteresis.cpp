@@ -1,15 +1,8 @@
 #include "hysteresis.hpp"
 
-#include <strainwave/hysteresis/models.hpp>
-
-#include "laws.hpp"
+#include "hysteresis_laws.hpp"
 
 namespace strainwave::general {
-
-template <class S>
-using DensityLaws = Laws<S, hysteresis::Densities>;
-template <class S>
-using HysteresisLaws = Laws<S, hysteresis::Models, Density<S>>;
 
 template <class S>
 void Density<S>::read(kernel::Reader<S>& from) {

@@ -56,11 +56,19 @@ struct Entries {
     template <int n>
     static void inverse_dynamics(const Set& set, const double* motion, const double* inputs, std::size_t instants,
                                  const int* parameters, std::size_t count, double* torque, double* slopes) {
+        if (count == 0)
+            Drives::with(set, set.numbers, [&](const auto& drive) {
+                needed_torques<double>(drive, motion, inputs, instants, [&](std::size_t i, double needed) { torque[i] = needed; });
+                return Outcome{};
+            });
         Buffer<Dual<n>> numbers(std::size_t(set.count));
-        for (std::size_t first = 0; first == 0 || first < count; first += n) {
+        for (std::size_t first = 0; first < count; first += n) {
             seed(set, parameters, count, first, numbers.data());
             Drives::with(set, static_cast<const Dual<n>*>(numbers.data()), [&](const auto& drive) {
-                needed_torques<n>(drive, motion, inputs, instants, first, count, torque, slopes);
+                needed_torques<Dual<n>>(drive, motion, inputs, instants, [&](std::size_t i, const Dual<n>& needed) {
+                    torque[i] = needed.value;
+                    for (std::size_t p = first; p < first + n && p < count; ++p) slopes[p * instants + i] = needed.slope[p - first];
+                });
                 return Outcome{};
             });
         }

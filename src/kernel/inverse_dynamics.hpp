@@ -69,17 +69,12 @@ S needed_torque(const Drive& drive, typename Drive::State& x, const Motion& now,
            friction::torque(gear.friction_input, x.continuous.friction_input, at.input.steady());
 }
 
-/// Torques at consecutive instants: `motion` has `Motion::count` numbers of each.
-template <int n, class Drive>
-void needed_torques(const Drive& drive, const double* motion, const double* inputs, std::size_t instants, std::size_t first,
-                    std::size_t count, double* torque, double* slopes) {
+/// Calls write(instant, torque) for consecutive instants: `motion` has `Motion::count` numbers of each.
+template <class S, class Drive, class Write>
+void needed_torques(const Drive& drive, const double* motion, const double* inputs, std::size_t instants, const Write& write) {
     auto x = drive.initial_state();
-    for (std::size_t i = 0; i < instants; ++i) {
-        const Motion now = motion_from(motion + Motion::count * i);
-        const Dual<n> needed = needed_torque<Dual<n>>(drive, x, now, input_from<Dual<n>>(inputs + input_count * i));
-        torque[i] = needed.value;
-        for (std::size_t p = first; p < first + n && p < count; ++p) slopes[p * instants + i] = needed.slope[p - first];
-    }
+    for (std::size_t i = 0; i < instants; ++i)
+        write(i, needed_torque<S>(drive, x, motion_from(motion + Motion::count * i), input_from<S>(inputs + input_count * i)));
 }
 
 }  // namespace strainwave::kernel

@@ -52,6 +52,11 @@ struct MaxwellSlip {
         }
     };
 
+    /// Move the twist by `increment` [rad], monotonically; only the elements that there are change.
+    constexpr void move(State& x, const S& increment) const {
+        for (int i = 0; i < stiffness.count; ++i) x.torque[i] = held(x, i, increment);
+    }
+
     /// The elements after the twist has moved by `increment` [rad], monotonically.
     constexpr State advance(const State& x, const S& increment) const {
         State next{};

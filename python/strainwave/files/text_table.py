@@ -313,7 +313,7 @@ class CsvTable:
         )
         seconds = {source.name for source in dates}
         found = {name: table.column(key) for name, key in keys.items()}
-        return {name: _seconds(column) if name in seconds else column.to_numpy() for name, column in found.items()}
+        return {name: _seconds(column) if name in seconds else _numbers(column) for name, column in found.items()}
 
     def _date_type(self, source: ColumnSource) -> pyarrow.DataType:
         """A time stamp, with the zone, if the first one has one; a text, where it is none that Arrow reads."""
@@ -371,6 +371,17 @@ def _content(cells: Sequence[str]) -> Content:
         return "numbers"
     is_date = cells and any(all(form.fullmatch(cell) for cell in cells) for form in (_DATE, CLOCK))
     return "dates" if is_date else "other"
+
+
+def _numbers(column: pyarrow.ChunkedArray) -> Array:
+    """Return the numbers of a column, nan for none. Arrow's own way imports pandas, which takes a quarter of a second."""
+    whole = column.combine_chunks()
+    valid, values = whole.buffers()
+    part = slice(whole.offset, whole.offset + len(whole))
+    numbers = np.frombuffer(values, float)[part].copy() if len(whole) else np.empty(0)
+    if whole.null_count:
+        numbers[np.unpackbits(np.frombuffer(valid, np.uint8), bitorder="little")[part] == 0] = np.nan
+    return numbers
 
 
 def _seconds(column: pyarrow.ChunkedArray) -> Array:

@@ -274,7 +274,7 @@ class _Fits:
         fits.fit_all(files)
         return fits
 
-    @one_thread_of_algebra()
+    @one_thread_of_algebra
     def fit_all(self, files: Sequence[Recognised]) -> None:
         """Fit each file in the turn of its kind, and what files of a kind determine together."""
         kinds = [kind_named(name) for name in KINDS]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import ContextDecorator
 from functools import cache
-from threading import Event
+from threading import Event, Lock, Thread
 from typing import Any, TypeVar
 
 StepCounter = Callable[[int], None]  # a call of the core reports to it now and then the count of steps done
@@ -22,13 +22,6 @@ def available_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-@contextmanager
-def one_thread_of_algebra() -> Iterator[None]:
-    """Let libraries of linear algebra use one thread: fits solve many small systems, for which threads wait for each other."""
-    with _libraries().limit(limits=1, user_api="blas"):
-        yield
-
-
 @cache
 def _libraries() -> Any:
     """Return the controller of the libraries with threads that are loaded; to find them takes some milliseconds."""
@@ -36,6 +29,43 @@ def _libraries() -> Any:
     from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]
 
     return ThreadpoolController()
+
+
+class OneThreadOfAlgebra(ContextDecorator):
+    """Lets libraries of linear algebra use one thread: fits solve many small systems, for which threads wait for each other.
+
+    The limit is one of the process, from the first of the calls that overlap, in whichever thread, to the end of the last.
+    A thread of its own sets and lifts it, because threadpoolctl lets no other thread lift what one has set.
+    """
+
+    def __init__(self) -> None:
+        self._lock, self._calls = Lock(), 0
+        self._ended, self._holder = Event(), Thread()
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._calls == 0:
+                limited, self._ended = Event(), Event()
+                self._holder = Thread(target=_hold_limit, args=(_libraries(), limited, self._ended), daemon=True)
+                self._holder.start()
+                limited.wait()
+            self._calls += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._calls -= 1
+            if self._calls == 0:
+                self._ended.set()
+                self._holder.join()
+
+
+def _hold_limit(libraries: Any, limited: Event, ended: Event) -> None:
+    with libraries.limit(limits=1, user_api="blas"):
+        limited.set()
+        ended.wait()
+
+
+one_thread_of_algebra = OneThreadOfAlgebra()
 
 
 def side_by_side(calls: Sequence[Callable[[StepCounter], T]]) -> list[T]:

@@ -94,8 +94,8 @@ def chance_of_gain(before: float, left: float, more: int, freedom: float) -> flo
     >>> round(chance_of_gain(4.0, 2.0, 1, 10), 4), chance_of_gain(4.0, 4.0, 1, 10)
     (0.0101, 1.0)
     """
-    from scipy.stats import f as fisher
+    from scipy.special import fdtrc
 
     if freedom <= 0.0 or before <= left:
         return 1.0
-    return float(fisher.sf((before - left) / more * freedom / left, more, freedom)) if left > 0.0 else 0.0
+    return float(fdtrc(more, freedom, (before - left) / more * freedom / left)) if left > 0.0 else 0.0

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import time
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier, Thread
 
 import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.simulation import threads
-from strainwave.simulation.threads import StepCounter, side_by_side
+from strainwave.simulation.threads import StepCounter, one_thread_of_algebra, side_by_side
+from threadpoolctl import ThreadpoolController
 
 
 @pytest.mark.parametrize("available", [1, 2, 5])
@@ -53,3 +56,35 @@ def test_derivatives_by_many_numbers_are_those_by_each_alone() -> None:
         alone = sw.derivatives(drive, command, [name], 1e-4, sample=1e-2)
         for column in ("input_angle", "torque"):
             assert np.array_equal(together[column, name], alone[column, name])
+
+
+@pytest.mark.parametrize("ends_first", [0, 1])
+def test_algebra_has_one_thread_until_the_last_of_the_calls_that_overlap_has_ended(ends_first: int) -> None:
+    both_within, one_ended = Barrier(2), Barrier(2)
+    blas = ThreadpoolController().select(user_api="blas")
+
+    def counts() -> set[int]:
+        return {library["num_threads"] for library in blas.info()}
+
+    def call(place: int) -> None:
+        with one_thread_of_algebra:
+            both_within.wait(10.0)
+            if place != ends_first:
+                one_ended.wait(10.0)
+                assert counts() == {1}
+        if place == ends_first:
+            one_ended.wait(10.0)
+
+    def allow(threads: int) -> None:  # in a thread that ends, as threadpoolctl lets a living one alone change its limit
+        setting = Thread(target=lambda: blas.limit(limits=threads))
+        setting.start()
+        setting.join()
+
+    before = counts()
+    allow(2)
+    try:
+        with ThreadPoolExecutor(2) as pool:
+            list(pool.map(call, range(2)))
+        assert counts() == {2}
+    finally:
+        allow(max(before))

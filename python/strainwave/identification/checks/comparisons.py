@@ -70,13 +70,13 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     Assumed numbers of the set, and files with a failed check, take no part. Logarithms are compared, since a number with a
     spread of 30 % may be two thirds or one and a half of the one stated, but never less than nothing.
     """
-    from scipy.stats import chi2
+    from scipy.special import chdtri
 
     compared = list(_compared(start, [each for each in parameters if each.source not in failed]))
     if not compared:
         return
     squares = sum((each.off / each.sigma) ** 2 for each in compared)
-    limit = float(chi2.isf(MAX_CHANCE, len(compared)))
+    limit = float(chdtri(len(compared), MAX_CHANCE))
     apart = sorted(compared, key=lambda each: -abs(each.off / each.sigma))
     more = f", and {len(apart) - MAX_LISTED} more" if len(apart) > MAX_LISTED else ""
     yield Check(

@@ -180,8 +180,10 @@ class TorsionLoop(ComparedByFields):
         return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
 
     @cached_property
-    def compared(self) -> NDArray[np.intp]:
+    def compared(self) -> NDArray[np.intp] | slice:
         """Places of the samples in the path, counted from its end."""
+        if not self.corners:
+            return slice(-len(self.twist), None)
         places = np.arange(-len(self.twist) - len(self.corners), 0)
         return np.delete(places, [place + before for before, (place, _) in enumerate(self.corners)])
 

@@ -394,7 +394,7 @@ def _models(model: Any, asked: FitParameters) -> list[Any]:
     return [_core.with_numbers(model, list(numbers)) for numbers in asked.numbers]
 
 
-@one_thread_of_algebra()
+@one_thread_of_algebra
 def solved_from(problem: Problem, x: Array) -> Fit:
     """Return the fit from some unknowns, in passes: the residuals of each give the weights of the channels in the next."""
     weights = problem.first_weights()

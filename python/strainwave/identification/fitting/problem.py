@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,15 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
 from strainwave.statistics.covariance import posterior_of
-from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.linear_fit import solved, without_rounding
 from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
 MIN_NOISE = 1e-12  # of the size of a channel: no measurement has less noise
 MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost smaller; one with less is the last
+MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
+MIN_ROWS = 100  # of a triangle, with zeros below: SciPy takes singular values for zero by the rounding of as many
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 
 
@@ -264,19 +267,35 @@ class Problem:
             x[free] = part
             return x
 
+        squared = isinstance(loss, Squared)
+        samples, priors, rows_of_squares = len(lengths), len(right), max(MIN_ROWS, len(free) + 1)
+
+        @lru_cache(1)  # solvers ask for residuals and derivatives of a point one after the other
+        def linearised(part: bytes) -> Array:
+            """Return derivatives and residuals as columns; of squares their triangle, whose columns have the same products."""
+            x = with_free(np.frombuffer(part))
+            of_data = [-each.rows * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
+            left = np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
+            slopes = np.concatenate((self.jacobian(x, weights), of_priors))[:, free]
+            columns = np.column_stack((slopes, left))
+            if not squared:
+                return columns
+            triangle = np.zeros((rows_of_squares, len(free) + 1))
+            triangle[: len(free) + 1] = np.linalg.qr(columns, mode="r")
+            triangle[:, :-1] = without_rounding(triangle[:, :-1])
+            return triangle
+
         def residuals(part: Array) -> Array:
-            x = with_free(part)
             try:
-                of_data = [-each.rows * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
+                return linearised(part.tobytes())[:, -1]
             except (ValueError, FloatingPointError):  # out of the domain, or diverged: SciPy takes a quarter of such a step
-                of_data = [np.full(record.samples, np.inf) for record in self.records]
-            return np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
+                return np.full(rows_of_squares if squared else samples + priors, np.inf)
 
         def jacobian(part: Array) -> Array:
             """Return the derivatives where a step ended; SciPy would go on until rounding, or a kink, made its steps fail."""
-            rows = np.concatenate((self.jacobian(with_free(part), weights), of_priors))[:, free]
-            if isinstance(loss, Squared):
-                left = residuals(part)
+            columns = linearised(part.tobytes())
+            rows, left = columns[:, :-1], columns[:, -1]
+            if squared:
                 step, gain = _step(rows, left)
                 if gain <= MIN_RELATIVE_GAIN * tolerance * float(left @ left):
                     raise _SettledError(np.clip(part + step, low[free], high[free]))
@@ -284,7 +303,7 @@ class Problem:
 
         def cost(squares: Array) -> Array:
             """Return the cost of samples in units of their noise, times their independent share, and of priors the square."""
-            of_data, of_prior = squares[: len(lengths)], squares[len(lengths) :]
+            of_data, of_prior = squares[:samples], squares[samples:]
             value, first, second = loss.cost(of_data * lengths)
             return np.concatenate((np.stack((value / lengths, first, second * lengths)), Squared().cost(of_prior)), axis=1)
 
@@ -296,9 +315,9 @@ class Problem:
                     jac=jacobian,
                     bounds=(low[free], high[free]),
                     x_scale="jac",
-                    loss="linear" if isinstance(loss, Squared) else cost,  # type: ignore[arg-type]  # stubs ask for more
+                    loss="linear" if squared else cost,  # type: ignore[arg-type]  # stubs ask for more
                     xtol=tolerance,
-                    ftol=tolerance,
+                    ftol=max(tolerance, MIN_SHIFT_SIGMA**2 / samples),
                     gtol=tolerance,
                     max_nfev=trials,
                 )
