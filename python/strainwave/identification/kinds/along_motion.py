@@ -196,7 +196,7 @@ def _judged(
 
     Of a record at one speed the fit itself splits friction as the set does.
     """
-    estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
+    estimates = list(_of_motion(best, apart, taken))
     return (best, estimates) if taken.in_current or best.model.one_speed else _with_set_before(best, estimates, known)
 
 
@@ -262,13 +262,6 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
         f"{given:.3g} with motor and gear",
         "see whether load_inertia, motor_inertia, ratio and torque constant are right",
     )  # fmt: skip
-
-
-def _of_detent(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:
-    """Yield the estimates of a detent that the full band alone shows."""
-    for path, unit, value, sigma in () if best.detent is None else best.detent.estimates(best.model):
-        found = FileEstimate(path, unit, value, sigma, "").resting_on(taken.relative).resting_on(taken.of_resistance)
-        yield found.in_current() if taken.in_current else found
 
 
 def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: PreparedLog) -> Iterator[FileEstimate]:
