@@ -35,12 +35,11 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
 from strainwave.identification.results.drive import drive_set, name_of_files
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, compared_path
 from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
-from strainwave.parameters import plain
 from strainwave.simulation.threads import one_thread_of_algebra
 
 if TYPE_CHECKING:
@@ -165,7 +164,7 @@ def identify(
     results = tuple(
         replace(each, remarks=(loads[each.name], *each.remarks)) if each.name in loads else each for each in results
     )
-    determined_by = {plain(path): file for path, file in fits.known.determined_by.items()}
+    determined_by = {compared_path(path, fits.known.gear_set.gear): file for path, file in fits.known.determined_by.items()}
     parameters = combine(results, accept=accept, determined_by=determined_by)
     if not any(each.estimates or each.failed for each in results):
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
@@ -401,7 +400,7 @@ def with_means(known: GearSoFar, parameters: Sequence[CombinedParameter]) -> Gea
             continue
         names = [Path(name).name for name in each.mean_of]
         for path, name in known.determined_by.items():
-            if plain(path) != each.estimate.path or "[" in path or name not in names:
+            if compared_path(path, gear_set.gear) != each.estimate.path or "[" in each.estimate.path or name not in names:
                 continue
             try:
                 gear = gear_set.gear.replace({path.removeprefix("gear."): each.estimate.value})

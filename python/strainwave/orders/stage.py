@@ -38,6 +38,8 @@ MIN_STAGE_GAIN = 30.0  # of the logarithm of the likelihood, from which the outp
 STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
 DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
 MIN_OWN_SHARE = 0.1  # of what the natural frequency changes [1], that no other amplitudes of orders and loads make up
+MAX_RELATIVE_SHIFT = 0.01  # of an order by an output stage that the record does not determine: a smaller one is no vibration
+SIGNIFICANCE_SIGMA = 3.0  # standard deviations of an order that stands out
 MIN_SIGNAL_POWER = 30.0  # of a line over its noise [1], from which it counts for the output stage
 START_FREQUENCIES = 2.0 * pi * MAX_FREQUENCY * np.geomspace(0.004, 1.0, 12)  # initial natural frequencies [rad per sample]
 START_DAMPINGS = (0.1, 0.5)  # initial damping ratios [1]: a narrow resonance is met by few starts
@@ -65,7 +67,8 @@ class Regressed:
         values: coefficients, first of the orders, then of the loads, shape (n,)
         covariance: of them, shape (n, n)
         freedom: degrees of freedom that the covariance rests on
-        stage: the output stage, None if the record does not show it
+        stage: the output stage, None if the record does not determine it
+        vibrates: True if amplitudes change with the speed as by an output stage that the record does not determine
         spread: standard deviations of the logarithms of its frequency and damping
         residual: below the highest line that is compared, shape (samples,)
     """
@@ -76,6 +79,7 @@ class Regressed:
     stage: Stage | None
     spread: tuple[float, float]
     residual: Array
+    vibrates: bool = False
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ class StageProblem:
     loads: Array
 
     def regress(self, *, dynamic: bool) -> Regressed:
-        """Fit the coefficients, and the output stage if the record shows it."""
+        """Fit the coefficients, and the output stage if the record determines it."""
         lines = _Lines.of(self)
         still = lines.fitted(None)
         if not dynamic:
@@ -103,13 +107,23 @@ class StageProblem:
         shown = lines.with_signal(still)
         moved = shown.fitted(shown.nearest(still.floor), still.floor)
         gain = lines.misfit(still, shown.counts) - lines.misfit(moved, shown.counts)
-        if gain <= MIN_STAGE_GAIN or shown.own_share_of_frequency(moved) <= MIN_OWN_SHARE:
+        if gain <= MIN_STAGE_GAIN:
             return lines.result(still)
+        measured = lines.result(still)
+        measured = replace(measured, vibrates=self._moves_an_order(measured, moved.values))
+        if shown.own_share_of_frequency(moved) <= MIN_OWN_SHARE:
+            return measured
         if lines.is_within_bounds(moved):
             return shown.result(moved)
-        measured = lines.result(still)
         apart = moved.values[: len(measured.values)] - measured.values  # what the choice of the model leaves open
         return replace(measured, covariance=measured.covariance + np.outer(apart, apart))
+
+    def _moves_an_order(self, measured: Regressed, values: Array) -> bool:
+        """True if other values of the coefficients differ in an order that stands out."""
+        count = self.orders.shape[1]
+        before, after = (each[:count:2] + 1j * each[1:count:2] for each in (measured.values, values))
+        stands_out = np.abs(before) > SIGNIFICANCE_SIGMA * np.sqrt(np.diag(measured.covariance)[:count:2])
+        return bool(np.any(stands_out & (np.abs(after - before) > MAX_RELATIVE_SHIFT * np.abs(before))))
 
 
 @dataclass(frozen=True)

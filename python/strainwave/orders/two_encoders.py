@@ -333,13 +333,17 @@ def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tu
         ]
     if not pair.record.timed:
         return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
-    if not (chosen and _at_one_speed(pair)):
+    if not (chosen and (found.vibrates or _at_one_speed(pair))):
         return []
-    usual = float(np.median(np.abs(pair.speed))) / pair.record.step * 30.0 / pi
+    slow, usual, fast = np.quantile(np.abs(pair.speed), [0.05, 0.5, 0.95]) / pair.record.step * 30.0 / pi
+    if _at_one_speed(pair):
+        speeds, why = f"{usual:.4g}", "one speed does not determine how the output vibrates"
+    else:
+        speeds = f"{slow:.4g} to {fast:.4g}"
+        why = "they change with the speed, as by a vibration of the output that the record does not determine"
     return [
-        f"amplitudes are those measured at {usual:.4g} 1/min of the input: one speed does not "
-        "determine how the output vibrates, and they are not corrected for it; if speeds from slow to fast are in one record, "
-        "they are"
+        f"amplitudes are those measured at {speeds} 1/min of the input: {why}, and they are not corrected for it; if speeds "
+        "from slow to fast are in one record, they are"
     ]
 
 

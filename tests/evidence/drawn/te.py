@@ -86,7 +86,9 @@ def outcome(seed: int) -> Outcome:
     except ValueError as problem:
         return Outcome("refused", str(problem))
     pairs = []
-    at_one_speed = any("are those measured at" in remark for remark in result.remarks)
+    as_measured = [remark for remark in result.remarks if "are those measured at" in remark]
+    if any("change with the speed" in remark for remark in as_measured):
+        return Outcome("refused", *as_measured)
     for order, amplitude in amplitudes.items():
         found = next((each for each in result.orders if each.order == order and each.shaft == "input"), None)
         if found is None:
@@ -94,7 +96,7 @@ def outcome(seed: int) -> Outcome:
         x = 1j * order * top / frequency
         passed = (1.0 + 2.0 * damping * x) / (1.0 + 2.0 * damping * x + x**2)
         passed = passed.real if motion == "there and back" else passed  # its lag is of both senses
-        gain = abs(passed) if vibrates and at_one_speed else 1.0
+        gain = abs(passed) if vibrates and as_measured else 1.0
         pairs.append((f"order {order:g}", 1e6 * found.amplitude, 1e6 * found.amplitude_sigma, 1e6 * amplitude * gain))
     if not pairs:
         return Outcome("refused", "; ".join(result.remarks))

@@ -91,6 +91,16 @@ def test_a_mean_replaces_only_what_one_of_its_files_has_told(file: str, coulomb:
     assert with_means(known, [mean]).gear.friction_input.coulomb == coulomb
 
 
+def test_amplitudes_of_several_recordings_are_written_as_their_mean() -> None:
+    law, path = sw.kinematic_error.Fourier(order=[2.0, 4.0], amplitude=[1.2e-4, 4e-5], phase=[0.3, 0.0]), "gear.kinematic_error"
+    sigmas = {f"{path}.amplitude[0]": 1e-6, f"{path}.amplitude[1]": 1e-6}
+    known = GearSoFar(sw.GearSet.read("hfuc-20-80")).with_parts({"kinematic_error": law}, sigmas, "one.csv")
+    estimate = FileEstimate(f"{path}.amplitude of order 4", "rad", 4.2e-5, 7e-7, "fourier")
+    gear_set = with_means(known, [CombinedParameter(estimate, "one.csv", mean_of=("one.csv", "two.csv"))])
+    assert gear_set.gear.kinematic_error.amplitude == (1.2e-4, 4.2e-5)
+    assert gear_set.sources[f"{path}.amplitude[1]"].uncertainty == 7e-7
+
+
 @pytest.mark.slow("identification")
 def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(found: Identified) -> None:
     assert found.files[5].same_as == found.files[3].name

@@ -233,6 +233,17 @@ def test_at_one_speed_the_measured_amplitude_stands(seed: int) -> None:
     assert any("amplitudes are those measured at" in remark for remark in result.remarks)
 
 
+def test_above_its_resonance_a_ramp_shows_amplitudes_at_its_speeds_alone() -> None:
+    """Orders and loads of another size predict a ramp above the natural frequency as well: 100 µrad look like 6."""
+    time = np.linspace(0.0, 40.0, 6001)
+    theta = 10.0 * (0.2 * time + 0.5 * time**2 / time[-1])
+    goal = theta / 100.0 - 1e-4 * np.sin(2.0 * theta + 0.4)
+    output = te.vibrating(goal, float(time[1]), frequency=2.0, damping=0.2) + np.random.default_rng(1).normal(0.0, 1e-6, 6001)
+    result = error_of({"time": time, "input_angle": theta, "output_angle": output})
+    assert result.natural_frequency is None
+    assert any("they change with the speed" in remark for remark in result.remarks)
+
+
 @pytest.mark.slow("orders")
 @pytest.mark.parametrize("seed", [102, 104, 201, 210, 225, 302])
 def test_a_vibration_is_fitted_where_the_record_determines_it(seed: int) -> None:

@@ -14,6 +14,7 @@ from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import held_out_residuals, moving
+from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import plain
@@ -56,9 +57,9 @@ def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
         they are drawn, from the first motion to the last
     """
     log, last = best.log, best.folds[-1].stretch
-    best = best if best.before_last is None else replace(best, model=best.before_last)
+    best = replace(best, priors={**best.priors, **by_full_band(best.model, ~last)})
     found = best.fitted_to(~last[log.motion.rows])
-    residual = best.left(found.model, nuisances_of(found), ~last)
+    residual = best.left(found.model, nuisances_of(found))
     left, rows = residual[last], moving(log)
     before = float(np.mean(log.recorded[rows & ~last]))
     (part,) = found.parts

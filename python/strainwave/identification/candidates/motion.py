@@ -2,9 +2,9 @@
 
 Numbers are estimated in the pass band and from sliding alone: there no vibration of the load and no bending of bristles biases
 them. What they predict is judged as a user reads it: on contiguous stretches that took no part in the fit, in the full band, at
-every sample. A part is added as long as it predicts better; what shows in the full band alone, bristles that bend at reversals
-and ripple over the turn, is added to the prediction without moving the estimates. Estimates without a stretch follow from those
-with all by one step of Gauss and Newton, as least squares on a motion is nearly linear. Plain least squares is fitted, too.
+every sample. A part is added as long as it predicts better; bristles that bend at reversals are added to the prediction without
+moving the estimates. Estimates without a stretch follow from those with all by one step of Gauss and Newton, as least squares
+on a motion is nearly linear. Plain least squares is fitted, too.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from strainwave.identification.candidates.plain import (
     one_speed,
     stretches,
 )
-from strainwave.identification.candidates.ripple import FastDetent, is_passive, settled, with_ripple
+from strainwave.identification.candidates.ripple import with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MIN_INERTIA_SHARE, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -98,24 +98,7 @@ def fit_motion(
         best = other if other.explains_more_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
     others = sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
-    return tuple(_settled(each) for each in (best, *others))
-
-
-def _settled(candidate: MotionCandidate) -> MotionCandidate:
-    """Return the candidate with all that varies over the angle in its gear; without the last stretch for the error there."""
-    model = settled(candidate.model)
-    if not candidate.rippled:
-        return replace(candidate, model=model)
-    last, log = candidate.folds[-1], candidate.log
-    nuisances = np.array([each.start for each in log.nuisances])
-    rows = moving(log) & ~log.motion.resting
-    whole = FastDetent.of(log, model.drive, log.residual(candidate.predicting(candidate.model.drive), nuisances), rows)
-    detent = whole.significant()
-    if not len(detent.orders):
-        return replace(candidate, model=model, rippled=False)
-    left = log.residual(candidate.predicting(last.drive), last.nuisances)
-    before = FastDetent.of(log, model.drive, left, rows & ~last.stretch).among(detent.orders)
-    return replace(candidate, model=detent.added_to(model), rippled=False, detent=detent, before_last=before.added_to(model))
+    return (best, *others)
 
 
 def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
@@ -126,11 +109,10 @@ def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
 
 def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     """Return the model without the parts that the record does not show, and with those that make it predict better."""
-    best = search.grown(best, [with_ripple])  # first, as what varies over the angle hides smaller parts
+    best = search.rippled(best)  # first, as what varies over the angle hides smaller parts
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
-    best = search.grown(best, [*PARTS, with_ripple])
-    return _with(best, replace(best, rippled=True).predicted_anew())
+    return search.rippled(search.grown(best, list(PARTS)))
 
 
 def _check_compared(log: MotionLog, held_out: Sequence[Rows]) -> None:
@@ -200,6 +182,11 @@ class _Search:
             best = found[chosen]
         return best
 
+    def rippled(self, best: MotionCandidate) -> MotionCandidate:
+        """Return the model with the waves over the angle that predict better, in the pass band or in the full band."""
+        found = self.tried(with_ripple(best.model))
+        return found if found is not None and (found.explains_more_than(best) or found.is_better_than(best)) else best
+
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
         """Return the best model; if plain least squares predicts clearly better, the best of those better at the end."""
         log = best.log
@@ -260,9 +247,9 @@ def _without_inertia(best: MotionCandidate) -> MotionModel | None:
 def _without_viscous(best: MotionCandidate) -> MotionModel | None:
     """Return the model of a joint that moves at one speed, where Coulomb's friction stands for all of it."""
     model = best.model
-    if not _is_small(best, f"{INPUT}viscous", best.log.motion.speed):
+    if not _is_small(best, model.path_of("viscous"), best.log.motion.speed):
         return None
-    drive = model.drive.replace({f"{INPUT}viscous": 0.0})
+    drive = model.drive.replace({model.path_of("viscous"): 0.0})
     return replace(model, name=f"{model.name}, no viscous part", drive=drive, free=without(model.free, "viscous"))
 
 
@@ -273,13 +260,12 @@ PARTS: tuple[Part, ...] = (with_delay, with_curved_viscous_part, with_another_fr
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:
-    """True unless a part was fitted that cannot be: a delay longer than a clock makes it, a change of friction at speeds beyond
-    the fastest motion, or friction that drives the motion at some angle."""
-    log, law = candidate.log, candidate.model.law
-    delay = next((each.start for each in log.nuisances if each.name == "delay"), 0.0)
-    falls = f"{INPUT}stribeck_speed" in candidate.model.free
-    sensible = not falls or (law.stribeck_speed < float(np.abs(log.motion.speed).max()))
-    return bool(abs(delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible and is_passive(log, law.coulomb))
+    """True unless a part was fitted that cannot be: a delay longer than a clock makes it, or a change of friction at speeds
+    beyond the fastest motion."""
+    log, model = candidate.log, candidate.model
+    falls = model.path_of("stribeck_speed") in model.free
+    sensible = not falls or (model.law.stribeck_speed < float(np.abs(log.motion.speed).max()))
+    return bool(abs(log.delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible)
 
 
 # ---- Parts of the prediction alone -----------------------------------------------------------------------------------------

@@ -13,15 +13,13 @@ from strainwave import Drive, _core
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.leave_out import SHAPES, without_rows
 from strainwave.identification.candidates.motion_model import MotionModel, bristled
-from strainwave.identification.candidates.plain import MAX_RELATIVE_ERROR, moving
-from strainwave.identification.candidates.ripple import FastDetent
-from strainwave.identification.dynamics.log import ORDERS
+from strainwave.identification.candidates.plain import MAX_RELATIVE_ERROR
+from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
-from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -61,9 +59,6 @@ class MotionCandidate(ComparedByFields):
         unexplained: root mean square of what is left in the band over that of the effort about its mean [1]
         folds: the model without each stretch
         bend: angle of the input in which bristles bend at reversals [rad]; 0 for none
-        rippled: True if a torque that repeats with the input's rotation is part of the prediction
-        detent: that torque, once it is in the gear of the model
-        before_last: the model with that torque by what comes before the last stretch
     """
 
     model: MotionModel
@@ -71,15 +66,10 @@ class MotionCandidate(ComparedByFields):
     unexplained: float
     folds: tuple[Fold, ...]
     bend: float = 0.0
-    rippled: bool = False
-    detent: FastDetent | None = None
-    before_last: MotionModel | None = None
 
     @property
     def name(self) -> str:
-        is_rippled = self.rippled or self.detent is not None
-        more = [", bristles that bend at reversals"] * (self.bend > 0.0) + [", a fast detent"] * is_rippled
-        return "".join([self.model.name, *more])
+        return self.model.name + ", bristles that bend at reversals" * (self.bend > 0.0)
 
     @property
     def log(self) -> MotionLog:
@@ -106,21 +96,13 @@ class MotionCandidate(ComparedByFields):
         """Return the drive that predicts at reversals, too: a fitted one, with bristles that bend."""
         return bristled(drive, self.bend) if self.bend else drive
 
-    def left(self, drive: Drive, nuisances: Array, training: Rows) -> Array:
-        """Return measured less predicted effort at every sample, ripple by that of the samples of training, shape (m,)."""
-        residual = self.log.residual(self.predicting(drive), nuisances)
-        if not self.rippled:
-            return residual
-        angle = self.log.motion.angle
-        waves = np.stack([wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)], axis=1)
-        rows = training & moving(self.log) & ~self.log.motion.resting
-        shares = solved(waves[rows], residual[rows])
-        return np.asarray(residual - np.where(self.log.motion.resting, 0.0, waves @ shares))
+    def left(self, drive: Drive, nuisances: Array) -> Array:
+        """Return measured less predicted effort at every sample, shape (m,)."""
+        return self.log.residual(self.predicting(drive), nuisances)
 
     def predicted_anew(self) -> MotionCandidate:
         """Return the same, with the residuals of what it predicts."""
-        folds = [replace(each, residual=self.left(each.drive, each.nuisances, ~each.stretch)) for each in self.folds]
-        return replace(self, folds=tuple(folds))
+        return replace(self, folds=tuple(replace(each, residual=self.left(each.drive, each.nuisances)) for each in self.folds))
 
     @cached_property
     def residuals(self) -> list[Array]:
@@ -180,7 +162,7 @@ class MotionCandidate(ComparedByFields):
 
 def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> MotionCandidate:
     """Fit a model as nearly as comparisons need, from where it starts."""
-    known = {path: prior for path, prior in priors.items() if path in model.free}
+    known = {path: prior for path, prior in {**priors, **by_full_band(model)}.items() if path in model.free}
     asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
     problem = problem_of(asked, model.drive, [model.log], [None])
     x = problem.solve(problem.start(), problem.first_weights(), MAX_RELATIVE_COST, trials=MAX_STEPS)

@@ -31,6 +31,7 @@ class MotionModel(ComparedByFields):
         ties: numbers that follow others, by path
         one_speed: size of the speed at which alone friction was measured [rad/s]; 0 if the record has several. The viscous
             part is then the start set's share of the friction at that speed, and is not fitted
+        of_full_band: paths of free numbers that the pass band of the log does not contain
     """
 
     name: str
@@ -39,6 +40,7 @@ class MotionModel(ComparedByFields):
     free: tuple[str, ...]
     ties: Mapping[str, str]
     one_speed: float = 0.0
+    of_full_band: tuple[str, ...] = ()
 
     @property
     def law(self) -> Any:
@@ -50,16 +52,41 @@ class MotionModel(ComparedByFields):
         """Paths of all numbers of the drive."""
         return [path for path, *_ in _core.parameters(self.drive)]
 
-    def having(self, what: str, *free: str, **parts: Any) -> MotionModel:
-        """Return the same with other parts of the gear, and further numbers free."""
-        drive = self.drive.replace(gear=self.drive.gear.replace(**parts))
+    def path_of(self, name: str) -> str:
+        """Return the path of a number of the friction at the input as it slides."""
+        return f"{WITHIN if isinstance(self.drive.gear.friction_input, friction.Cyclic) else INPUT}{name}"
+
+    def having(self, what: str, law: Any, *names: str) -> MotionModel:
+        """Return the same with another law of friction at the input as it slides, and further numbers of it free."""
+        drive, free = with_sliding(self.drive, law), map(self.path_of, names)
         return replace(self, name=f"{self.name}, {what}", drive=drive, free=(*self.free, *free))
+
+    def varying_over_the_angle(self) -> MotionModel:
+        """Return the same with friction at the input whose dry part may vary over the angle."""
+        law: Any = self.drive.gear.friction_input
+        if isinstance(law, friction.Cyclic):
+            return self
+        drive = self.drive.replace(gear=self.drive.gear.replace(friction_input=friction.Cyclic(law=law, viscous_share=0.0)))
+        ties = {_within(path): _within(other) for path, other in self.ties.items()}
+        return replace(self, drive=drive, free=tuple(map(_within, self.free)), ties=ties)
 
 
 def sliding(drive: Drive) -> Any:
     """Return the friction at the input of a drive, without what varies it over the angle."""
     law: Any = drive.gear.friction_input
     return law.law if isinstance(law, friction.Cyclic) else law
+
+
+def with_sliding(drive: Drive, law: Any) -> Drive:
+    """Return the drive with another law of friction at the input as it slides, within what varies it over the angle."""
+    outer: Any = drive.gear.friction_input
+    whole = outer.replace(law=law) if isinstance(outer, friction.Cyclic) else law
+    return drive.replace(gear=drive.gear.replace(friction_input=whole))
+
+
+def _within(path: str) -> str:
+    """Return the path of a number of the friction at the input that now stands inside another law."""
+    return path.replace(INPUT, WITHIN) if path.startswith(INPUT) else path
 
 
 def without(free: Sequence[str], name: str) -> tuple[str, ...]:
@@ -88,18 +115,19 @@ def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
         coulomb=law.coulomb, breakaway=law.coulomb, viscous_torque=max(law.viscous * fastest, 1e-3 * law.coulomb, 1e-12),
         exponent=0.9, reference_speed=fastest,
     )  # fmt: skip
-    names = (f"{INPUT}viscous_torque", f"{INPUT}exponent")
-    return replace(model, free=without(model.free, "viscous")).having("a curved viscous part", *names, friction_input=curved)
+    return replace(model, free=without(model.free, "viscous")).having(
+        "a curved viscous part", curved, "viscous_torque", "exponent"
+    )
 
 
 def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
     """Return the model with friction that is higher, or lower, at low speed."""
-    law, names = model.law, (f"{INPUT}breakaway", f"{INPUT}stribeck_speed")
+    law = model.law
     if not isinstance(law, friction.Coulomb) or model.one_speed:
         return None
     falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
-    ties = {path: other for path, other in model.ties.items() if path not in FOLLOWS}
-    return replace(model, ties=ties).having("another friction at low speed", *names, friction_input=falling)
+    ties = {path: other for path, other in model.ties.items() if path != model.path_of("breakaway")}
+    return replace(model, ties=ties).having("another friction at low speed", falling, "breakaway", "stribeck_speed")
 
 
 def with_loss_under_load(model: MotionModel) -> MotionModel | None:
@@ -107,8 +135,13 @@ def with_loss_under_load(model: MotionModel) -> MotionModel | None:
     if LOSSES[0] in model.free:
         return None
     lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))
-    ties = {**model.ties, **dict.fromkeys(LOSSES[1:], LOSSES[0])}
-    return replace(model, ties=ties).having("a loss under load", LOSSES[0], friction_mesh=lossy)
+    return replace(
+        model,
+        name=f"{model.name}, a loss under load",
+        drive=model.drive.replace(gear=model.drive.gear.replace(friction_mesh=lossy)),
+        free=(*model.free, LOSSES[0]),
+        ties={**model.ties, **dict.fromkeys(LOSSES[1:], LOSSES[0])},
+    )
 
 
 def bristled(drive: Drive, bend: float) -> Drive:
@@ -118,7 +151,6 @@ def bristled(drive: Drive, bend: float) -> Drive:
         drive: with friction that slides, of Coulomb or Stribeck
         bend: angle of the input in which they bend [rad]
     """
-    outer: Any = drive.gear.friction_input
     law = sliding(drive)
     if not isinstance(law, friction.Coulomb | friction.Stribeck) or min(law.coulomb, law.breakaway) <= 0.0:
         return drive
@@ -127,5 +159,4 @@ def bristled(drive: Drive, bend: float) -> Drive:
         coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=speed,
         bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
     )  # fmt: skip
-    whole = outer.replace(law=bristle) if isinstance(outer, friction.Cyclic) else bristle
-    return drive.replace(gear=drive.gear.replace(friction_input=whole))
+    return with_sliding(drive, bristle)

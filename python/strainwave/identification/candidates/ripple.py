@@ -1,26 +1,26 @@
 """Torque over the angle of a log: a detent, the same in both directions, and dry friction that varies over the turn.
 
-Both are linear in the sine and cosine of their orders, so that a search fits them as terms of the log; `settled` then puts them
-into the gear, as `friction.Cyclic` around its friction at the input, whose numbers the last fit estimates.
+Both are linear in the sine and cosine of their orders: least squares chooses them among other terms in the full band. They are
+numbers of the gear, as `friction.Cyclic` around its friction at the input. A fit in the pass band of a log estimates those that
+the pass band contains; of the others it has the estimates by the full band as priors.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, friction
-from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.motion_model import INPUT, WITHIN, MotionModel
-from strainwave.identification.dynamics.log import ORDERS
+from strainwave import _core, friction
+from strainwave.identification.candidates.motion_model import INPUT, MotionModel
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque, turnover_speed
-from strainwave.statistics.linear_fit import linear_fit, own_share, solved
-from strainwave.statistics.residuals import chance_of_gain, correlation_length
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.identification.fitting.fit import problem_of
+from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.linear_fit import linear_fit, solved
+from strainwave.statistics.residuals import autoregression, chance_of_gain, correlation_length
 
 Array = NDArray[np.float64]
 
@@ -29,12 +29,14 @@ OUTPUT_ORDERS = (1.0, 2.0)  # of the output's turn
 MIN_INPUT_TURNS = 2.0  # of a record that separates a wave over the input's turn from what varies over the output's
 MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
 MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
-MIN_PASSED_SHARE = 0.3  # of the size of a wave, that the pass band leaves [1]
+MIN_PASSED_SHARE = 0.3  # of the size of a wave, that the pass band leaves [1]: of a smaller one the full band decides
 MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller ones of it
-MIN_FAST_SIZE = 0.1  # of the largest wave that the full band alone shows
-FAST_BIAS = 0.05  # of a wave in the full band: what numbers by the pass band and a smoothed angle make of it (assumed)
+BIAS_IN_FULL_BAND = 0.05  # of a wave: what numbers by the pass band and a smoothed angle make of it (assumed)
 MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
-MAX_DEPTH = 0.95  # of dry friction, that its waves take in all: friction stays positive
+NUMBERS = {  # of `friction.Cyclic`
+    "friction": ("order", "amplitude", "phase"),
+    "detent": ("detent_order", "detent_torque", "detent_phase"),
+}
 
 
 @dataclass(frozen=True, order=True)
@@ -56,221 +58,148 @@ class Wave:
         phase = self.order * motion.angle
         return np.stack([sense * np.sin(phase), sense * np.cos(phase)])
 
-    @property
-    def names(self) -> tuple[str, str]:
-        """Names of its sine and cosine among the waves of a log."""
-        return f"sine of {self.kind} {self.order:.12g}", f"cosine of {self.kind} {self.order:.12g}"
-
 
 def with_ripple(model: MotionModel) -> MotionModel | None:
-    """Return the model with the waves over the angle that its residual contains beyond chance; None if there are none.
+    """Return the model with the waves over the angle that its residual contains beyond chance; None if there are no more.
 
-    Waves are added one by one, each time the one that explains most of the rest. A wave that other terms make up, or that the
-    pass band does not contain, is not separable and takes no part.
+    Waves are added one by one, each time the one that explains most of the rest. A wave that other terms make up is not
+    separable and takes no part.
     """
-    if model.log.waves:
+    whole = replace(model, log=model.log.sliding_in_full_band())
+    series = {wave: _effort(wave, whole) for wave in _possible(whole)}
+    base, left = _linear(whole)
+    pairs = {wave: each[:, whole.log.motion.rows].T for wave, each in series.items()}
+    waves = sorted(_beyond_chance(base, left, pairs))
+    if not waves:
         return None
-    log, scale = model.log, per_torque(model.drive, model.log.effort)
-    starts = np.array([each.start for each in log.nuisances])
-    numbers = [place for place, path in enumerate(model.paths) if path in model.free]
-    predicted, slopes = log.predict(model.drive, numbers, starts)
-    base, left = slopes[:, 0].T, (log.measured - predicted)[0]
-    chosen = dict[Wave, Array]()
-    series = {wave: scale * wave.columns(log) for wave in _possible(log, model.drive.gear.kinematics.ratio)}
-    passed = {wave: log.motion.filtered(each).T for wave, each in series.items()}
-    rows = log.motion.rows
-    passed = {
-        wave: each
-        for wave, each in passed.items()
-        if np.linalg.norm(each) > MIN_PASSED_SHARE * np.linalg.norm(series[wave][:, rows])
-    }
-    while True:
-        columns = np.column_stack([base, *chosen.values()])
-        rest = left - columns @ solved(columns, left)
-        best = _most_explaining(columns, left, {wave: each for wave, each in passed.items() if wave not in chosen})
-        if best is None:
-            break
-        wave, still = best
-        freedom = (len(left) - columns.shape[1] - 2) / correlation_length(still)
-        if len(series) * chance_of_gain(float(rest @ rest), float(still @ still), 2, freedom) > MAX_CHANCE:
-            break
-        chosen[wave] = passed[wave]
-    if not chosen:
-        return None
-    sizes = np.hypot(*_sizes(base, chosen, left).reshape(-1, 2).T)
-    chosen = {wave: each for (wave, each), size in zip(chosen.items(), sizes, strict=True) if size > MIN_SIZE * sizes.max()}
-    chosen = dict(sorted(chosen.items(), key=lambda item: item[0]))
-    waves, found = list(chosen), _sizes(base, chosen, left)
-    named = {name: row for wave in waves for name, row in zip(wave.names, series[wave], strict=True)}
-    before = {each.name: each.start for each in log.nuisances} | dict(zip(named, found.tolist(), strict=True))
-    rippled = log.with_waves(named)
-    return replace(
-        model, name=f"{model.name}, {_in_words(waves)}", log=rippled.starting([before[each.name] for each in rippled.nuisances])
-    )
-
-
-def _sizes(base: Array, waves: Mapping[Wave, Array], left: Array) -> Array:
-    """Return the sizes of sine and cosine of waves besides other terms [N.m], shape (2 * waves,)."""
-    return solved(np.column_stack([base, *waves.values()]), left)[base.shape[1] :]
-
-
-def _possible(log: MotionLog, ratio: float) -> Iterator[Wave]:
-    """Yield the waves whose turn the record contains often enough; of a detent over the output's turn, gravity is the first."""
-    moved = np.ptp(log.motion.angle[log.motion.rows]) / (2.0 * np.pi)
-    if moved >= MIN_INPUT_TURNS:
-        for order in INPUT_ORDERS:
-            yield Wave("detent", order)
-            if log.both_ways:
-                yield Wave("friction", order)
-    if moved >= MIN_OUTPUT_TURNS * abs(ratio):
-        for order in OUTPUT_ORDERS:
-            yield Wave("detent", order / abs(ratio))
-            if log.both_ways:
-                yield Wave("friction", order / abs(ratio))
-
-
-def _most_explaining(columns: Array, left: Array, waves: Mapping[Wave, Array]) -> tuple[Wave, Array] | None:
-    """Return the wave that leaves least of a residual beside the columns of a model, and that rest; None if none is left."""
-    found = list[tuple[float, Wave, Array]]()
-    for wave, pair in waves.items():
-        if own_share(pair, columns).min() < MIN_OWN_SHARE:
-            continue
-        both = np.column_stack([columns, pair])
-        rest = left - both @ solved(both, left)
-        found.append((float(rest @ rest), wave, rest))
+    sizes = solved(np.column_stack([base, *(pairs[wave] for wave in waves)]), left)[base.shape[1] :].reshape(-1, 2)
+    found = {wave: complex(*size) for wave, size in zip(waves, sizes.tolist(), strict=True)}
+    largest = max(map(abs, (*found.values(), *sizes_of_waves(model).values())))
+    found = {wave: size for wave, size in found.items() if abs(size) > MIN_SIZE * largest}
     if not found:
         return None
-    _, wave, rest = min(found, key=lambda each: each[:2])
-    return wave, rest
+    fast = {wave for wave in found if not _passes(model.log, series[wave])}
+    return _in_gear(model, found, fast)
 
 
-def _in_words(waves: Sequence[Wave]) -> str:
-    """Return what was added to a model."""
-    names = {"detent": "a detent", "friction": "friction over the angle"}
-    return " and ".join(names[kind] for kind in names if any(wave.kind == kind for wave in waves))
+def by_full_band(model: MotionModel, training: NDArray[np.bool_] | None = None) -> Mapping[str, tuple[float, float]]:
+    """Return value and standard deviation of the numbers that the full band alone determines, by path.
 
+    They follow by one step of Gauss and Newton from the numbers of the model.
 
-@dataclass(frozen=True, eq=False)
-class FastDetent(ComparedByFields):
-    """A detent at orders that the pass band of a log does not contain, by what a model leaves in the full band.
-
-    Attributes:
-        orders: periods per turn of the input, shape (k,)
-        sizes: of the sine and, imaginary, of the cosine of the angle of the input [N.m], shape (k,)
-        sigmas: standard deviation of each size [N.m], shape (k,)
+    Args:
+        model: with its waves in the gear
+        training: samples of the grid that take part, shape (m,); all if not given
     """
-
-    orders: Array
-    sizes: NDArray[np.complex128]
-    sigmas: Array
-
-    @classmethod
-    def of(cls, log: MotionLog, drive: Drive, residual: Array, rows: NDArray[np.bool_]) -> FastDetent:
-        """Return the detent that samples show, at orders that are no waves of the log, beside friction over the angle.
-
-        Args:
-            log: with the motion
-            drive: by which the effort rests on the torque
-            residual: measured less predicted effort, shape (m,)
-            rows: the samples, shape (m,)
-        """
-        known = {wave.order for wave in waves_of(log) if wave.kind == "detent"}
-        orders = [order for order in ORDERS if order not in known]
-        waves = [Wave("detent", order) for order in orders] + [Wave("friction", order) for order in orders]
-        columns = np.concatenate([wave.columns(log) for wave in waves])[:, rows].T
-        found = linear_fit(per_torque(drive, log.effort) * columns, residual[rows])
-        own = (each[: 2 * len(orders)].reshape(-1, 2) for each in (found.values, found.sigma, found.own_share))
-        pairs, sigmas, shares = own
-        sizes = pairs[:, 0] + 1j * pairs[:, 1]
-        sigma = np.hypot(sigmas.max(axis=1), FAST_BIAS * np.abs(sizes))
-        return cls(np.array(orders), sizes, np.where(shares.min(axis=1) > MIN_OWN_SHARE, sigma, np.inf))
-
-    def significant(self) -> FastDetent:
-        """Return the same without waves that chance makes as large."""
-        sizes = np.abs(self.sizes)
-        shown = (sizes > SIGNIFICANCE_SIGMA * self.sigmas) & (sizes > MIN_FAST_SIZE * sizes.max(initial=0.0))
-        return FastDetent(self.orders[shown], self.sizes[shown], self.sigmas[shown])
-
-    def among(self, orders: Array) -> FastDetent:
-        """Return the same at some of its orders."""
-        shown = np.isin(self.orders, orders)
-        return FastDetent(self.orders[shown], self.sizes[shown], self.sigmas[shown])
-
-    def added_to(self, model: MotionModel) -> MotionModel:
-        """Return a model with this detent in its gear, as a number that is known."""
-        law: Any = model.drive.gear.friction_input
-        outer = law if isinstance(law, friction.Cyclic) else friction.Cyclic(law=law, viscous_share=0.0)
-        whole = outer.replace(
-            detent_order=[*outer.detent_order, *self.orders.tolist()],
-            detent_torque=[*outer.detent_torque, *np.abs(self.sizes).tolist()],
-            detent_phase=[*outer.detent_phase, *np.angle(self.sizes).tolist()],
-        )
-        drive = model.drive.replace(gear=model.drive.gear.replace(friction_input=whole))
-        if outer is law:
-            return replace(model, drive=drive)
-        ties = {_within(path): _within(other) for path, other in model.ties.items()}
-        return replace(model, drive=drive, free=tuple(map(_within, model.free)), ties=ties)
-
-    def estimates(self, model: MotionModel) -> Iterator[tuple[str, str, float, float]]:
-        """Yield path, unit, value and standard deviation of its numbers in a model that has them."""
-        places = list(sliding_detents(model))
-        for order, size, sigma in zip(self.orders.tolist(), self.sizes.tolist(), self.sigmas.tolist(), strict=True):
-            place = places.index(order)
-            yield f"{INPUT}detent_torque[{place}]", "N.m", abs(size), sigma
-            yield f"{INPUT}detent_phase[{place}]", "rad", float(np.angle(size)), sigma / abs(size)
+    if not model.of_full_band:
+        return {}
+    whole = replace(model, log=model.log.sliding_in_full_band())
+    slopes, left = _linear(whole)
+    rows = slice(None) if training is None else training[whole.log.motion.rows]
+    step = linear_fit(slopes[rows], left[rows])
+    numbers = {path: value for path, value, *_ in _core.parameters(model.drive)}
+    found = dict[str, tuple[float, float]]()
+    for path, change, sigma in zip(model.free, step.values.tolist(), step.sigma.tolist(), strict=False):
+        if path in model.of_full_band:
+            bias = BIAS_IN_FULL_BAND * (1.0 if "phase" in path else numbers[path])
+            found[path] = numbers[path] + change, float(np.hypot(sigma, bias))
+    return found
 
 
-def sliding_detents(model: MotionModel) -> Sequence[float]:
-    """Return the orders of the detent in the gear of a model."""
+def sizes_of_waves(model: MotionModel) -> dict[Wave, float]:
+    """Return the amplitude of each wave in the gear of a model [N.m]."""
     law: Any = model.drive.gear.friction_input
-    return tuple(law.detent_order) if isinstance(law, friction.Cyclic) else ()
+    if not isinstance(law, friction.Cyclic):
+        return {}
+    detents = {Wave("detent", order): size for order, size in zip(law.detent_order, law.detent_torque, strict=True)}
+    level = model.law.coulomb
+    return detents | {Wave("friction", order): level * size for order, size in zip(law.order, law.amplitude, strict=True)}
 
 
-def settled(model: MotionModel) -> MotionModel:
-    """Return the model with the waves of its log in the gear; the same if it has none."""
-    values = {each.name: each.start for each in model.log.nuisances}
-    sizes, law = sizes_of_waves(model.log), model.law
-    if not sizes:
-        return model
-    lists, free = dict[str, list[float]](), list[str]()
-    for kind, names, unit in (
-        ("friction", ("order", "amplitude", "phase"), law.coulomb),
-        ("detent", ("detent_order", "detent_torque", "detent_phase"), 1.0),
-    ):
-        own = [(wave.order, abs(size) / unit, float(np.angle(size))) for wave, size in sizes.items() if wave.kind == kind]
-        lists |= {name: [each[place] for each in own] for place, name in enumerate(names)}
-        free += [f"{INPUT}{name}[{place}]" for name in names[1:] for place in range(len(own))]
-    cyclic = friction.Cyclic(law=law, viscous_share=0.0, **lists)
-    log = model.log.with_waves({})
-    return replace(
-        model,
-        log=log.starting([values[each.name] for each in log.nuisances]),
-        drive=model.drive.replace(gear=model.drive.gear.replace(friction_input=cyclic)),
-        free=(*map(_within, model.free), *free),
-        ties={_within(path): _within(other) for path, other in model.ties.items()},
-    )
+def _possible(model: MotionModel) -> Iterator[Wave]:
+    """Yield further waves whose turn the record contains often enough; of a detent over the output's turn, gravity is the
+    first."""
+    log, ratio, known = model.log, abs(model.drive.gear.kinematics.ratio), sizes_of_waves(model)
+    moved = np.ptp(log.motion.angle[log.motion.rows]) / (2.0 * np.pi)
+    orders = [order for order in INPUT_ORDERS if moved >= MIN_INPUT_TURNS]
+    orders += [order / ratio for order in OUTPUT_ORDERS if moved >= MIN_OUTPUT_TURNS * ratio]
+    varies = log.both_ways and model.law.coulomb > 0.0
+    waves = [Wave(kind, order) for order in orders for kind in (("detent", "friction") if varies else ("detent",))]
+    yield from (wave for wave in waves if wave not in known)
 
 
-def sizes_of_waves(log: MotionLog) -> dict[Wave, complex]:
-    """Return the size of sine and cosine of each wave of a log [N.m]."""
-    values = {each.name: each.start for each in log.nuisances}
-    return {wave: complex(*(values[name] for name in wave.names)) for wave in waves_of(log)}
+def _effort(wave: Wave, model: MotionModel) -> Array:
+    """Return the effort of sine and cosine of a wave of 1 N.m on the grid of a log, shape (2, m)."""
+    log = model.log
+    series = per_torque(model.drive, log.effort) * wave.columns(log)
+    return log.motion.late(series, log.delay)[0] if log.delayed else series
 
 
-def is_passive(log: MotionLog, coulomb: float) -> bool:
-    """True if friction opposes the motion at every angle, with the waves of a log about a dry level [N.m]."""
-    return sum(abs(size) for wave, size in sizes_of_waves(log).items() if wave.kind == "friction") <= MAX_DEPTH * coulomb
+def _linear(model: MotionModel) -> tuple[Array, Array]:
+    """Return the derivatives of the effort by the free numbers and nuisances, shape (n, unknowns), and its residual, (n,)."""
+    problem = problem_of(plan(model.drive, [""], model.free, ties=model.ties), model.drive, [model.log], [None])
+    ((predicted, slopes),) = problem.predict(problem.start())
+    return slopes[:, 0].T, (model.log.measured - predicted)[0]
 
 
-def _within(path: str) -> str:
-    """Return the path of a number of the friction at the input that now stands inside another law."""
-    return path.replace(INPUT, WITHIN) if path.startswith(INPUT) else path
+def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> list[Wave]:
+    """Return the waves beside the columns of a model that a residual contains beyond chance, the one that explains most first.
+
+    Residuals are made white by the autoregression of what no wave explains, so that slow errors of a model hide no fast wave.
+    """
+    if not pairs:
+        return []
+    from scipy import signal
+
+    every = np.column_stack([base, *pairs.values()])
+    noise = autoregression(left - every @ solved(every, left))
+    series = np.asarray(signal.lfilter(noise, [1.0], np.column_stack([every, left]), axis=0))
+    columns, between, target = np.split(series, [base.shape[1], -1], axis=1)
+    white = dict(zip(pairs, np.split(between, len(pairs), axis=1), strict=True))
+    rest, chosen = (target - columns @ solved(columns, target))[:, 0], list[Wave]()
+    while True:
+        found = dict[Wave, Array]()
+        for wave in (each for each in pairs if each not in chosen):
+            own, size = white[wave] - columns @ solved(columns, white[wave]), np.linalg.norm(white[wave], axis=0)
+            directions, shares, _ = np.linalg.svd(own / np.maximum(size, 1e-300), full_matrices=False)
+            if shares[-1] > MIN_OWN_SHARE:
+                found[wave] = rest - directions @ (directions.T @ rest)
+        best = min(found, key=lambda wave: float(found[wave] @ found[wave]), default=None)
+        if best is None:
+            return chosen
+        freedom = (len(rest) - columns.shape[1] - 2) / correlation_length(found[best])
+        gain = chance_of_gain(float(rest @ rest), float(found[best] @ found[best]), 2, freedom)
+        if len(pairs) * gain > MAX_CHANCE:
+            return chosen
+        chosen.append(best)
+        columns, rest = np.column_stack([columns, white[best]]), found[best]
 
 
-def waves_of(log: MotionLog) -> Iterator[Wave]:
-    """Yield the waves among the terms of a log."""
-    for name in log.waves:
-        quadrature, _, rest = name.partition(" of ")
-        kind, _, order = rest.partition(" ")
-        if quadrature == "sine":
-            yield Wave("detent" if kind == "detent" else "friction", float(order))
+def _passes(log: MotionLog, series: Array) -> bool:
+    """True if the pass band of a log contains a wave, by its sine and cosine on the grid, shape (2, m)."""
+    return bool(np.linalg.norm(log.motion.filtered(series)) > MIN_PASSED_SHARE * np.linalg.norm(series[:, log.motion.rows]))
+
+
+def _in_gear(model: MotionModel, sizes: Mapping[Wave, complex], fast: Collection[Wave]) -> MotionModel:
+    """Return the model with further waves in its gear, whose numbers are free.
+
+    Args:
+        model: before
+        sizes: of sine and, imaginary, of cosine [N.m]
+        fast: those that the full band alone contains
+    """
+    model = model.varying_over_the_angle()
+    law: Any = model.drive.gear.friction_input
+    free, of_full_band = list(model.free), list(model.of_full_band)
+    for wave, size in sizes.items():
+        order, amplitude, phase = NUMBERS[wave.kind]
+        unit = model.law.coulomb if wave.kind == "friction" else 1.0
+        more = {order: wave.order, amplitude: abs(size) / unit, phase: float(np.angle(size))}
+        paths = [f"{INPUT}{name}[{len(getattr(law, name))}]" for name in (amplitude, phase)]
+        law = law.replace(**{name: [*getattr(law, name), value] for name, value in more.items()})
+        free += paths
+        of_full_band += paths * (wave in fast)
+    names = {"detent": "a detent", "friction": "friction over the angle"}
+    added = " and ".join(names[kind] for kind in names if any(wave.kind == kind for wave in sizes))
+    drive = model.drive.replace(gear=model.drive.gear.replace(friction_input=law))
+    return replace(model, name=f"{model.name}, {added}", drive=drive, free=tuple(free), of_full_band=tuple(of_full_band))

@@ -117,10 +117,13 @@ class Motion(ComparedByFields):
         )
         return replace(self, speed=quick, acceleration=_rate(smooth, self.step))
 
+    def unfiltered(self) -> Motion:
+        """Return the same, compared in the full band at one of as many samples as a fit may take."""
+        return replace(self, every=-(-len(self.time) // MAX_FULL_BAND_ROWS), cutoff=np.inf)
+
     def in_full_band(self) -> Motion:
-        """Return the same, compared in the full band, near reversals, too, at one of as many samples as a fit may take."""
-        every = -(-len(self.time) // MAX_FULL_BAND_ROWS)
-        return replace(self, turning=np.zeros_like(self.turning), every=every, cutoff=np.inf)
+        """Return the same, compared in the full band, near reversals, too."""
+        return replace(self.unfiltered(), turning=np.zeros_like(self.turning))
 
     def filtered(self, series: Array) -> Array:
         """Return series on the grid in the pass band, at the samples compared: shape (…, n) becomes (…, rows).

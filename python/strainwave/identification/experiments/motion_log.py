@@ -63,7 +63,6 @@ class MotionLog(ComparedByFields):
         sound: False at outliers and clipped samples of the effort, and in gaps, shape (m,)
         extra: torque of other bodies that hold the output back, on the grid of the motion [N.m]; zero if nothing is known
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
-        waves: effort on the grid of a unit torque over the angle at the input, whose size is an unknown [N.m], by name
         delayed: True if a delay of the effort behind the motion is an unknown
         starts: initial value of each nuisance; zero if not given
     """
@@ -77,7 +76,6 @@ class MotionLog(ComparedByFields):
     regressors: Mapping[str, Array] = field(default_factory=dict)
     delayed: bool = False
     starts: tuple[float, ...] = ()
-    waves: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -146,10 +144,9 @@ class MotionLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """Zero of the effort, if the shaft moves both ways; its delay; sizes of waves; and the shares of other bodies."""
+        """Zero of the effort, if the shaft moves both ways; its delay; and the shares of other bodies."""
         described = [(f"{self.effort}_zero", EFFORTS[self.effort])] if self.both_ways else []
         described += [("delay", "s")] if self.delayed else []
-        described += [(name, "N.m") for name in self.waves]
         described += [(f"share of {name}", "1") for name in self.regressors]
         starts = self.starts or (0.0,) * len(described)
         return tuple(Nuisance(name, unit, start) for (name, unit), start in zip(described, starts, strict=True))
@@ -188,13 +185,18 @@ class MotionLog(ComparedByFields):
         """Return the same, compared in the full band, near reversals, too."""
         return replace(self, motion=self.motion.in_full_band())
 
+    def sliding_in_full_band(self) -> MotionLog:
+        """Return the same, compared in the full band where the drive slides."""
+        return replace(self, motion=self.motion.unfiltered())
+
+    @property
+    def delay(self) -> float:
+        """Initial value of the delay of the effort behind the motion [s]."""
+        return next((each.start for each in self.nuisances if each.name == "delay"), 0.0)
+
     def with_delay(self) -> MotionLog:
         """Return the same, with a delay of the effort behind the motion as an unknown."""
         return replace(self, delayed=True, starts=())
-
-    def with_waves(self, waves: Mapping[str, Array]) -> MotionLog:
-        """Return the same, with the sizes of other waves over the angle as unknowns."""
-        return replace(self, waves=waves, starts=())
 
     def starting(self, nuisances: Sequence[float]) -> MotionLog:
         """Return the same, with initial values of the nuisances."""
@@ -220,7 +222,7 @@ class MotionLog(ComparedByFields):
         else:
             torque, _ = needed_torque(model, motion, others)
         unknown = self._unknown(nuisances)
-        effort = per_torque(model, self.effort) * torque + self.induced(model) + self._of_waves(unknown)
+        effort = per_torque(model, self.effort) * torque + self.induced(model)
         if self.delayed:
             effort = self.motion.late(effort[np.newaxis], unknown["delay"])[0][0]
         return np.asarray(effort + sum(_zeros(unknown)))
@@ -241,14 +243,13 @@ class MotionLog(ComparedByFields):
         scale = per_torque(model, self.effort)
         torque, by_numbers = needed_torque(model, self.motion, others, paths)
         effort = scale * torque + self.induced(model)
-        waves = self._of_waves(unknown)
         slopes = [
             self._by_motor(model, number, others, effort) if path in OF_MOTOR else scale * by
             for number, path, by in zip(numbers, paths, by_numbers, strict=True)
         ]
         by_load = scale * self._by_load(model, others, torque) if self.regressors else torque
         of_shares = [by_load * each for each in self.regressors.values()]
-        series, by_delay = np.stack([effort + waves, *slopes, *self.waves.values(), *of_shares]), list[Array]()
+        series, by_delay = np.stack([effort, *slopes, *of_shares]), list[Array]()
         if self.delayed:
             series, change = self.motion.late(series, unknown["delay"])
             by_delay = [change]
@@ -260,10 +261,6 @@ class MotionLog(ComparedByFields):
     def _unknown(self, nuisances: Array) -> dict[str, float]:
         """Return the value of each nuisance by its name."""
         return dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
-
-    def _of_waves(self, unknown: Mapping[str, float]) -> Array:
-        """Return the effort of waves over the angle, shape (m,)."""
-        return sum((unknown[name] * each for name, each in self.waves.items()), np.zeros_like(self.force))
 
     def _others(self, nuisances: Array) -> Array:
         """Return the torque of other bodies that hold the output back [N.m], by the shares among the nuisances, shape (m,)."""

@@ -11,7 +11,7 @@ import numpy as np
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
+from strainwave.identification.candidates.motion_model import INPUT, LOSSES, MotionModel, sliding
 from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
 from strainwave.identification.candidates.rotor import (
     SHARE_OF_UNKNOWN_ROTOR,
@@ -56,6 +56,9 @@ SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction b
 MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
+DETENT, DEPTH = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
+ONE_WAVE = "the motion goes one way only: a detent and friction over the angle are one wave; record both directions"
+DEPTH_BY_SET = "it counts from Coulomb friction, whose split from viscous friction is that of the start set"
 OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=…"
@@ -198,7 +201,7 @@ def _judged(
 
     Of a record at one speed the fit itself splits friction as the set does.
     """
-    estimates = [*_of_motion(best, apart, taken), *_of_detent(best, taken)]
+    estimates = list(_of_motion(best, apart, taken))
     priors = {} if taken.in_current or best.model.one_speed else priors_of_undetermined(best.fit, estimates, known)
     if not priors:
         return best, estimates
@@ -259,13 +262,6 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     )  # fmt: skip
 
 
-def _of_detent(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:
-    """Yield the estimates of a detent that the full band alone shows."""
-    for path, unit, value, sigma in () if best.detent is None else best.detent.estimates(best.model):
-        found = FileEstimate(path, unit, value, sigma, "").resting_on(taken.relative).resting_on(taken.of_resistance)
-        yield found.in_current() if taken.in_current else found
-
-
 def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: PreparedLog) -> Iterator[FileEstimate]:
     """Yield the estimates of a log; each is as uncertain as the torque constant too, inertia and loss as that of the rotor.
 
@@ -309,6 +305,11 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             found = replace(found, why=BEHIND_GEAR)
         elif path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
+        elif path.startswith(DETENT) and not best.log.both_ways:
+            found = replace(found, why=ONE_WAVE)
+        elif path.startswith(DEPTH) and best.model.one_speed:
+            share = _spread_of_split(best.model) * best.model.one_speed / best.model.law.coulomb
+            found = replace(found, sigma=float(np.hypot(sigma, share * found.value)), why=DEPTH_BY_SET, in_combination=True)
         elif is_uncertain(found.value, abs(turned) * unknown):
             found = replace(found, why=OF_ROTOR)
         elif not found.is_phase:
@@ -322,6 +323,13 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
                 yield each.in_current() if in_current else each
             continue
         yield found.in_current() if in_current else found
+
+
+def _spread_of_split(model: MotionModel) -> float:
+    """Return the standard deviation of the viscous friction of a record at one speed, by the start set [N.m.s/rad]."""
+    law = model.law
+    at_speed = float(law.steady(model.one_speed))
+    return max(SPREAD_OF_VISCOUS * float(law.viscous), MIN_SPREAD_OF_SHARE * at_speed / model.one_speed)
 
 
 def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate, relative: float) -> Iterator[FileEstimate]:

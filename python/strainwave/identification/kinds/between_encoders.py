@@ -23,7 +23,7 @@ from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, Prepared
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of_shafts
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
-from strainwave.identification.results.gear_so_far import GearSoFar, is_of
+from strainwave.identification.results.gear_so_far import GearSoFar, compared_path, is_of
 from strainwave.identification.results.motor_inertia import MOTOR
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.statistics.residuals import correlation_length
@@ -156,12 +156,12 @@ def _law(errors: TransmissionError, drive: Drive) -> Any:
 def _estimates(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_current: bool) -> Iterator[FileEstimate]:
     """Yield the numbers of the gear, each as uncertain as the torque that all count from."""
     gear: Any = found.drive.gear
-    law, orders = known.gear_set.gear.stiffness, gear.kinematic_error.order
+    law = known.gear_set.gear.stiffness
     nuisances = {each.name for each in found.fit.experiment.nuisances}
     for estimate, sigma in zip(found.fit.estimates, found.sigmas, strict=True):
         if estimate.path in nuisances or estimate.path.startswith(("gear.kinematic_error.phase", "load.gravity")):
             continue
-        path = _path(estimate.path, orders, found, law)
+        path = _path(estimate.path, found, law)
         if path == "gear.damping":
             stiff = gear.stiffness.tangent(0.0) * inertia_of(found.drive)
             sigma = np.hypot(sigma, 2.0 * DAMPING_RATIO_SIGMA * np.sqrt(stiff))
@@ -221,13 +221,11 @@ def _has_kinematic_error(found: ElasticCandidate) -> bool:
     return any(not is_uncertain(value, sigma) for value, sigma in of_waves)
 
 
-def _path(path: str, orders: Any, found: ElasticCandidate, law: Any) -> str:
+def _path(path: str, found: ElasticCandidate, law: Any) -> str:
     """Return the path by which a number is compared with those of other files."""
-    if path.startswith("gear.kinematic_error.amplitude["):
-        return f"gear.kinematic_error.amplitude of order {orders[int(path.partition('[')[2][:-1])]:g}"
     if path == "gear.stiffness.k" and _first_segment(found, law):
         return "gear.stiffness.k1"
-    return path
+    return compared_path(path, found.drive.gear)
 
 
 def _first_segment(found: ElasticCandidate, law: Any) -> bool:

@@ -12,7 +12,7 @@ from strainwave.identification.reading.roles import ColumnRoles, first, measured
 from strainwave.identification.reading.sides import UndecidedError, pair, sides_of_angles
 from strainwave.identification.results.curves import curves_of_orders
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 
 
@@ -51,7 +51,7 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
     if "kinematic_error" in known.determined or not law.order:
         return known
     by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
-    sigmas = {f"gear.kinematic_error.amplitude[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
+    sigmas = {f"{AMPLITUDE}[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
     sigmas |= {f"gear.kinematic_error.phase[{i}]": by_order[order].phase_sigma for i, order in enumerate(law.order)}
     return known.with_parts({"kinematic_error": law}, sigmas, name)
 
@@ -61,7 +61,7 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
     for each in found.orders:
         if each.shaft == "input" and each.significant:
             yield FileEstimate(
-                f"gear.kinematic_error.amplitude of order {each.order:g}",
+                f"{AMPLITUDE} of order {each.order:g}",
                 "rad",
                 each.amplitude,
                 each.amplitude_sigma,

@@ -19,6 +19,7 @@ from strainwave.messages import one_line
 from strainwave.parameters import gear_numbers, plain
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
+AMPLITUDE = "gear.kinematic_error.amplitude"
 EXACT_SPREAD = 1e-9  # relative standard deviation of a number that is stated as exact
 START_SPREAD = 0.5  # relative standard deviation of a number of a set that states none (assumed)
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
@@ -170,6 +171,14 @@ def is_of(path: str, parts: Collection[str]) -> bool:
     (True, True, False)
     """
     return path.startswith("gear.") and path.removeprefix("gear.").partition(".")[0] in parts
+
+
+def compared_path(path: str, gear: Any) -> str:
+    """Return the path by which estimates of a number of a gear by several files are compared: an amplitude by its order."""
+    if path.startswith(f"{AMPLITUDE}["):
+        error: Any = gear.kinematic_error
+        return f"{AMPLITUDE} of order {error.order[int(path.partition('[')[2][:-1])]:g}"
+    return plain(path)
 
 
 def source_of(estimate: FileEstimate, name: str) -> Entry:
