@@ -41,6 +41,7 @@ from strainwave.files.text_layout import (
     sideways,
     with_units,
 )
+from strainwave.files.text_pairs import pairs_table
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -57,8 +58,11 @@ MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells 
 
 
 def open_text(path: str | Path) -> CsvTable | ArrayTable:
-    """Open a text table that has a column for each channel, or a row for each."""
+    """Open a text table that has a column for each channel, a row for each, or the name of each in front of its number."""
     file, data = _read_text(path)
+    if pairs := pairs_table(file, _blank_comments(data)):
+        _check_names(file, [label.name for label in pairs.labels])
+        return pairs
     found = sideways(_blank_comments(data)) if len(data) <= MAX_SIDEWAYS_BYTES else None
     if found is None:
         return _csv_table(file, data)
@@ -406,4 +410,5 @@ FORMAT = Format(
     "Text",
     "in the header: `speed [rad/s]` or `speed (rad/s)`",
     "reads back bit for bit",
+    "Lines of pairs, as `speed: 0.1, current: 131.7`, and blocks of `ros2 topic echo` are tables too, a row for each record.",
 )

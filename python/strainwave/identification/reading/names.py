@@ -30,7 +30,7 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "speed": (
         "speed", "velocity", "velocities", "vel", "omega", "w", "dq", "qd", "qdot", "qp", "dtheta", "thetadot", "dpos", "dphi",
         "drehzahl", "geschwindigkeit", "winkelgeschwindigkeit", "vitesse", "velocidad", "velocita", "rpm", "n",
-        "drehgeschwindigkeit", "velo",
+        "drehgeschwindigkeit", "velo", "spd",
     ),
     "torque": (
         "torque", "torques", "tau", "trq", "tor", "moment", "drehmoment", "reibmoment", "reibung", "friction", "couple",
@@ -62,13 +62,14 @@ NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
     "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
     "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady", "present",
+    "average", "avg", "avr", "mean",
 )  # fmt: skip
 # Words of columns that are no measurement of the quantity in their names.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
-    "simulated", "predicted", "rne", "ff", "feedforward",
+    "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
