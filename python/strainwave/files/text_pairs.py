@@ -23,7 +23,6 @@ MAX_PAIRS_BYTES = 2**26  # of a file of pairs: each number is an object before i
 MIN_SHARE_OF_LINES = 0.8  # of the first lines, that have the form of pairs
 MIN_SHARE_OF_RECORDS = 0.5  # of all records, that contain a column
 LEAD = "lead"  # number at the beginning of each line
-STAMPS = {("secs", "nsecs"), ("sec", "nanosec")}  # parts of a time in messages of ROS
 _CLOCK = CLOCK.pattern.replace("?P<", "?P<_")
 _BEGIN = re.compile(rf"\s*\[?(?:(?P<clock>{_CLOCK})|(?P<number>{NUMBER.pattern}))\]?(?=[\s,;:|\]])[\s,;:|]*")
 
@@ -199,15 +198,10 @@ class _Records:
         return ArrayTable(file, "", labels, [*times.values(), *columns.values()], left_out)
 
     def _time(self, columns: dict[str, Array]) -> dict[str, Array]:
-        """Return the time of the records: of clocks, of stamps of ROS, or of numbers in front that count no lines."""
+        """Return the time of the records: of clocks, or of numbers in front that count no lines."""
         lead = columns.pop(LEAD, None)
         if any(self.clocks):
             return {"time": seconds_of_clock(self.clocks)}
-        for whole, part in STAMPS:
-            pair = [next((name for name in columns if name.rpartition(".")[2] == each), "") for each in (whole, part)]
-            if all(pair):
-                seconds, fraction = (columns.pop(name) for name in pair)
-                return {"time": seconds - seconds[0] + 1e-9 * fraction}
         if lead is not None and np.isfinite(lead).all() and not np.array_equal(lead, np.round(lead)):
             return {"time": lead - lead[0]}
         return {}

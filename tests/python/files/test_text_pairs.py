@@ -32,7 +32,8 @@ TEXTS = {
     "stamped": ("170000000{0}.25: q=0.{0}; i=1,5\n", {"time": [0.0, 1.0, 2.0], "q": [0.0, 0.1, 0.2], "i": [1.5] * 3}),
     "one a line": ("speed: {0}\ntorque: nan\n", {"speed": [0.0, 1.0, 2.0], "torque": [np.nan] * 3}),
     "json": ('{{"q": 0.{0}, "tau": 2}}\n', {"q": [0.0, 0.1, 0.2], "tau": [2.0] * 3}),
-    "blocks": (BLOCK, {"time": [0.5, 1.5, 2.5], "position_1": [0.0, 0.1, 0.2], "position_2": [-1.0] * 3,
+    "blocks": (BLOCK, {"header.stamp.sec": [0.0, 1.0, 2.0], "header.stamp.nanosec": [5e8] * 3,
+                       "position_1": [0.0, 0.1, 0.2], "position_2": [-1.0] * 3,
                        "velocity_1": [0.25] * 3, "velocity_2": [1e-3] * 3}),
 }  # fmt: skip
 
