@@ -10,12 +10,12 @@ from typing import Literal, NamedTuple
 from strainwave.files.labels import Label
 from strainwave.files.units import counts, is_share, measures
 
-Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature"]
+Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature", "vibration"]
 Side = Literal["input", "output"]
 
 UNITS: dict[Quantity, str] = {
     "time": "s", "angle": "rad", "twist": "rad", "speed": "rad/s", "torque": "N.m", "current": "A", "voltage": "V",
-    "temperature": "K",
+    "temperature": "K", "vibration": "m/s2",
 }  # fmt: skip
 
 # English, German, French, Spanish and Italian words without accents, and the symbols of textbooks and robots.
@@ -42,6 +42,7 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     ),
     "voltage": ("voltage", "volt", "spannung", "u", "v", "uq", "voltaje", "tensione", "vir"),
     "temperature": ("temperature", "temperatures", "temp", "temperatur", "temperatura", "temper"),
+    "vibration": ("vibration", "vibrations", "vib", "schwingung", "vibrazione", "vibracion", "accelerometer"),
 }  # fmt: skip
 SIDES: dict[Side, tuple[str, ...]] = {
     "input": (
@@ -130,6 +131,8 @@ def meaning(label: Label) -> Meaning | None:
         return alone
     name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
     words = words_of(name)
+    if unit is not None and measures(unit, UNITS["vibration"]):
+        return Meaning("vibration", unit=unit)
     if any(word in OTHERS for word in words):
         return None
     quantity, at = _of_last_part(name, words, unit) or _quantity(words, unit)
