@@ -72,6 +72,8 @@ OTHERS = (
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
     "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
+DEVIATIONS = {"error", "err", "fehler", "deviation", "abweichung", "position", "positioning", "angle", "angular"}
+FINE_UNITS = ("arcsec", "arcmin", "\u2033", "\u2032")  # in which a deviation is one of the position
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
 SHARES = {"permille": "permille", "promille": "permille", "percent": "%", "pct": "%", "prozent": "%"}
@@ -133,6 +135,8 @@ def meaning(label: Label) -> Meaning | None:
     words = words_of(name)
     if unit is not None and measures(unit, UNITS["vibration"]):
         return Meaning("vibration", unit=unit)
+    if unit in FINE_UNITS and set(words) <= DEVIATIONS:
+        return Meaning("twist", unit=unit)
     if any(word in OTHERS for word in words):
         return None
     quantity, at = _of_last_part(name, words, unit) or _quantity(words, unit)
@@ -235,6 +239,8 @@ def _without_unit(name: str, of: Quantity | None = None) -> tuple[str, str | Non
         quantity = of or _quantity(words_of(rest), None)[0]
         unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
         if quantity is not None and measures(unit, UNITS[quantity]):
+            return rest, unit
+        if len(unit) > 1 and set(words_of(rest)) <= {*COMMANDED, *NEUTRAL} | DEVIATIONS and measures(unit, "rad"):
             return rest, unit
     return name, None
 
