@@ -51,6 +51,7 @@ Array = NDArray[np.float64]
 
 TITLE = "# title: "
 
+_DURATION = re.compile(rb"(?<=\d) sec(?=[,;\t\n])")  # behind each time of a timetable of MATLAB
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
 _MAX_CONTENT_ROWS = 1000  # rows that determine the content of a column
@@ -85,7 +86,8 @@ def _read_text(path: str | Path) -> tuple[str, bytes]:
     except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
-    return file, re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB, of ROS
+    data = re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB, of ROS
+    return file, _DURATION.sub(b"", data) if b" sec" in data[:MAX_LINE_BYTES] else data
 
 
 def _csv_table(file: str, data: bytes) -> CsvTable:

@@ -73,8 +73,8 @@ def positioning_words(found: Positioning) -> Iterator[str]:
     }
     for name, value in named.items():
         if np.isfinite(value):
-            sigma = f" ± {3600.0 * np.degrees(found.lost_motion_sigma):.2g} arcsec" if value is found.lost_motion else ""
-            yield f"{name}: {_in_degrees(value)}{sigma}"
+            scatter = f" ± {3600.0 * np.degrees(found.lost_motion_sigma):.2g} arcsec" if value is found.lost_motion else ""
+            yield f"{name}: {_in_degrees(value)}{scatter}"
     for order, size, sigma in found.orders:
         yield f"order {order:g} per turn of the axis: {_in_degrees(size)} ± {3600.0 * np.degrees(sigma):.2g} arcsec"
     yield (

@@ -32,6 +32,7 @@ SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "a
 MAX_PARTS = 20  # files of one recording
 SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 FILES_OF_RUNS = {".mat", ".npz", ".npy", ".json"}  # that may contain an array of recordings
+DUMPED = "data.log"  # with a count and a stamp in front of each row
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
@@ -215,7 +216,7 @@ def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
     for file in files:
         key: object = file.path
         if file.is_of_one_quantity:
-            key = (file.path.parent, _quantity_in(file.path)[1], file.path.suffix.lower())  # type: ignore[index]
+            key = (_named(file.path).parent, _quantity_in(file.path)[1], file.path.suffix.lower())  # type: ignore[index]
         groups.setdefault(key, []).append(file)
     found = list[MeasurementFile]()
     for group in groups.values():
@@ -240,9 +241,14 @@ def _names_only(labels: Sequence[Label], quantity: Quantity | None) -> bool:
     return quantity is not None and "time" in named and named <= {"time", quantity, None}
 
 
+def _named(path: Path) -> Path:
+    """Return the path whose name states what a file contains: a dumper of YARP writes `data.log` into a folder of each port."""
+    return path.parent if path.name == DUMPED else path
+
+
 def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
     """Return the quantity that a name contains, as `q_d`, and the other words; None if it contains none."""
-    words = [word for word in re.split(r"[_\-. ]+", path.stem) if word]
+    words = [word for word in re.split(r"[_\-. ]+", _named(path).stem) if word]
     for place, word in enumerate(words):
         plain, number = re.fullmatch(r"(.*?)(\d*)", word.casefold()).groups()  # type: ignore[union-attr]
         if plain in QUANTITY_OF or plain in SYMBOLS:
@@ -297,6 +303,8 @@ class _Part:
             return _Part._named(name, table, series)
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None)
+        if file.path.name == DUMPED and len(series) > 2:
+            return _Part(name, series[2:], series[1])
         time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
         return _Part(name, series if time is None else series[1:], time)
 
