@@ -70,14 +70,18 @@ def orders(
 def _of_file(
     file: MeasurementFile, given: FileOptions, ratio: float | None, rate: float | None, highest: float | None
 ) -> OrdersFound:
+    from strainwave.identification.kinds.positioning import positioning_of, positioning_words
     from strainwave.identification.reading.recognise import recognise
-    from strainwave.orders.measured import orders_found
+    from strainwave.orders.measured import OrdersFound, orders_found
 
     mapping = given.mapping_of([file])(file.path)
     constants = mapping.constants if rate is None else {**mapping.constants, "rate": rate}
     read = recognise(file, replace(mapping, constants=constants))
     ratio = read.constants.get("ratio") if ratio is None else ratio
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
+    if read.kind == "positioning":
+        steps = positioning_of(read, ratio)
+        return OrdersFound(file.path.name, None, None, (*read.remarks, *positioning_words(steps), *steps.remarks))
     side: Any = mapping.side
     found = orders_found(read.recording, file.path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

@@ -65,6 +65,8 @@ INSTEAD = {  # what to do with other files that people have
     ".xlsx": "save the sheet as .csv",
     ".xls": "save the sheet as .csv",
     ".ods": "save the sheet as .csv",
+    ".tdms": "save it as .csv in LabVIEW or DIAdem, or in Python with npTDMS: "
+    "nptdms.TdmsFile.read(PATH).as_dataframe(time_index=True).to_csv('log.csv', index_label='time')",
 }
 
 

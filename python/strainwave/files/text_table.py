@@ -41,6 +41,7 @@ from strainwave.files.text_layout import (
     sideways,
     with_units,
 )
+from strainwave.files.text_pairs import pairs_table
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ Array = NDArray[np.float64]
 
 TITLE = "# title: "
 
+_DURATION = re.compile(rb"(?<=\d) sec(?=[,;\t\n])")  # behind each time of a timetable of MATLAB
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
 _MAX_CONTENT_ROWS = 1000  # rows that determine the content of a column
@@ -57,8 +59,11 @@ MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells 
 
 
 def open_text(path: str | Path) -> CsvTable | ArrayTable:
-    """Open a text table that has a column for each channel, or a row for each."""
+    """Open a text table that has a column for each channel, a row for each, or the name of each in front of its number."""
     file, data = _read_text(path)
+    if pairs := pairs_table(file, _blank_comments(data)):
+        _check_names(file, [label.name for label in pairs.labels])
+        return pairs
     found = sideways(_blank_comments(data)) if len(data) <= MAX_SIDEWAYS_BYTES else None
     if found is None:
         return _csv_table(file, data)
@@ -81,7 +86,8 @@ def _read_text(path: str | Path) -> tuple[str, bytes]:
     except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
-    return file, re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB, of ROS
+    data = re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB, of ROS
+    return file, _DURATION.sub(b"", data) if b" sec" in data[:MAX_LINE_BYTES] else data
 
 
 def _csv_table(file: str, data: bytes) -> CsvTable:
@@ -417,4 +423,5 @@ FORMAT = Format(
     "Text",
     "in the header: `speed [rad/s]` or `speed (rad/s)`",
     "reads back bit for bit",
+    "Lines of pairs, as `speed: 0.1, current: 131.7`, and blocks of `ros2 topic echo` are tables too, a row for each record.",
 )

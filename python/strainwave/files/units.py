@@ -62,7 +62,7 @@ _DEFINITIONS = (
 STANDARD = frozenset(
     {"1", "1/(N.m)", "1/(N.m.rad)", "1/K", "1/m", "1/rad", "1/s", "A", "A.s/rad", "A/rad", "H", "Hz", "J", "J/K", "K", "K/W"}
     | {"N.m", "N.m.s/rad", "N.m/A", "N.m/rad", "N.m/rad2", "N.m/rad3", "N.m/s", "N.s/m", "N/m", "Ohm", "V", "V.s/rad"}
-    | {"V/(A.s)", "V/(N.m)", "V/(rad.s)", "V/A", "V/rad", "W", "W/K", "kg", "kg.m2", "kg/m3", "m", "m/s", "m2", "rad"}
+    | {"V/(A.s)", "V/(N.m)", "V/(rad.s)", "V/A", "V/rad", "W", "W/K", "kg", "kg.m2", "kg/m3", "m", "m/s", "m/s2", "m2", "rad"}
     | {"rad/s", "rad/s2", "s", "s/rad"}
 )
 

@@ -12,9 +12,10 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.orders.ripple import Ripple, Side, ripple
+from strainwave.orders.run_up import RunUp, is_run_up, run_up
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 
-EFFORTS = ("joint_torque", "torque", "input_torque", "current")  # in which ripple is looked for, the best first
+EFFORTS = ("joint_torque", "torque", "input_torque", "current", "vibration")  # in which ripple is looked for, the best first
 ANGLES: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
 SPEEDS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
 
@@ -28,12 +29,14 @@ class OrdersFound(ComparedByFields):
         transmission: from two encoders, if it has both
         ripple: from torque or current, if it has one and an angle
         remarks: what is not determined, and why
+        run_up: orders, resonance and fixed frequencies of a vibration while the speed varies
     """
 
     name: str
     transmission: TransmissionError | None
     ripple: Ripple | None
     remarks: tuple[str, ...] = ()
+    run_up: RunUp | None = None
 
 
 def orders_found(
@@ -50,7 +53,7 @@ def orders_found(
 
     Args:
         recording: columns with the names of a drive log: time, input_angle, output_angle, angle, a speed instead of an angle,
-            joint_torque, torque, input_torque, current
+            joint_torque, torque, input_torque, current, vibration
         name: of the recording, for messages
         ratio: of the gear, if it is known
         side: on which the angle or speed was measured, if its name does not contain it
@@ -92,7 +95,18 @@ def orders_found(
         )
     turning, angle, known, remarks = with_angle(recording, side, rate)
     lines = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
-    return OrdersFound(name, None, replace(lines, remarks=(*remarks, *lines.remarks)))
+    passing = _run_up(lines) if effort == "vibration" else None
+    return OrdersFound(
+        name, None, replace(lines, remarks=(*remarks, *lines.remarks)), () if passing is None else passing.remarks, passing
+    )
+
+
+def _run_up(found: Ripple) -> RunUp | None:
+    """Return the orders of a vibration and the resonance that they pass; None if the speed is too constant."""
+    curves = found.curves
+    if "speed" not in curves or not is_run_up(curves["speed"]):
+        return None
+    return run_up(curves.time, curves["angle"], curves["speed"], curves["series"], found.lines)
 
 
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:

@@ -18,6 +18,7 @@ from strainwave.files.recording import Recording
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.measured import OrdersFound
 from strainwave.orders.ripple import Ripple
+from strainwave.orders.run_up import RunUp
 from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
 from strainwave.report import orders_figures as plots
 from strainwave.report.page import render
@@ -62,6 +63,7 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "spectrum": plots.spectrum_figure(ripple, f"spectrum-{place}"),
             "map": plots.map_figure(ripple, f"map-{place}"),
         },
+        "run_up": [] if found.run_up is None else list(_run_up_words(found.run_up)),
         "remarks": _remarks(found),
     }
 
@@ -177,6 +179,7 @@ def orders_summary(found: Sequence[OrdersFound]) -> str:
         lines += ["", each.name] if lines else [each.name]
         lines += [] if each.transmission is None else _error_lines(each.transmission)
         lines += [] if each.ripple is None else _ripple_lines(each.ripple)
+        lines += [] if each.run_up is None else [f"  run-up: {text}" for text in _run_up_words(each.run_up)]
         for remark in _remarks(each):
             lines += textwrap.wrap(f"  note: {remark}", MAX_LINE_LETTERS, subsequent_indent="    ")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
@@ -234,6 +237,19 @@ def _ripple_lines(ripple: Ripple) -> Iterator[str]:
         yield "  ratio from these lines: none concluded"
 
 
+def _run_up_words(passing: RunUp) -> Iterator[str]:
+    """Yield orders, resonance and fixed frequencies of a run-up in words."""
+    for each in passing.orders:
+        largest = f"{uncertain_quantity(each.largest, each.sigma, 'm/s2')} at {number(each.speed * 30.0 / np.pi, 4)} 1/min"
+        away = uncertain_quantity(each.amplitude, each.sigma, "m/s2")
+        yield f"order {number(each.order, 5)} of the shaft: {away} away from the resonance, at most {largest}"
+    if isfinite(passing.frequency):
+        frequency = uncertain_quantity(passing.frequency, passing.frequency_sigma, "Hz")
+        yield f"resonance at {frequency}, damping ratio {uncertain(passing.damping, passing.damping_sigma)}"
+    for place, size, sigma in passing.lines:
+        yield f"fixed frequency {number(place, 5)} Hz: {uncertain_quantity(size, sigma, 'm/s2')}, no order of the shaft"
+
+
 def _concluded(ripple: Ripple) -> str:
     """Return the ratio that the lines determine, with its probability; empty without one."""
     share = sum(each.share for each in ripple.candidates if each.ratio in ripple.concluded)
@@ -288,6 +304,7 @@ def _results(found: OrdersFound) -> dict[str, Any]:
         "two_encoders": None if error is None else members_of(error),
         "law": None if law is None else {name: list(getattr(law, name)) for name in ("order", "amplitude", "phase")},
         "ripple": None if ripple is None else {**members_of(ripple), "lines": [line_numbers(each) for each in ripple.lines]},
+        "run_up": None if found.run_up is None else members_of(found.run_up),
         "remarks": _remarks(found),
     }
 

@@ -25,6 +25,8 @@ KINDS = {
         "torque or current without the motion that made it, or at one constant speed", "constant_speed.ConstantSpeed"
     ),
     "torsion": Listed("a torsion loop or branch", "torsion_loop.Torsion"),
+    "positioning": Listed("commanded against measured angles of one axis", "positioning.PositioningSteps"),
+    "vibration": Listed("a record of vibration while a shaft turns", "vibration.Vibration"),
     "encoders": Listed("a record of two encoders", "two_encoders.TwoEncoders"),
     "run": Listed("a run of the whole drive from rest under its command", "run_from_rest.RunFromRest"),
     "log": Listed("a log of a drive", "log.Log"),

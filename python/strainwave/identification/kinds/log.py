@@ -15,7 +15,7 @@ from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.shafts import put_sided
-from strainwave.identification.kinds.torsion_loop import is_loaded_in_steps
+from strainwave.identification.kinds.torsion_loop import is_loaded_in_steps, is_series_spring
 from strainwave.identification.kinds.warm_up import warmed, with_fall
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -36,11 +36,15 @@ class Log(Kind):
     time = "needed"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
-        """True for a motion in time, and what drove it; a spring that a rig loads in steps does not move."""
+        """True for a motion in time, and what drove it; a spring that a rig loads in steps does not move.
+
+        The torque that a series elastic actuator computes from the twist of its spring is none that drove it.
+        """
         if not measured(columns, "time") and "rate" not in mapping.constants:
             return False
         drove = measured(columns, "torque", "current", "voltage") or any(column.channel.commanded for column in columns)
-        return bool(drove and measured(columns, "angle", "speed")) and not is_loaded_in_steps(columns, mapping)
+        moves = bool(drove and measured(columns, "angle", "speed"))
+        return moves and not is_loaded_in_steps(columns, mapping) and not is_series_spring(columns)
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torques, currents, remarks = _efforts(columns)

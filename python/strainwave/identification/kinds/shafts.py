@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -19,6 +20,8 @@ from strainwave.identification.reading.sides import (
     sides_of_angles,
 )
 from strainwave.messages import as_option
+
+Array = NDArray[np.float64]
 
 MAX_REFLECTED = 0.1  # relative difference of a motion of the input from that of the output, if it is divided by the ratio
 MAX_REFLECTED_RANGE = 2.0 * np.pi  # rad, rad/s: a motor that moves less, without an encoder of the joint, is counted there
@@ -63,7 +66,23 @@ def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]
             for column, side in sides:
                 found[found.index(column)] = replace(column, channel=column.channel._replace(side=side))
             why.append(why_side)
+        elif len(both) == 2 and any(is_open) and not all(is_open) and _are_apart(both):
+            named, other = both if is_open[1] else both[::-1]
+            of_other: Side = "output" if named.channel.side == "input" else "input"
+            found[found.index(other)] = replace(other, channel=other.channel._replace(side=of_other))
+            why.append(f"{other.name} is recorded with {named.name}, from which it differs: it is that of the {of_other}")
     return found, why
+
+
+def _are_apart(both: Sequence[Column]) -> bool:
+    """True for two motions that are alike, but not the same."""
+    first, second = (column.si for column in both)
+    return bool(np.nanmax(np.abs(first - second)) > 0.0) and abs(_slope(first, second) - 1.0) < MAX_REFLECTED
+
+
+@np.errstate(all="ignore")
+def _slope(motion: Array, other: Array) -> float:
+    return abs(float(np.cov(motion, other)[0, 1] / np.var(other, ddof=1)))
 
 
 @np.errstate(all="ignore")
@@ -84,8 +103,7 @@ def _reflect(found: dict[str, Column], mapping: FileMapping) -> list[str]:
                 moves = f"{motor.name} moves no further than a joint: it is taken as divided by the ratio"
                 why.append(f"{moves}; otherwise add {as_option('column', f'input_{quantity}', motor.name)}")
             continue
-        slope = float(np.cov(motor.si, joint.si)[0, 1] / np.var(joint.si, ddof=1))
-        if abs(abs(slope) - 1.0) < MAX_REFLECTED:
+        if abs(_slope(motor.si, joint.si) - 1.0) < MAX_REFLECTED:
             found[f"reflected_{quantity}"] = found.pop(f"input_{quantity}")
             why.append(f"{motor.name} moves as far as {joint.name}: it is the {quantity} of the motor divided by the ratio")
     return why

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
+from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
 from strainwave.identification.candidates.torsion.ranking import rank_loop
@@ -19,6 +21,7 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_i
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.reading.channels import Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
@@ -39,6 +42,8 @@ MAX_TWIST = 0.3  # rad of a gear at the output
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
 MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps; at such a rate a log shows no motion
+MAX_OFF_COMPUTED = 0.02  # of a torque's standard deviation: hysteresis of any gear leaves more beside a multiple of the twist
+SERIES = "series_stiffness"  # of a spring behind the gear
 FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
@@ -68,8 +73,8 @@ class Torsion(Kind):
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torque = needed(columns, "torque", self.title)
-        twists = measured(columns, "twist")
-        angle = twists[0] if twists else needed(columns, "angle", self.title)
+        twist = _twist_of(columns)
+        angle = twist or needed(columns, "angle", self.title)
         both, rows = pair(angle, torque), len(angle.si)
         if rows < MIN_ROWS:
             raise UndecidedError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
@@ -77,7 +82,7 @@ class Torsion(Kind):
         branch = "one branch of a torsion loop, which shows stiffness only"
         shape = f"a torsion loop with {turns} reversal{'s' if turns > 1 else ''}" if turns else branch
         why = f"its columns are {both}, {rows} rows: {shape}"
-        side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twists else None)
+        side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twist else None)
         if side == "input":
             locked = "the output was locked, and the friction of the input is in the loop"
             of_input = f"angle and torque are those of the input: {locked}"
@@ -86,7 +91,10 @@ class Torsion(Kind):
         if side is None:
             of_side.append(_why_output(angle, torque))
         counted = f"{torque.name} is a torque of the motor, counted at the output: the friction of the input is in the loop"
-        remarks = (counted,) if "motor" in torque.name.casefold() else ()
+        remarks: tuple[str, ...] = (counted,) if "motor" in torque.name.casefold() else ()
+        if side == "output" and (stiffness := _series_stiffness(angle.si, torque.si)):
+            torque = replace(torque, si=float(np.copysign(1.0, stiffness)) * torque.si)
+            remarks += (_computed(angle, torque, stiffness),)
         return ColumnRoles(self.name, {"twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
@@ -102,7 +110,9 @@ class Torsion(Kind):
         friction_measured = "friction_input" in known.determined
         training = held_out_blocks(len(loop.twist))
         best, *others = fit_loop(loop, gear, training, friction_measured=friction_measured)
-        checks = [clipping(file.recording, name), *stiffness_of_loop(file.recording, best.fit, start, name)]
+        in_series = loop.input_ratio is None and _series_stiffness(file.recording["twist"], file.recording["torque"])
+        of_set = () if in_series else stiffness_of_loop(file.recording, best.fit, start, name)
+        checks = [clipping(file.recording, name), *of_set]
         whole = explained(best.fit, name)
         shared = _shared(best, gear, loop, friction_measured)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
@@ -117,6 +127,9 @@ class Torsion(Kind):
             held_out=_held_out(best),
             candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
         )  # fmt: skip
+        if in_series:
+            own = tuple(replace(each, path=each.path.replace("gear.stiffness.k", SERIES)) for each in estimates)
+            return replace(result, estimates=own), known
         if whole.failed or known.knows_better("stiffness", estimates):
             return result, known
         # a loop at the input has friction inside, and an error of the table of friction becomes hysteresis
@@ -142,6 +155,36 @@ def is_loaded_in_steps(columns: Sequence[Column], mapping: FileMapping) -> bool:
     if not times or len(angles) != 1 or len(torques) != 1 or measured(columns, "speed", "current", "voltage"):
         return False
     return not _exceeds_twist(angles[0], mapping) and in_steps(times[0].si, angles[0].si, torques[0].si)
+
+
+def is_series_spring(columns: Sequence[Column]) -> bool:
+    """True for the twist of a spring behind the gear and a torque computed from it, as of a series elastic actuator."""
+    torques, twist = measured(columns, "torque"), _twist_of(columns)
+    if twist is None or len(torques) != 1 or torques[0].channel.side == "input":
+        return False
+    return bool(_series_stiffness(twist.si, torques[0].si))
+
+
+def _twist_of(columns: Sequence[Column]) -> Column | None:
+    """Return the twist, or the difference of two angles; None if there is neither."""
+    twists, angles = measured(columns, "twist"), measured(columns, "angle")
+    if len(twists) == 1 or len(angles) != 2:
+        return twists[0] if len(twists) == 1 else None
+    first, second = angles
+    name = f"{first.name} - {second.name}"
+    return replace(first, label=Label(name, name, None), channel=Channel("twist"), si=first.si - second.si)
+
+
+@np.errstate(all="ignore")
+def _series_stiffness(twist: Array, torque: Array) -> float:
+    """Return the stiffness of a spring that is softer than any gear, if a torque is a multiple of its twist; else zero."""
+    rows = np.isfinite(twist) & np.isfinite(torque)
+    if np.count_nonzero(rows) < MIN_ROWS or not (np.ptp(twist[rows]) > 0.0 and np.ptp(torque[rows]) > 0.0):
+        return 0.0
+    covariance = np.cov(twist[rows], torque[rows])
+    stiffness = float(covariance[0, 1] / covariance[0, 0])
+    left = 1.0 - stiffness * covariance[0, 1] / covariance[1, 1]
+    return stiffness if left < MAX_OFF_COMPUTED**2 and abs(stiffness) < MIN_STIFFNESS_AT_OUTPUT else 0.0
 
 
 def _exceeds_twist(angle: Column, mapping: FileMapping) -> bool:
@@ -174,6 +217,16 @@ def _why_output(angle: Column, torque: Column) -> str:
         f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
         "with the output locked, --side output if the output was loaded with the input locked; or, if the motor was moved "
         "to and fro at rest, --kind presliding"
+    )
+
+
+def _computed(twist: Column, torque: Column, stiffness: float) -> str:
+    """Return in words that a torque which is a multiple of a twist checks nothing."""
+    return (
+        f"{torque.name} is {stiffness:.4g} N·m/rad times {twist.name}, as of a spring behind the gear whose torque is computed "
+        f"from its twist: the record repeats the stiffness that was assumed, and checks neither it nor {torque.name}; a weight "
+        "on a lever, a load cell, or the current of the motor in slow motion both ways does. The gear keeps its own spring, "
+        "which is far stiffer: give a drive whose angles are those on both sides of the spring this stiffness instead"
     )
 
 

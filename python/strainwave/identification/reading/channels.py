@@ -55,6 +55,7 @@ CHANNELS: dict[str, Channel] = {
     "load_torque": Channel("torque", loading=True),  # of a friction table: what loads the gear, counted where the table is
     "twist": Channel("twist"),
     "temperature": Channel("temperature"),
+    "vibration": Channel("vibration"),  # of an accelerometer on the housing
     "torque": Channel("torque"),
     "speed": Channel("speed"),
     "angle": Channel("angle"),

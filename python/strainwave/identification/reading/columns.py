@@ -24,7 +24,7 @@ SEVERAL = ("other_angles", "regressors")  # channels that may be several columns
 EXCHANGEABLE = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
 MEASURED = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
 EFFORTS = ("torque", "current")  # quantities
-USUAL_FIRST = ("time", "temperature")  # of which the first column is taken, if a file has several
+USUAL_FIRST = ("time", "temperature", "vibration")  # of which the first column is taken, if a file has several
 CURRENT, TORQUE = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
 
 

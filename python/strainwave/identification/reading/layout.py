@@ -27,6 +27,9 @@ MAX_ROWS = 20_000  # that are compared
 MAX_VALUE = 1e30  # in any unit: a column with larger numbers was not measured
 MAX_COLUMNS = 64  # that are compared with each other
 MIN_SHARE_OF_MATRIX = 0.6  # of the columns
+MAX_JOINTS = 14  # whose numbers may follow each other in one column: two arms
+MIN_SAMPLES_OF_JOINT, MAX_SAMPLES_OF_LAYOUT = 20, 2000  # of each of them
+MAX_STEP_OF_JOINT = 0.2  # of the step from joint to joint, by which a joint moves between two samples
 MIN_SPREAD = 1e-9  # of the largest one of all columns: what varies by less is rounding
 MIN_ROWS = 20  # of samples: fewer are a table
 
@@ -118,6 +121,21 @@ def _by_numbers(table: OpenTable, timed: int | None) -> MatrixLayout | None:
     moving = {place: columns[place] for place in spread if spread[place] > MIN_SPREAD * max(spread.values())}
     pairs = _speeds(moving, instants)
     return _blocks(pairs, [place for place in places if place != time], len(table.labels), time)
+
+
+def interleaved(values: Array) -> int:
+    """Return the number of joints whose numbers follow each other in one series; 0 if it is of one channel.
+
+    >>> time = np.arange(0.0, 3.0, 0.01)
+    >>> interleaved(np.stack([time, 5.0 - time, np.sin(time)], axis=1).ravel()), interleaved(np.sin(time))
+    (3, 0)
+    """
+    values = values[: MAX_JOINTS * MAX_SAMPLES_OF_LAYOUT]
+    if len(values) < MIN_SAMPLES_OF_JOINT * MAX_JOINTS or not np.isfinite(values).all():
+        return 0
+    steps = [float(np.mean(np.abs(values[each:] - values[:-each]))) for each in range(1, MAX_JOINTS + 1)]
+    best = int(np.argmin(steps))
+    return best + 1 if best and steps[best] < MAX_STEP_OF_JOINT * steps[0] else 0
 
 
 def nameless(table: OpenTable) -> bool:

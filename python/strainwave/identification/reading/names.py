@@ -10,12 +10,12 @@ from typing import Literal, NamedTuple
 from strainwave.files.labels import Label
 from strainwave.files.units import counts, is_share, measures
 
-Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature"]
+Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature", "vibration"]
 Side = Literal["input", "output"]
 
 UNITS: dict[Quantity, str] = {
     "time": "s", "angle": "rad", "twist": "rad", "speed": "rad/s", "torque": "N.m", "current": "A", "voltage": "V",
-    "temperature": "K",
+    "temperature": "K", "vibration": "m/s2",
 }  # fmt: skip
 
 # English, German, French, Spanish and Italian words without accents, and the symbols of textbooks and robots.
@@ -30,7 +30,7 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "speed": (
         "speed", "velocity", "velocities", "vel", "omega", "w", "dq", "qd", "qdot", "qp", "dtheta", "thetadot", "dpos", "dphi",
         "drehzahl", "geschwindigkeit", "winkelgeschwindigkeit", "vitesse", "velocidad", "velocita", "rpm", "n",
-        "drehgeschwindigkeit", "velo",
+        "drehgeschwindigkeit", "velo", "spd",
     ),
     "torque": (
         "torque", "torques", "tau", "trq", "tor", "moment", "drehmoment", "reibmoment", "reibung", "friction", "couple",
@@ -42,6 +42,7 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     ),
     "voltage": ("voltage", "volt", "spannung", "u", "v", "uq", "voltaje", "tensione", "vir"),
     "temperature": ("temperature", "temperatures", "temp", "temperatur", "temperatura", "temper"),
+    "vibration": ("vibration", "vibrations", "vib", "schwingung", "vibrazione", "vibracion", "accelerometer"),
 }  # fmt: skip
 SIDES: dict[Side, tuple[str, ...]] = {
     "input": (
@@ -62,14 +63,17 @@ NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
     "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
     "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady", "present",
+    "average", "avg", "avr", "mean",
 )  # fmt: skip
 # Words of columns that are no measurement of the quantity in their names.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
-    "simulated", "predicted", "rne", "ff", "feedforward",
+    "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
+DEVIATIONS = {"error", "err", "fehler", "deviation", "abweichung", "position", "positioning", "angle", "angular"}
+FINE_UNITS = ("arcsec", "arcmin", "\u2033", "\u2032")  # in which a deviation is one of the position
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
 SHARES = {"permille": "permille", "promille": "permille", "percent": "%", "pct": "%", "prozent": "%"}
@@ -129,6 +133,10 @@ def meaning(label: Label) -> Meaning | None:
         return alone
     name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
     words = words_of(name)
+    if unit is not None and measures(unit, UNITS["vibration"]):
+        return Meaning("vibration", unit=unit)
+    if unit in FINE_UNITS and set(words) <= DEVIATIONS:
+        return Meaning("twist", unit=unit)
     if any(word in OTHERS for word in words):
         return None
     quantity, at = _of_last_part(name, words, unit) or _quantity(words, unit)
@@ -231,6 +239,8 @@ def _without_unit(name: str, of: Quantity | None = None) -> tuple[str, str | Non
         quantity = of or _quantity(words_of(rest), None)[0]
         unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
         if quantity is not None and measures(unit, UNITS[quantity]):
+            return rest, unit
+        if len(unit) > 1 and set(words_of(rest)) <= {*COMMANDED, *NEUTRAL} | DEVIATIONS and measures(unit, "rad"):
             return rest, unit
     return name, None
 

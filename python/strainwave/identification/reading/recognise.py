@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
+from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
 from strainwave.identification.kinds import KINDS, kind_named
@@ -18,6 +19,7 @@ from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints
+from strainwave.identification.reading.layout import interleaved, nameless
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
 from strainwave.identification.reading.name_of_file import joint_in, speed_in
@@ -274,6 +276,8 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
     Raises:
         UndecidedError: no one named it; names the options
     """
+    for part in source.parts or (source,):
+        _check_not_interleaved(part)
     if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
         paths = " ".join(str(other) for other in (source.path, *others))
         raise UndecidedError(f"it has one quantity of a recording; name its files together: {paths}")
@@ -282,6 +286,24 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
         is_timed = "rate" in given.constants or any(label.name == "time" for label in source.table.labels)
         question, options = layout.question(is_timed=is_timed, joint=given.joint)
         raise UndecidedError(question, (), options)
+
+
+def _check_not_interleaved(source: MeasurementFile) -> None:
+    """Refuse one column without a name in which the numbers of several joints follow each other.
+
+    Raises:
+        UndecidedError: it is such a file; states how to convert it
+    """
+    if len(source.raw.labels) != 1 or not nameless(source.raw):
+        return
+    numbers, _ = source.raw.measured([ColumnSource(0, "numbers", "numbers", "1")])
+    if joints := interleaved(numbers["numbers"]):
+        name = source.path.name
+        raise UndecidedError(
+            f"{name} has one column in which the numbers of {joints} joints follow each other; write a row for each sample, "
+            f"as with python -c \"import numpy as np; np.savetxt('rows-{name}', np.loadtxt('{name}').reshape(-1, {joints}))\", "
+            "and take the files with rows"
+        )
 
 
 def _with_single_numbers(table: OpenTable, given: FileMapping) -> tuple[FileMapping, list[str]]:

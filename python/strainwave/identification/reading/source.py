@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -18,11 +18,12 @@ from strainwave.files.labels import ColumnSource, Label, places_of
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
 from strainwave.files.tables import FORMATS, is_table_of_numbers, open_table
+from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
-from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint
+from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, Quantity, is_of_joint, meaning
 from strainwave.identification.reading.slopes import is_slope
-from strainwave.identification.reading.times import merged, with_one_time
+from strainwave.identification.reading.times import merged, unit_of_time, with_one_time
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -31,6 +32,7 @@ SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "a
 MAX_PARTS = 20  # files of one recording
 SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 FILES_OF_RUNS = {".mat", ".npz", ".npy", ".json"}  # that may contain an array of recordings
+DUMPED = "data.log"  # with a count and a stamp in front of each row
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
@@ -110,11 +112,12 @@ class MeasurementFile:
 
     @property
     def is_of_one_quantity(self) -> bool:
-        """True if its name contains a quantity, and its columns have no names but that of a time."""
-        if _quantity_in(self.path) is None or self.path.is_dir():
+        """True if its name contains a quantity, and its columns but for a time have no names, or name nothing else."""
+        own = _quantity_in(self.path)
+        if own is None or self.path.is_dir() or self.run is not None:
             return False
         try:
-            return nameless(self.raw)
+            return nameless(self.raw) or _names_only(self.raw.labels, QUANTITY_OF.get(own[0].split("_")[0].casefold()))
         except (ValueError, OSError):
             return False
 
@@ -198,8 +201,8 @@ def _table_of(recording: Recording, name: str) -> ArrayTable:
 def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
     """Return the files, with those that are one recording together as one.
 
-    Files are of one recording if their columns have no names, and their names differ in the quantity alone, as `q_run_1.csv`
-    and `tau_run_1.csv`.
+    Files are of one recording if their names differ in the quantity alone, as `q_run_1.csv` and `tau_run_1.csv`, and their
+    columns have no names, or those of a time and of this quantity at each joint.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -213,7 +216,7 @@ def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
     for file in files:
         key: object = file.path
         if file.is_of_one_quantity:
-            key = (file.path.parent, _quantity_in(file.path)[1], file.path.suffix.lower())  # type: ignore[index]
+            key = (_named(file.path).parent, _quantity_in(file.path)[1], file.path.suffix.lower())  # type: ignore[index]
         groups.setdefault(key, []).append(file)
     found = list[MeasurementFile]()
     for group in groups.values():
@@ -232,9 +235,20 @@ def files_of_same_recording(path: Path) -> list[Path]:
     return sorted(other for other in others if (found := _quantity_in(other)) and found[1] == own[1] and found[0] != own[0])
 
 
+def _names_only(labels: Sequence[Label], quantity: Quantity | None) -> bool:
+    """True if columns are a time, and channels of which each names this quantity, or none."""
+    named = {(found := meaning(label)) and found.quantity for label in labels}
+    return quantity is not None and "time" in named and named <= {"time", quantity, None}
+
+
+def _named(path: Path) -> Path:
+    """Return the path whose name states what a file contains: a dumper of YARP writes `data.log` into a folder of each port."""
+    return path.parent if path.name == DUMPED else path
+
+
 def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
     """Return the quantity that a name contains, as `q_d`, and the other words; None if it contains none."""
-    words = [word for word in re.split(r"[_\-. ]+", path.stem) if word]
+    words = [word for word in re.split(r"[_\-. ]+", _named(path).stem) if word]
     for place, word in enumerate(words):
         plain, number = re.fullmatch(r"(.*?)(\d*)", word.casefold()).groups()  # type: ignore[union-attr]
         if plain in QUANTITY_OF or plain in SYMBOLS:
@@ -258,7 +272,7 @@ def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
     grids = [Grid(part.time, part.columns) for part in read if part.time is not None]
     file = one_line(listed(part.path.name for part in parts))
     if grids and len(grids) == len([part for part in read if part.series]):
-        return grid_table(file, "", merged(grids), {})
+        return grid_table(file, "", merged(grids), {name: unit for part in read for name, unit in part.units.items()})
     rows = [len(part.series[0]) for part in read]
     if len(set(rows)) > 1:
         counts = listed(f"{part.path.name} has {count}" for part, count in zip(parts, rows, strict=True))
@@ -271,25 +285,41 @@ def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """One file of a recording: the quantity in its name, its series, and its time if it has one."""
+    """One file of a recording: the quantity in its name, its series, its time if it has one, and names and units of columns."""
 
     name: str
     series: list[Array]
     time: Array | None
+    names: Sequence[str] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @staticmethod
     def of(file: MeasurementFile) -> _Part:
         name = (_quantity_in(file.path) or ("",))[0]
-        table = file.raw
+        table = file.timed
         numbers, _ = table.measured([ColumnSource(place, str(place), str(place), "1") for place in range(len(table.labels))])
         series = list(numbers.values())
+        if not nameless(file.raw):
+            return _Part._named(name, table, series)
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None)
+        if file.path.name == DUMPED and len(series) > 2:
+            return _Part(name, series[2:], series[1])
         time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
         return _Part(name, series if time is None else series[1:], time)
 
+    @staticmethod
+    def _named(name: str, table: OpenTable, series: list[Array]) -> _Part:
+        """Return a file whose columns have names: each begins with the quantity if it does not name it."""
+        meanings = [meaning(label) for label in table.labels]
+        at = next(place for place, found in enumerate(meanings) if found and found.quantity == "time")
+        names = [label.name if found else f"{name}_{label.name}" for label, found in zip(table.labels, meanings, strict=True)]
+        units = {each: label.unit for each, label in zip(names, table.labels, strict=True) if label.unit}
+        time = convert(series[at], unit_of_time(table.labels[at]), "s")
+        return _Part(name, series[:at] + series[at + 1 :], time, names[:at] + names[at + 1 :], units)
+
     @property
     def columns(self) -> dict[str, Array]:
-        if len(self.series) == 1:
-            return {self.name: self.series[0]}
+        if self.names or len(self.series) == 1:
+            return dict(zip(self.names or [self.name], self.series, strict=True))
         return {f"{self.name}_{number}": values for number, values in enumerate(self.series, start=1)}

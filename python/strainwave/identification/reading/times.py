@@ -142,7 +142,7 @@ def _with_own_times(table: OpenTable) -> OpenTable:
     for place, name in zip(range(0, len(labels), 2), channels, strict=True):
         time, values = numbers[str(place)], numbers[str(place + 1)]
         rows = np.isfinite(time) & np.isfinite(values)
-        time, values = convert(time[rows], _unit_of_time(labels[place]), "s"), values[rows]
+        time, values = convert(time[rows], unit_of_time(labels[place]), "s"), values[rows]
         if not len(time) or not (np.diff(time) > 0.0).all():
             return table
         grids.append(Grid(time, {name: values}))
@@ -159,5 +159,6 @@ def merged(grids: Sequence[Grid]) -> list[Grid]:
     return found
 
 
-def _unit_of_time(label: Label) -> str:
+def unit_of_time(label: Label) -> str:
+    """Return the unit of a column of time: the one that it states, or seconds."""
     return label.unit if label.unit is not None and measures(label.unit, "s") else "s"

@@ -230,6 +230,19 @@ def test_files_of_one_channel_with_a_time_of_their_own(tmp_path: Path) -> None:
         check_joint(recognise(file))
 
 
+@pytest.mark.parametrize("named", [True, False])
+def test_files_of_one_quantity_with_a_time_and_named_joints(tmp_path: Path, named: bool) -> None:
+    """As of TIAGo. The names of the columns contain the quantity, or that of the file does."""
+    quantities = {"position": (ANGLE, "rad"), "velocity": (SPEED, "rad/s"), "effort": (TORQUE, "Nm")}
+    for quantity, (values, unit) in quantities.items():
+        end = f"_{quantity}" if named else ""
+        header = f"t,arm_1_joint{end} [{unit}],arm_2_joint{end} [{unit}]\n"
+        written(tmp_path / f"run_{quantity}.csv", header, [TIME, values, 0.5 * values])
+    (file,) = measurement_files([tmp_path]).files
+    check_joint(recognise(file, FileMapping(joint="1")))
+    assert list(joints_of(file)) == ["1", "2"]
+
+
 def test_parts_with_different_numbers_of_rows_are_refused(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "q_a.csv", ANGLE)
     np.savetxt(tmp_path / "tau_a.csv", TORQUE[:-3])

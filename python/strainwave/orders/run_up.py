@@ -1,0 +1,271 @@
+r"""Vibration in a run-up: orders of the shaft, the resonance that they pass, and lines of fixed frequency.
+
+An order is a wave of the shaft's angle, which excites the structure at the frequency f of the moment,
+
+.. math:: y = \mathrm{Re} \sum_n \bigl(a_n + b_n H(f_n)\bigr) e^{j n \theta}, \qquad H(f) = \frac{1}{1 - r^2 + 2 j \zeta r},
+          \quad r = f / f_0
+
+(receptance of one degree of freedom). :math:`a_n` is what passes by the resonance; with :math:`r^2 H`, the answer of an
+accelerometer to a force, it is :math:`-b_n`. Amplitudes are linear; f0 and ζ of all orders together are searched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.orders.lines import SpectrumLine
+from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.residuals import correlation_length
+from strainwave.typeset import number
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MIN_SPEED_RATIO = 1.5  # of the fastest to the slowest speed, from which orders pass a range of frequencies
+MAX_FROM_WHOLE = 0.01  # by which a line that passes a resonance lies beside its whole order: its phase turns there
+MAX_ORDERS = 12  # of a shaft, each with four amplitudes
+SAMPLES_OF_SEARCH = 2**15  # that first values are searched in, at most
+SMOOTH_PERIODS = 8.0  # of an order, over which its amplitude is averaged for the first value of the resonance
+START_DAMPING = 0.03  # of critical damping (assumed): of bolted structures of metal
+DAMPING_BOUNDS = (1e-4, 0.5)  # of critical damping
+MIN_SIGNIFICANCE = 5.0  # standard deviations of an amplitude, from which a line or a resonance is stated
+PASSED_WIDTHS = 3.0  # half-power half widths on each side, that the orders must pass for a damping
+
+
+@dataclass(frozen=True)
+class OrderPassing:
+    """An order of the shaft in a run-up.
+
+    Attributes:
+        order: of the shaft [1]
+        amplitude: away from the resonance, the larger one of both ends of the run-up, in the unit of the vibration
+        largest: amplitude where it is largest
+        speed: of the shaft there [rad/s]
+        sigma: standard deviation of the amplitudes
+    """
+
+    order: float
+    amplitude: float
+    largest: float
+    speed: float
+    sigma: float
+
+
+@dataclass(frozen=True)
+class RunUp:
+    """Vibration of a shaft whose speed varies.
+
+    Attributes:
+        orders: of the shaft, those that stand out
+        lines: fixed frequencies [Hz], and the amplitudes and standard deviations of their waves
+        frequency, frequency_sigma: of the resonance [Hz]; nan if none is determined
+        damping, damping_sigma: of it, as a share of the critical one [1]; nan if none is determined
+        noise: standard deviation of what is left
+        remarks: what is not determined, and why
+    """
+
+    orders: tuple[OrderPassing, ...]
+    lines: tuple[tuple[float, float, float], ...]
+    frequency: float
+    frequency_sigma: float
+    damping: float
+    damping_sigma: float
+    noise: float
+    remarks: tuple[str, ...] = ()
+
+
+def is_run_up(speed: Array) -> bool:
+    """True if a speed varies enough for orders to pass a range of frequencies."""
+    fast, slow = np.quantile(np.abs(speed), [0.95, 0.05])
+    return bool(fast > MIN_SPEED_RATIO * max(float(slow), 1e-300))
+
+
+def run_up(time: Array, angle: Array, speed: Array, series: Array, lines: Sequence[SpectrumLine]) -> RunUp:
+    """Return orders, resonance and fixed frequencies of a run-up.
+
+    Args:
+        time: evenly [s], shape (n,)
+        angle: of the shaft [rad], shape (n,)
+        speed: of it [rad/s], shape (n,)
+        series: vibration, shape (n,)
+        lines: that stand out of its spectra over the angle and over the time
+    """
+    orders = _whole([line.order for line in lines if line.kind in ("order", "either")])[:MAX_ORDERS]
+    fixed = [line.frequency for line in lines if line.kind == "time"]
+    problem = _Problem(time, angle, np.abs(speed), series, orders, fixed)
+    start = problem.start()
+    found: _Fit | None = None
+    remarks = ["no order stands out, so no resonance is looked for"]
+    if start is not None:
+        fits = {"each frequency answers at once": problem.fitted(start, steady=True)}
+        fits["the structure answers with its own decay"] = problem.fitted(start, steady=False)
+        way, found = min(fits.items(), key=lambda each: each[1].noise)
+        (other,) = (each for each in fits.values() if each is not found)
+        remarks = [
+            f"of two models of a passing, the one in which {way} leaves less; the other one has the resonance at "
+            f"{number(float(other.values[0]), 4)} Hz, and half the difference is in the standard deviations"
+        ]
+        if why := problem.why_not(found):
+            found, remarks = None, [f"no resonance is determined: {why}"]
+        else:
+            found = replace(found, sigmas=np.hypot(found.sigmas, 0.5 * np.abs(found.values - other.values)))
+    if found is None:
+        found = problem.without()
+    has = len(found.values) > 0
+    return RunUp(
+        tuple(problem.passings(found)),
+        tuple(problem.fixed_lines(found)),
+        float(found.values[0]) if has else np.nan,
+        float(found.sigmas[0]) if has else np.nan,
+        float(found.values[1]) if has else np.nan,
+        float(found.sigmas[1]) if has else np.nan,
+        found.noise,
+        tuple(remarks),
+    )
+
+
+def _whole(orders: Sequence[float]) -> list[float]:
+    """Return orders, those beside a whole one as this, each once: a line that passes a resonance is smeared.
+
+    >>> _whole([1.9995, 0.9999, 1.997, 2.5])
+    [2.0, 1.0, 2.5]
+    """
+    near = [float(round(each)) if round(each) and abs(each / round(each) - 1.0) < MAX_FROM_WHOLE else each for each in orders]
+    return list(dict.fromkeys(near))
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Amplitudes of all columns at some values of frequency and damping, or without a resonance."""
+
+    values: Array
+    sigmas: Array
+    amplitudes: Array
+    sigma_of_amplitudes: float
+    noise: float
+    steady: bool
+
+
+@dataclass(frozen=True)
+class _Problem:
+    time: Array
+    angle: Array
+    speed: Array
+    series: Array
+    orders: Sequence[float]
+    fixed: Sequence[float]
+
+    def start(self) -> Array | None:
+        """Return first values of frequency [Hz] and damping, of the order that is amplified most; None without one."""
+        best, peak = None, 0.0
+        for order in self.orders:
+            frequency = order * self.speed / tau
+            reach = max(int(SMOOTH_PERIODS / max(float(np.median(frequency)), 1e-300) / (self.time[1] - self.time[0])), 1)
+            envelope = np.abs(np.convolve(self.series * np.exp(-1j * order * self.angle), np.ones(reach) / reach, "valid"))
+            middle = frequency[reach // 2 : reach // 2 + len(envelope)]
+            usual = float(np.median(envelope))
+            if envelope.max() / max(usual, 1e-300) > peak:
+                best, peak = float(middle[int(np.argmax(envelope))]), float(envelope.max() / max(usual, 1e-300))
+        return None if best is None or best <= 0.0 else np.array([best, START_DAMPING])
+
+    def fitted(self, start: Array, steady: bool) -> _Fit:
+        """Return the fit of frequency and damping."""
+        from scipy.optimize import least_squares
+
+        step = max(len(self.series) // SAMPLES_OF_SEARCH, 1)
+
+        def left(rows: slice) -> Callable[[Array], Array]:
+            def of(values: Array) -> Array:
+                columns = self._columns(values, steady)[rows]
+                return np.asarray(self.series[rows] - columns @ solved(columns, self.series[rows]))
+
+            return of
+
+        bounds = ([0.5 * start[0], DAMPING_BOUNDS[0]], [2.0 * start[0], DAMPING_BOUNDS[1]])
+        scale = [START_DAMPING * start[0], START_DAMPING]
+        found = least_squares(left(slice(None, None, step)), start, x_scale=scale, bounds=bounds)
+        found = least_squares(left(slice(None)), found.x, x_scale=scale, bounds=bounds)
+        correlated, jacobian = max(correlation_length(found.fun), 1.0), np.asarray(found.jac, float)
+        noise = float(np.std(found.fun))
+        sigmas = noise * np.sqrt(correlated * np.diag(np.linalg.pinv(jacobian.T @ jacobian)))
+        return self._fit(found.x, sigmas, steady, correlated)
+
+    def without(self) -> _Fit:
+        """Return the fit without a resonance."""
+        return self._fit(np.zeros(0), np.zeros(0), True, 1.0)
+
+    def _fit(self, values: Array, sigmas: Array, steady: bool, correlated: float) -> _Fit:
+        columns = self._columns(values, steady)
+        amplitudes = solved(columns, self.series) if columns.shape[1] else np.zeros(0)
+        noise = float(np.std(self.series - columns @ amplitudes))
+        return _Fit(values, sigmas, amplitudes, noise * np.sqrt(2.0 * correlated / len(self.series)), noise, steady)
+
+    def why_not(self, fit: _Fit) -> str:
+        """Return why a fit determines no resonance; empty if it does."""
+        frequency, damping = fit.values
+        passed = [(float(order * self.speed.min() / tau), float(order * self.speed.max() / tau)) for order in self.orders]
+        width = PASSED_WIDTHS * damping * frequency
+        if not any(low < frequency - width and frequency + width < high for low, high in passed):
+            return f"no order passes {number(float(frequency), 3)} Hz from well below to well above; run up further"
+        if damping > 0.9 * DAMPING_BOUNDS[1] or not damping > MIN_SIGNIFICANCE * fit.sigmas[1]:
+            return "what the orders have is no peak of one degree of freedom"
+        gain = max(abs(part) for _, part in self._parts(fit))
+        if gain < MIN_SIGNIFICANCE * fit.sigma_of_amplitudes:
+            return "no order is larger there than elsewhere"
+        return ""
+
+    def passings(self, fit: _Fit) -> Iterator[OrderPassing]:
+        """Yield the orders that stand out, the strongest first."""
+        found = []
+        for order, (direct, amplified) in zip(self.orders, self._parts(fit), strict=True):
+            frequency = order * self.speed / tau
+            answer = _answer(frequency, fit.values) if len(fit.values) else np.zeros(len(frequency))
+            size = np.abs(direct + amplified * answer)
+            at, ends = int(np.argmax(size)), size[[int(np.argmin(self.speed)), int(np.argmax(self.speed))]].max()
+            found.append(OrderPassing(order, float(ends), float(size[at]), float(self.speed[at]), fit.sigma_of_amplitudes))
+        yield from sorted(
+            (each for each in found if each.largest > MIN_SIGNIFICANCE * each.sigma), key=lambda each: -each.largest
+        )
+
+    def fixed_lines(self, fit: _Fit) -> Iterator[tuple[float, float, float]]:
+        """Yield the fixed frequencies that stand out, with amplitude and standard deviation."""
+        pairs = fit.amplitudes[len(fit.amplitudes) - 2 * len(self.fixed) :].reshape(-1, 2)
+        for frequency, pair in zip(self.fixed, pairs, strict=True):
+            if (size := float(np.hypot(*pair))) > MIN_SIGNIFICANCE * fit.sigma_of_amplitudes:
+                yield frequency, size, fit.sigma_of_amplitudes
+
+    def _parts(self, fit: _Fit) -> list[tuple[complex, complex]]:
+        """Return of each order what passes by the resonance, and what it amplifies."""
+        width = 4 if len(fit.values) else 2
+        rows = fit.amplitudes[: width * len(self.orders)].reshape(-1, width)
+        return [(complex(*row[:2]), complex(*row[2:]) if width == 4 else 0j) for row in rows]
+
+    def _columns(self, values: Array, steady: bool) -> Array:
+        waves: list[Complex] = []
+        for order in self.orders:
+            wave = np.exp(1j * order * self.angle)
+            waves.append(wave)
+            if len(values):
+                waves.append(wave * _answer(order * self.speed / tau, values) if steady else self._decaying(wave, values))
+        waves += [np.exp(1j * tau * frequency * self.time) for frequency in self.fixed]
+        columns = [part for wave in waves for part in (wave.real, -wave.imag)]
+        return np.stack(columns, axis=1) if columns else np.zeros((len(self.time), 0))
+
+    def _decaying(self, wave: Complex, values: Array) -> Complex:
+        """Return the answer to a wave that begins at the first sample."""
+        from scipy.fft import fft, fftfreq, ifft, next_fast_len
+
+        length = next_fast_len(2 * len(wave))
+        frequency = fftfreq(length, self.time[1] - self.time[0])
+        return np.asarray(ifft(fft(wave, length) * _answer(frequency, values))[: len(wave)])
+
+
+def _answer(frequency: Array, values: Array) -> Complex:
+    """Return the receptance of one degree of freedom over its static one."""
+    ratio = frequency / values[0]
+    return np.asarray(1.0 / (1.0 - ratio**2 + 2j * values[1] * ratio))

@@ -1,0 +1,34 @@
+"""A spring behind the gear, as of a series elastic actuator, whose torque is computed from its twist."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from strainwave.identification.identify import identify
+
+STIFFNESS = 130.0  # N.m/rad
+TIME = np.arange(0.0, 8.0, 0.005)
+
+
+def written(path: Path, columns: dict[str, np.ndarray]) -> Path:
+    np.savetxt(path, np.column_stack(list(columns.values())), "%.9g", ",", header=",".join(columns), comments="")
+    return path
+
+
+@pytest.mark.parametrize("without", ["", "deflection"])
+def test_the_spring_is_stated_beside_what_its_torque_does_not_check(tmp_path: Path, without: str) -> None:
+    noise = np.random.default_rng(0).normal(0.0, 1.0, (3, len(TIME)))
+    joint = 0.4 * np.sin(1.3 * TIME) + 0.15 * np.sin(3.1 * TIME)
+    twist = 0.01 * np.sin(1.3 * TIME + 0.7) + 1e-5 * noise[0]
+    effort = -STIFFNESS * twist + 5e-3 * noise[1]
+    current = 0.1 * np.cos(1.3 * TIME) + 0.01 * noise[2]
+    columns = {"time": TIME, "position": joint, "motorPosition": joint + twist, "deflection": twist, "effort": effort}
+    columns = {name: values for name, values in columns.items() if name != without}
+    found = identify("csg-20-100", [written(tmp_path / "sea.csv", {**columns, "motorCurrent": current})])
+    (spring,) = found.parameters
+    assert spring.estimate.path == "series_stiffness"
+    assert spring.estimate.value == pytest.approx(STIFFNESS, abs=4.0 * spring.estimate.sigma + 0.05)
+    (file,) = found.files
+    assert any("checks neither it nor effort" in remark for remark in file.remarks)
