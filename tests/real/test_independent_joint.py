@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 import strainwave as sw
 
 from tests.evidence import independent_joint
 from tests.evidence.rig import measured
+from tests.support.cplusplus import compiler
 
 pytestmark = pytest.mark.skipif(
     not (independent_joint.RIG / "joint.c").is_file(),
     reason=f"the joint of another program was not found: {independent_joint.RIG} (set STRAINWAVE_RIG)",
 )
+MAX_TORQUE_ERROR = 0.05  # of the variation of the torque
 LOG_SECONDS, LOG_RATE = 15, 500  # s, Hz
 MAX_SHARE = 0.1  # of the error of the tuned cascade with constant feed-forward
 
@@ -53,3 +57,16 @@ def test_the_scale_of_friction_pays_in_a_joint_with_more_friction(identified: sw
     )
     for measure in ("rms", "largest", "at_reversals"):
         assert getattr(scaled, measure) < MAX_SHARE_WITH_SCALE * getattr(plain, measure), (measure, plain, scaled)
+
+
+@pytest.mark.slow("identification")
+def test_the_identified_gear_measures_the_torque_of_the_output(identified: sw.Drive, tmp_path: Path) -> None:
+    """The joint prints its true torque, along motions that were not identified."""
+    subprocess.run([*compiler("gcc"), "-O2", independent_joint.RIG / "joint.c", "-lm", "-o", tmp_path / "joint"], check=True)
+    printed = subprocess.run([tmp_path / "joint", "amplitude=.7", "end=12"], check=True, capture_output=True, text=True).stdout
+    time, _, _, motor, _, link, _, torque, _ = np.loadtxt(printed.splitlines()).T
+    zero = independent_joint.ENCODER_ZERO
+    found = sw.output_torque(identified, motor + zero, link - zero / 80.0, time=time)
+    settled = time > independent_joint.START
+    error = (found.torque - torque)[settled]
+    assert np.sqrt(np.mean((error - error.mean()) ** 2)) < MAX_TORQUE_ERROR * np.std(torque[settled])
