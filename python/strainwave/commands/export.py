@@ -107,12 +107,14 @@ def verb_of(form: Form) -> Any:
 def option_of(parameter: Parameter, meanings: dict[str, str]) -> Iterator[Parameter]:
     """Yield the option of an argument; none if its value is none that a command line can have."""
     annotation = str if get_origin(parameter.annotation) is Literal else parameter.annotation
-    kinds = {*(get_args(annotation) or (annotation,))} - {NoneType}
+    kinds = {*(get_args(annotation) or (annotation,))}
     if parameter.name in CONVERSIONS:
         yield parameter.replace(annotation=CONVERSIONS[parameter.name].annotation)
-    elif kinds <= {str, float, int, bool}:
-        option = _option(parameter, kinds, meanings[parameter.name])
-        yield parameter.replace(annotation=Annotated[annotation, option], kind=Parameter.KEYWORD_ONLY)
+    elif scalars := kinds & {str, float, int, bool}:
+        option = _option(parameter, scalars, meanings[parameter.name])
+        (scalar,) = scalars if len(scalars) == 1 else (annotation,)
+        typed = scalar | None if NoneType in kinds else scalar
+        yield parameter.replace(annotation=Annotated[typed, option], kind=Parameter.KEYWORD_ONLY)
 
 
 def _option(parameter: Parameter, kinds: set[Any], meaning: str) -> Any:

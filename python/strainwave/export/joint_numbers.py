@@ -57,7 +57,7 @@ def joint(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | Non
     return Exported(
         "joint",
         gear_set.name,
-        {"joint.xml": _mujoco_default(numbers, name), "joint.urdf": _urdf(values, elements.ratio, name)},
+        {"joint.xml": _mujoco_default(numbers, name), "joint.urdf": _urdf(values, elements, name)},
         numbers,
         tuple(losses),
         (*elements.left_out, *left_out_if_rigid(elements)),
@@ -115,18 +115,25 @@ def _mujoco_default(numbers: Mapping[str, tuple[float, str]], name: str) -> str:
     )
 
 
-def _urdf(values: Mapping[str, str], ratio: float, name: str) -> str:
-    """Return dynamics and transmission of a joint in URDF."""
-    return f"""<robot name={quoteattr(name)}>
-  <!-- Put dynamics into the joint of your robot, and its name into the transmission. -->
-  <joint name="joint" type="revolute">
+def _urdf(values: Mapping[str, str], elements: GearElements, name: str) -> str:
+    """Return a robot of two links with one joint in URDF."""
+    return f"""<?xml version="1.0"?>
+<!-- Put limit and dynamics into the joint of your robot, and the name of that joint into the transmission. -->
+<robot name={quoteattr(name)}>
+  <link name="base"/>
+  <link name="output"/>
+  <joint name="joint" type="continuous">
+    <parent link="base"/>
+    <child link="output"/>
+    <axis xyz="0 0 1"/>
+    <limit effort="{elements.max_torque!r}" velocity="{elements.max_speed / abs(elements.ratio)!r}"/>
     <dynamics damping="{values["damping"]}" friction="{values["frictionloss"]}"/>
   </joint>
   <transmission name="joint_transmission">
     <type>transmission_interface/SimpleTransmission</type>
     <joint name="joint"/>
     <actuator name="motor">
-      <mechanicalReduction>{ratio!r}</mechanicalReduction>
+      <mechanicalReduction>{elements.ratio!r}</mechanicalReduction>
     </actuator>
   </transmission>
 </robot>

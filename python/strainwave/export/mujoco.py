@@ -8,7 +8,8 @@ that yield are its elastic elements, so that the hysteresis of Maxwell slip elem
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -20,7 +21,11 @@ from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported, Form
 from strainwave.export.robot import Element, Robot, child, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
+from strainwave.messages import listed
 from strainwave.tuning.drawn import drawn_gears
+from strainwave.tuning.loss import ExportLoss
+
+Part = tuple[GearSet, GearElements, list[str]]  # a gear, its elements, and remarks on what it changes in the robot
 
 ROTOR_MASS = 1e-6  # kg: MuJoCo refuses a body that moves without one
 ROTOR_INERTIA = 1e-9  # kg.m², at least, across the axis
@@ -39,20 +44,21 @@ def mjcf(
     max_torque: float | None = None,
     load_inertia: float | None = None,
     into: str | None = None,
-    joint: str | None = None,
+    joint: str | Mapping[str, GearSet | Drive | Gear | str | Path] | None = None,
     keep: str | None = None,
     draws: int = 0,
     seed: int = 0,
     name: str = "gear",
 ) -> Exported:
-    """Return a gear as MJCF, alone with an inertia or behind a joint of a robot, with its losses.
+    """Return a gear as MJCF, alone with an inertia or behind joints of a robot, with its losses.
 
     Args:
         drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: at the output, up to which the torsion is fitted [N.m]; by default the peak torque of the ratings
         load_inertia: at the output about its axis [kg.m²]; by default that of the load
         into: text of the MJCF file of a robot; a model with an inertia alone if not given
-        joint: name of a hinge of the robot, which becomes the output
+        joint: name of a hinge of the robot, which becomes the output; several as "hip,knee"; one with another gear as
+            "knee=mine.toml"; "all" for all hinges that are not listed. In Python also a gear for each name
         keep: what the joint keeps of its own damping, frictionloss and armature besides the gear's, as "damping,armature"
         draws: number of gears that are drawn from what is known of the numbers, for domain randomisation
         seed: of the draw
@@ -62,7 +68,8 @@ def mjcf(
         The text of the MJCF file, the losses of each law and of a run, and the laws left out.
 
     Raises:
-        ValueError: neither a torque nor a rating is given, there is no inertia, or the robot has no such hinge
+        ValueError: neither a torque nor a rating is given, there is no inertia, the robot has no such hinge, or gears are
+            drawn for several joints
 
     >>> import strainwave as sw
     >>> found = mjcf("csg-20-100", load_inertia=1.2)
@@ -72,20 +79,73 @@ def mjcf(
     'kinematic error: 58.2 urad at the output'
     """
     gear_set = gear_set_of(drive)
-    elements = GearElements.of_set(gear_set, max_torque)
     if (into is None) != (joint is None):
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
-    remarks: tuple[str, ...] = ()
     if into is not None and joint is not None:
-        text, remarks = attached(into, joint, elements, gear_set.motor, name=name, keep=kept(keep))
+        robot = Robot.of(into)
+        gears = _gears_of_joints(robot, joint, gear_set)
+        exports = {
+            shaft: _with_elements(robot, shaft, each, max_torque, name if len(gears) == 1 else f"{shaft}_{name}", kept(keep))
+            for shaft, each in gears.items()
+        }
+        text = written(robot.root)
     else:
+        elements = GearElements.of_set(gear_set, max_torque)
+        exports = {"": (gear_set, elements, [])}
         text = _alone(elements, gear_set.motor, _inertia(gear_set, load_inertia), name)
     files: dict[str, str | bytes] = {"gear.xml": text}
+    if draws and len(exports) > 1:
+        raise ValueError(f"draws = {draws} are made for one joint; {listed(exports)} have gears")
     if draws:
-        files["randomisation.json"] = _randomisation(gear_set, elements, arguments.whole("draws", draws, 2), seed, name)
+        ((own, elements, _),) = exports.values()
+        files["randomisation.json"] = _randomisation(own, elements, arguments.whole("draws", draws, 2), seed, name)
+    losses, left_out, remarks = _of_all(exports)
     remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
-    left_out = (*elements.left_out, *_left_out_of_motor(gear_set.motor))
-    return Exported("mjcf", gear_set.name, files, {}, elements.losses(gear_set.gear), left_out, remarks)
+    names = listed(dict.fromkeys(each.name for each, _, _ in exports.values()))
+    return Exported("mjcf", names, files, {}, losses, left_out, remarks)
+
+
+def _gears_of_joints(
+    robot: Robot, joint: str | Mapping[str, GearSet | Drive | Gear | str | Path], default: GearSet
+) -> dict[str, GearSet]:
+    """Return the gear of each joint that gets one, in the order of the robot.
+
+    Raises:
+        ValueError: the robot has no such hinge
+    """
+    if isinstance(joint, Mapping):
+        chosen = {name: gear_set_of(gear) for name, gear in joint.items()}
+    else:
+        entries = [each.strip().partition("=") for each in joint.split(",")]
+        chosen = {name: GearSet.read(gear) if gear else default for name, _, gear in entries}
+    others = chosen.pop("all", None)
+    hinges = list(robot.hinges())
+    for name in chosen:
+        robot.hinge(name)
+    gears = {name: chosen.get(name, others) for name in hinges}
+    return {name: gear for name, gear in gears.items() if gear is not None}
+
+
+def _with_elements(
+    robot: Robot, joint: str, gear_set: GearSet, max_torque: float | None, name: str, keep: Collection[str]
+) -> Part:
+    """Add the gear of a set behind a joint of a robot, and return it with its elements and remarks."""
+    elements = GearElements.of_set(gear_set, max_torque)
+    return gear_set, elements, attach(robot, joint, elements, gear_set.motor, name=name, keep=keep)
+
+
+def _of_all(exports: Mapping[str, Part]) -> tuple[tuple[ExportLoss, ...], tuple[str, ...], tuple[str, ...]]:
+    """Return losses, laws left out and remarks of gears, each with the name of its joint if there are several."""
+    losses, left_out, remarks = list[ExportLoss](), list[str](), list[str]()
+    known = dict[int, tuple[ExportLoss, ...]]()
+    for joint, (gear_set, elements, own_remarks) in exports.items():
+        prefix = f"{joint}: " if len(exports) > 1 else ""
+        found = known.setdefault(id(gear_set), ()) or elements.losses(gear_set.gear)
+        known[id(gear_set)] = found
+        losses += [replace(each, quantity=prefix + each.quantity) for each in found]
+        left_out += [prefix + each for each in (*elements.left_out, *_left_out_of_motor(gear_set.motor))]
+        remarks += [prefix + each for each in own_remarks]
+    return tuple(losses), tuple(left_out), tuple(remarks)
 
 
 def _left_out_of_motor(part: Any) -> Iterator[str]:
@@ -164,13 +224,13 @@ def inertia_on_a_hinge(inertia: float, timestep: float, name: str) -> tuple[Elem
     return root, link, ElementTree.SubElement(link, "joint", {"name": f"{name}_output", "type": "hinge", "axis": "0 0 1"})
 
 
-def attached(
-    model: str, joint: str, elements: GearElements, actuator: Any, *, name: str = "gear", keep: Collection[str] = ()
-) -> tuple[str, tuple[str, ...]]:
-    """Return a robot's model with a gear behind one of its joints, and remarks on what it changes.
+def attach(
+    robot: Robot, joint: str, elements: GearElements, actuator: Any, *, name: str = "gear", keep: Collection[str] = ()
+) -> list[str]:
+    """Put a gear behind a joint of a robot, and return remarks on what that changes.
 
     Args:
-        model: text of an MJCF file
+        robot: its model, which is changed
         joint: name of a hinge in it, which becomes the output of the gear
         elements: of the gear
         actuator: motor of the drive; None for a torque at the input
@@ -178,9 +238,8 @@ def attached(
         keep: of damping, frictionloss and armature, what the joint keeps of its own
 
     Raises:
-        ValueError: the text is no MJCF, or the joint is not a hinge in it with a body of its own
+        ValueError: the joint is not a hinge of the robot with a body of its own
     """
-    robot = Robot.of(model)
     shaft = robot.hinge(joint)
     remarks = list(robot.replace_friction(shaft, friction_attributes(elements.at_output, robot.timestep), keep))
     link = robot.parents[shaft]
@@ -188,7 +247,19 @@ def attached(
     rotor = add_gear(robot, link, shaft, elements, actuator, name)
     added = len(robot.root.findall("actuator/*")) - before
     remarks += [*robot.extended_keyframes(rotor, shaft, elements.ratio, added), *robot.others_on(joint, name)]
-    return written(robot.root), tuple(remarks)
+    # Semi-implicit Euler with explicit damping is stable for k dt^2 + 2 c dt < 4 J.
+    lightest = 0.25 * stiffness_at_rest(elements) * robot.timestep**2 + 0.5 * elements.damping * robot.timestep
+    remarks.append(
+        f"at the timestep of {robot.timestep:g} s the gear needs {lightest:.2g} kg.m2 or more about {joint}, by links or "
+        "armature; with less, shorten the timestep"
+    )
+    return remarks
+
+
+def stiffness_at_rest(elements: GearElements) -> float:
+    """Return the stiffness of a gear about zero twist, where no element slips [N.m/rad]."""
+    springs = (spring.linear for spring in elements.springs if not spring.gap)
+    return sum(springs) + sum(stiffness for stiffness, _ in elements.slips)
 
 
 def add_gear(robot: Robot, link: Element, joint: Element, elements: GearElements, actuator: Any, name: str) -> Element:

@@ -63,20 +63,29 @@ class Robot:
         """Timestep of the model [s]."""
         return timestep_of(self.root)
 
+    def hinges(self) -> Iterator[str]:
+        """Yield the names of the hinges of bodies."""
+        for each in self._named_joints():
+            if self.kind(each) == "hinge":
+                yield each.attrib["name"]
+
     def hinge(self, joint: str) -> Element:
         """Return a hinge of the robot.
 
         Raises:
             ValueError: the joint is not a hinge with a body of its own
         """
-        there = [each for each in self.root.iter("joint") if self.parents[each].tag == "body" and each.get("name")]
+        there = self._named_joints()
         shaft = next((each for each in there if each.get("name") == joint), None)
         if shaft is None:
             names = listed(each.get("name", "") for each in there) or "no joint with a name"
             raise ValueError(f"joint = {quoted(joint)} is not in the model; it has {names}")
-        if (kind := self.stated(shaft).get("type", "hinge")) != "hinge":
+        if (kind := self.kind(shaft)) != "hinge":
             raise ValueError(f"joint = {quoted(joint)} is of type {kind}; a gear turns a hinge")
         return shaft
+
+    def _named_joints(self) -> list[Element]:
+        return [each for each in self.joints() if each.tag == "joint" and each.get("name")]
 
     def stated(self, element: Element) -> dict[str, str]:
         """Return the attributes of an element, those of its classes included."""

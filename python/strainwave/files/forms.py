@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 
+MAX_ELEMENTS = 1000  # of a list: the sequence of a law has fewer
+
+
 class Form(NamedTuple):
     """Form of one place of a file: its type, an example of each key, and the name of a key."""
 
@@ -80,6 +83,8 @@ def _explained(fault: ErrorDetails, form: Form) -> str:
     where = str(key) + "".join(f"[{index}]" for index in inner if isinstance(index, int))
     if kind == "extra_forbidden" and not attribute:
         return f"{key}: not a {form.noun}; it has {', '.join(form.examples)}"
+    if kind == "too_long":
+        return f"{where} has {len(given)} elements; at most {MAX_ELEMENTS} are read"
     hint = f"write {form.examples[str(key)]}"
     if kind == "extra_forbidden":
         return f"{where}: an entry has no {attribute}; {hint}"

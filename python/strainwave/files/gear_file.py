@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
-from strainwave.files.budget import MAX_DEPTH, MAX_TEXT_BYTES, RefusedFile, read_regular
+from strainwave.files.budget import MAX_DEPTH, RefusedFile, read_regular
 from strainwave.files.described import ParameterField, PartField, all_paths, default_of, optional, own_paths, parameters, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
-from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
+from strainwave.files.forms import MAX_ELEMENTS, Form, checked, elements, entry_schema, inline, schema
 from strainwave.files.identified_tables import (
     Covariance,
     Validation,
@@ -48,6 +48,7 @@ class Contents(Protocol):
     def validation(self) -> tuple[Validation, ...]: ...
 
 
+MAX_GEAR_BYTES = 2**21  # of a gear file: a covariance of 200 parameters takes half of it
 _TEXTS = ("name", "maker", "note")
 _PART_OF_KEY = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|(?<![\w-])[\w-]++)[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?:{_PART_OF_KEY}\.[ \t]*+){{{MAX_DEPTH}}}")
@@ -167,7 +168,7 @@ def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
 def document(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file; `ValueError` if it cannot be read, is no TOML or is empty."""
     try:
-        text = read_regular(path, MAX_TEXT_BYTES).decode("utf-8-sig")
+        text = read_regular(path, MAX_GEAR_BYTES).decode("utf-8-sig")
         if _LONG_KEY.search(text):
             raise RefusedFile(f"contains a key of more than {MAX_DEPTH} parts")  # which tomllib reads in quadratic memory
         content = tomllib.loads(text)
@@ -308,13 +309,13 @@ def _with_model(table: _Table) -> str:
 
 
 def _content(parameter: ParameterField) -> Any:
-    from pydantic import BeforeValidator
+    from pydantic import BeforeValidator, Field
 
     if parameter.kind == "choice":
         return str
     number = entry_schema(parameter.unit)
     if parameter.kind == "sequence":
-        return Annotated[list[number], BeforeValidator(elements)]  # type: ignore[valid-type]
+        return Annotated[list[number], Field(max_length=MAX_ELEMENTS), BeforeValidator(elements)]  # type: ignore[valid-type]
     return number
 
 

@@ -21,6 +21,8 @@ from strainwave.operating_system import HAS_OWNERS, LOCK_POLL_SECONDS, NO_LINK, 
 
 VARIABLE = "STRAINWAVE_KERNELS"  # environment variable: `off`, or the folder of the cache
 OFF = "off"
+PREFIX = "strainwave-"  # of the files of kernels: the user's folder may contain other files
+MAX_RECORD_NUMBER = 1e15  # of bytes or seconds: what is larger is no number of a kernel
 MAX_CACHE_BYTES = 256_000_000  # of all kernels in the cache
 MAX_DRAFT_SECONDS = 86_400.0  # age of what a killed process left, after which it is removed
 SHIPPED_KERNELS = Path(_core.__file__).parent / "kernels"  # folder
@@ -109,8 +111,9 @@ def records(folder: Path) -> dict[str, Record]:
     """Return the records of all kernels in a folder that are complete, by their keys, the most recently used first."""
     found = {}
     for path in sorted(_kernels(folder), key=_last_used, reverse=True):
+        key = path.stem.removeprefix(PREFIX)
         with suppress(OSError):
-            found[path.stem] = _record(folder, path.stem, {user()})
+            found[key] = _record(folder, key, {user()})
     return found
 
 
@@ -127,10 +130,11 @@ def tidy(folder: Path, keep: str) -> None:
     """Remove what killed processes left, and the least recently used kernels but one beyond `MAX_CACHE_BYTES`."""
     _remove_drafts(folder, MAX_DRAFT_SECONDS)
     total = 0
-    for path in sorted(_kernels(folder), key=lambda path: (path.stem == keep, _last_used(path)), reverse=True):
+    kept = _path(folder, keep)
+    for path in sorted(_kernels(folder), key=lambda path: (path == kept, _last_used(path)), reverse=True):
         with suppress(OSError):  # another process is removing it
             total += path.stat().st_size
-        if total > MAX_CACHE_BYTES and path.stem != keep:
+        if total > MAX_CACHE_BYTES and path != kept:
             _remove(path)
 
 
@@ -170,31 +174,27 @@ def _user_cache() -> Path:
 
 
 def _path(folder: Path, key: str) -> Path:
-    return folder / f"{key}.so"
+    return folder / f"{PREFIX}{key}.so"
 
 
 def _record_path(folder: Path, key: str) -> Path:
-    return folder / f"{key}.json"
+    return folder / f"{PREFIX}{key}.json"
 
 
 def _kernels(folder: Path) -> list[Path]:
-    return list(folder.glob("*.so"))
+    return list(folder.glob(f"{PREFIX}*.so"))
 
 
 def _record(folder: Path, key: str, owners: set[int]) -> Record:
     path = _record_path(folder, key)
     try:
         read = json.loads(content_of(path, owners))
-        return Record(
-            drive=str(read["drive"]),
-            job=str(read["job"]),
-            compiler=str(read["compiler"]),
-            seconds=float(read["seconds"]),
-            made=float(read["made"]),
-            size=int(read["size"]),
-            sha256=str(read["sha256"]),
-        )
-    except (ValueError, TypeError, KeyError, RecursionError):
+        numbers = {name: float(read[name]) for name in ("seconds", "made", "size")}
+        if not all(0.0 <= number <= MAX_RECORD_NUMBER for number in numbers.values()):
+            raise ValueError
+        texts = {name: str(read[name]) for name in ("drive", "job", "compiler", "sha256")}
+        return Record(**texts, seconds=numbers["seconds"], made=numbers["made"], size=int(numbers["size"]))
+    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
         raise OSError(f"{path} is damaged: it is no record of a kernel; the kernel is not used") from None
 
 

@@ -53,6 +53,7 @@ WHOLE = {
     if field["kind"] == "count"
 }  # names of numbers that are counted
 MAX_THREADS = 2**31 - 1  # that the core can count
+MAX_MEMBERS = 100_000_000  # of one call: their parameters alone take gigabytes
 MIN_POSITIVE = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 # Bytes of output that a part of the files holds at most, where one pack does not need more; of a GPU, which takes many at once.
 PART_BYTES, DEVICE_PART_BYTES = 64 << 20, 1 << 30
@@ -507,6 +508,10 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
         values[path] = arguments.numbers(path, column)
         if values[path].ndim != 1 or len(values[path]) == 0:
             raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
+        if len(values[path]) > MAX_MEMBERS:
+            raise ValueError(
+                f"{path} has {len(values[path])} values; one call has at most {MAX_MEMBERS} members: call it for parts"
+            )
         number = known[path]
         wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= number.low) & (values[path] <= number.high)))
         if wrong.size:

@@ -23,6 +23,7 @@ LIMIT_OF_LEVELS = (
     20.0  # times friction and weight: torque of a motor without a stated limit, in addition to that of acceleration
 )
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
+MIN_PERIOD = 1e-5  # s: no controller of a joint is faster, and a motion of a second has 100 000 periods
 MAX_VIBRATION = 1e6  # rad/s of the fastest vibration: steps of 1 us, of which a motion of seconds has millions
 
 
@@ -50,9 +51,11 @@ class Plant:
 
         Raises:
             TypeError: `drive` is none of these, or a time is no number
-            ValueError: the period is not positive, the delay is negative or exceeds the period, and as `of`
+            ValueError: the period is below 10 us, the delay is negative or exceeds the period, and as `of`
         """
         period, delay = arguments.seconds("period", period), arguments.number("delay", delay, "s", "[)", 0.0)
+        if period < MIN_PERIOD:
+            raise ValueError(f"period = {period:g} s must be {MIN_PERIOD:g} s or more")
         if delay > period:
             raise ValueError(f"delay = {delay:g} s exceeds the period of {period:g} s; take a longer period or a shorter delay")
         return cls.of(gear_set_of(drive), period, delay)

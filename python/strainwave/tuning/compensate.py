@@ -29,6 +29,7 @@ SHARPNESS_SHARES = (1.0, 0.5, 0.25)  # of the largest sharpness that the margins
 OBSERVER_SHARES = (0.5, 0.0)  # bandwidth of its observer over that of its speed loop, likewise; 0 for none
 MIN_SAMPLES = 100  # periods of a motion
 MIN_MEMBERS = 3
+MAX_MEMBERS = 10_000  # whose runs take hours
 MIN_GAIN = 0.05  # relative: what gains less is not worth another part
 CREEP_SPEED_SHARE = 0.01  # of the usual speed, for the goal `smooth`
 USUAL_TRAVEL = 0.2  # rad of the output, for the goal `position`
@@ -154,7 +155,7 @@ def compensate(
     """
     gear_set = gear_set_of(drive)
     arguments.one_of("encoder", encoder, ("input", "output"))
-    arguments.whole("members", members, MIN_MEMBERS)
+    arguments.whole("members", members, MIN_MEMBERS, MAX_MEMBERS)
     arguments.one_of("goal", goal, ("position", "speed", "smooth", "torque"))
     _refuse_unused(goal, travel=travel, torque=torque)
     plant = Plant.read(gear_set, period, delay)

@@ -92,3 +92,37 @@ def test_a_motor_is_not_limited_by_the_class_of_another_actuator():
     motor = model.actuator("gear_motor").id
     assert not model.actuator_ctrllimited[motor]
     assert not model.actuator_forcelimited[motor]
+
+
+def test_each_joint_of_a_robot_gets_its_gear():
+    gear = sw.load("csg-32-50")
+    found = mjcf("csg-20-100", into=ROBOT, joint={"knee": gear, "all": "csg-20-100"}, max_torque=100.0)
+    model = mujoco.MjModel.from_xml_string(found.files["gear.xml"])
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    for joint, ratio, angle in (("hip", RATIO, 0.3), ("knee", gear.kinematics.ratio, 0.7)):
+        assert data.joint(joint).qpos[0] == angle
+        assert data.joint(f"{joint}_gear_input").qpos[0] == pytest.approx(ratio * angle, rel=1e-12)
+    assert data.ten_length == pytest.approx(np.zeros(model.ntendon), abs=1e-12)
+    assert {each.quantity.partition(": ")[0] for each in found.losses} == {"hip", "knee"}
+    assert mjcf("csg-20-100", into=ROBOT, joint="hip, knee").files == mjcf("csg-20-100", into=ROBOT, joint="all").files
+    with pytest.raises(ValueError, match="draws = 3 are made for one joint; hip, knee have gears"):
+        mjcf("csg-20-100", into=ROBOT, joint="all", draws=3)
+
+
+@pytest.mark.parametrize(("share", "is_stable"), [(1.1, True), (0.7, False)])
+def test_the_least_inertia_at_a_timestep_is_the_limit_of_stability(share, is_stable):
+    found = mjcf("csg-20-100", into=ROBOT, joint="knee")
+    (remark,) = (each for each in found.remarks if "the gear needs" in each)
+    inertia = share * float(remark.partition("needs ")[2].split()[0])
+    link = f"""<mujoco><option timestep="0.0005" gravity="0 0 0"/><worldbody><body name="link"><joint name="knee" axis="0 0 1"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="{3 * [inertia]!r}"/></body></worldbody></mujoco>"""
+    text = mjcf("csg-20-100", into=link.replace("[", "").replace("]", "").replace(",", ""), joint="knee").files["gear.xml"]
+    model = mujoco.MjModel.from_xml_string(text)
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    data = mujoco.MjData(model)
+    data.joint("knee").qpos[0] = 1e-6
+    mujoco.mj_step(model, data, nstep=2000)
+    assert (abs(data.joint("knee").qpos[0]) < 1e-5) == is_stable

@@ -10,20 +10,42 @@ import strainwave as sw
 import yaml
 from typer.testing import CliRunner
 
+ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="{folder}/elbow.xacro"/>
+  <link name="upper_arm"/><link name="forearm"/>
+  <xacro:elbow_joint parent="upper_arm" child="forearm" lower="-2.6" upper="2.6" xyz="0 0 0.3"/>
+  <xacro:elbow_ros2_control plugin="mine/System"/>
+</robot>"""
+
 
 def test_parameters_have_the_numbers_of_the_joint():
     gear_set = sw.GearSet.read("csg-20-100")
     found = sw.export.ros2(gear_set, name="elbow")
     damping = sw.export.joint(gear_set).numbers["damping"][0]
-    content = yaml.safe_load(found.files["elbow_limits.yaml"])
-    gains = content["joint_trajectory_controller"]["ros__parameters"]["gains"]["elbow"]
-    limits = content["controller_manager"]["ros__parameters"]["joint_limits"]["elbow"]
-    assert gains == {"ff_velocity_scale": damping}
-    assert limits["max_effort"] == pytest.approx(gear_set.ratings["peak_torque"].value)
-    assert limits["max_velocity"] * abs(gear_set.gear.kinematics.ratio) == pytest.approx(366.5, abs=0.1)
-    root = ElementTree.fromstring(found.files["elbow.ros2_control.xml"])
-    assert float(root.findtext("transmission/joint/mechanical_reduction")) == gear_set.gear.kinematics.ratio
-    assert {each.get("name") for each in root.iter("joint")} == {"elbow"}
+    content = yaml.safe_load(found.files["elbow_controllers.yaml"])
+    assert content["joint_trajectory_controller"]["ros__parameters"]["gains"]["elbow"] == {"ff_velocity_scale": damping}
+
+
+def test_macros_make_a_joint_of_a_robot(tmp_path):
+    """By xacro and urdfdom, as a robot's description includes the file."""
+    xacro, urdf = pytest.importorskip("xacro"), pytest.importorskip("urdf_parser_py.urdf")
+    gear_set = sw.GearSet.read("csg-20-100")
+    found = sw.export.ros2(gear_set, name="elbow")
+    (tmp_path / "elbow.xacro").write_text(found.files["elbow.xacro"])
+    (tmp_path / "arm.xacro").write_text(ROBOT.format(folder=tmp_path))
+    text = xacro.process_file(str(tmp_path / "arm.xacro")).toxml()
+    joint = urdf.URDF.from_xml_string(text).joint_map["elbow"]
+    assert (joint.parent, joint.child, joint.origin.xyz) == ("upper_arm", "forearm", [0.0, 0.0, 0.3])
+    assert (joint.limit.lower, joint.limit.upper) == (-2.6, 2.6)
+    assert joint.limit.effort == pytest.approx(gear_set.ratings["peak_torque"].value)
+    assert joint.limit.velocity * abs(gear_set.gear.kinematics.ratio) == pytest.approx(
+        3500.0 * np.pi / 30.0
+    )  # average input speed of the ratings
+    assert joint.dynamics.friction == found.numbers["frictionloss"][0]
+    (system,) = ElementTree.fromstring(text).findall("ros2_control")
+    assert (system.get("type"), system.findtext("hardware/plugin")) == ("system", "mine/System")
+    assert float(system.findtext("transmission/joint/mechanical_reduction")) == gear_set.gear.kinematics.ratio
+    assert {each.get("name") for each in system.iter("joint")} == {"elbow"}
 
 
 class FakeNode:
@@ -85,8 +107,8 @@ def test_command_writes_the_files(tmp_path):
     result = CliRunner().invoke(export, ["ros2", "csg-20-100", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     assert {path.name for path in tmp_path.iterdir()} == {
-        "joint_limits.yaml",
-        "joint.ros2_control.xml",
+        "joint.xacro",
+        "joint_controllers.yaml",
         "drive_node.py",
         "export.json",
     }

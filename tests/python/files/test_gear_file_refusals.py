@@ -311,3 +311,10 @@ def test_what_is_no_toml_is_refused_with_the_line(folder: Path, content: bytes, 
     Path("my.toml").write_bytes(content)
     with pytest.raises(ValueError, match=rf"^my\.toml is not valid TOML: {reason}"):
         load("my.toml")
+
+
+def test_a_long_list_is_refused_by_its_length(folder: Path) -> None:
+    """Each of its elements would be checked, which takes half a minute for 300 000."""
+    Path("my.toml").write_text(BASE + HYSTERESIS.replace("[300.0, 150.0]", f"[{', '.join(1001 * ['1.0'])}]") + "[]")
+    with pytest.raises(ValueError, match=exactly("my.toml [hysteresis] stiffness has 1001 elements; at most 1000 are read")):
+        load("my.toml")

@@ -27,6 +27,8 @@ from tests.python.native.conftest import Fake
 ANSWER = 'extern "C" __attribute__((visibility("default"))) int answer() { return 42; }\n'
 KERNEL = Kernel(ANSWER, "run", "load Pendulum")
 
+RECORD = b'{"drive": "", "job": "", "compiler": "", "seconds": 1.0, "sha256": "", "size": %s, "made": %s}'
+
 # Another process that asks for the kernel and prints its path. It finds the fake compiler by CXX.
 ASKING = f"from strainwave.native.cache import *; print(kernel_file(Kernel({ANSWER!r}, 'run', 'load Pendulum')))"
 
@@ -114,8 +116,10 @@ def test_a_folder_must_be_absolute(monkeypatch: pytest.MonkeyPatch) -> None:
         (".json", b"\xff"),
         (".json", b'{"sha256": ""}'),
         (".json", b"[" * 100_000),
+        (".json", RECORD % (b"9" * 400, b"1.0")),
+        (".json", RECORD % (b"1", b"NaN")),
     ],
-    ids=["empty", "another", "unfinished", "no record", "no text", "incomplete", "deep"],
+    ids=["empty", "another", "unfinished", "no record", "no text", "incomplete", "deep", "a size of 400 digits", "no number"],
 )
 def test_a_damaged_kernel_is_not_used_and_made_anew(target: str, content: bytes) -> None:
     made = kernel_file(KERNEL)
@@ -383,6 +387,17 @@ def test_the_cache_is_bounded_and_keeps_what_was_used_last(kernels: Path, monkey
     assert {each.stem for each in kernels.iterdir()} == {made.stem}
 
 
+def test_files_of_others_in_the_folder_stay(kernels: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kernels.mkdir(mode=0o700)
+    of_others = {kernels / name for name in ("libmine.so", "0" * 64 + ".so", "0" * 64 + ".json", "mine.txt")}
+    for path in of_others:
+        path.write_bytes(b"mine")
+    monkeypatch.setattr(folder, "MAX_CACHE_BYTES", 0)
+    make_kernel(KERNEL)
+    assert clear() == 1
+    assert set(kernels.iterdir()) == of_others
+
+
 def test_a_list_and_its_end(kernels: Path) -> None:
     before = time.time()
     made = make_kernel(KERNEL)
@@ -391,11 +406,10 @@ def test_a_list_and_its_end(kernels: Path) -> None:
     assert record.size == made.stat().st_size
     assert 0.0 < record.seconds < time.time() - before
     assert before <= record.made <= time.time()
-    (kernels / ("0" * 64 + ".so")).touch()  # damaged, and not listed
-    (kernels / "mine.txt").touch()
+    (kernels / ("strainwave-" + "0" * 64 + ".so")).touch()  # damaged, and not listed
     assert listing() == [record]
     assert clear() == 2
-    assert [each.name for each in kernels.iterdir()] == ["mine.txt"]
+    assert not list(kernels.iterdir())
     assert (listing(), clear()) == ([], 0)
 
 

@@ -228,6 +228,11 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
             r"^record = .*'torsion'.* must list outputs of this drive: comm",
         ),
         ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must list outputs of this drive: command, "),
+        (
+            {"load.inertia": np.broadcast_to(0.5, 10**9)},
+            {},
+            r"^load\.inertia has 1000000000 values; one call has at most 100000000",
+        ),
         ({"load.inertia": [0.5]}, {"threads": 0}, r"^threads = 0 must be 1 or more$"),
         ({"load.inertia": [0.5]}, {"dt": -1.0}, r"^dt = -1\.0 s must lie in \(0, inf\)$"),
         ({"load.inertia": [0.5]}, {"temperature": -1.0}, r"^temperature = -1 K must lie in \(0, inf\)"),

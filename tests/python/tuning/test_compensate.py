@@ -123,6 +123,8 @@ def test_a_delay_beyond_the_motion_is_stated() -> None:
         ({"travel": -1.0}, "travel"),
         ({"speed": 0.0}, "speed"),
         ({"members": 1}, "members"),
+        ({"members": 10**9}, r"members = 1000000000 must be 10000 or less"),
+        ({"period": 1e-9}, r"period = 1e-09 s must be 1e-05 s or more"),
     ],
 )
 def test_what_is_out_of_range_is_refused(changes: dict[str, object], words: str) -> None:
