@@ -21,6 +21,10 @@ import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.export.firmware import FLAGS
+from strainwave.tuning.candidates import candidates
+from strainwave.tuning.cascade import Plant
+from strainwave.tuning.compensate import goal_of
+from strainwave.tuning.loops import sharpest
 
 from tests.evidence.rig import RIG
 from tests.evidence.rig import START as START_SET
@@ -103,6 +107,18 @@ def observer(drive: sw.Drive, feedback: str) -> sw.compensation.DisturbanceObser
     """Return a disturbance observer with the inertia of a drive."""
     inertia = drive.motor.inertia + drive.gear.input_inertia + drive.load.inertia / drive.gear.kinematics.ratio**2
     return sw.compensation.DisturbanceObserver(inertia=inertia, bandwidth=BANDWIDTH[feedback], limit=0.5)
+
+
+def candidate(drive: sw.Drive, name: str) -> sw.Drive:
+    """Return a drive under a candidate of `compensate`, of which the motor takes a voltage."""
+    plant = Plant.read(drive, PERIOD, PERIOD)
+    settings, goal = [sharpest(plant, "input", 0.0)], goal_of("position", plant, 0.2, None)
+    (found,) = (each for each in candidates(plant, settings, goal, {}) if each.name == name)
+    sampled: Any = found.drive.control
+    law = sampled.law
+    gains = law.position_gain, RESISTANCE * law.speed_proportional, RESISTANCE * law.speed_integral
+    compensation = {name: getattr(sampled.compensation, name) for name in ("feedforward", "observer")}
+    return _controlled(drive, _law("input", gains), **compensation)
 
 
 def _law(feedback: str, gains: Sequence[float]) -> sw.control.PositionSpeed:

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
+from strainwave.identification.checks.motion import ratio_by_orders
 from strainwave.identification.experiments.motion_log import spoilt
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
@@ -141,3 +143,18 @@ def test_a_log_of_a_speed_alone_determines_what_its_angle_would() -> None:
     found, expected = values(result), values(universal_robot(2, lambda table: table))
     for name in ("coulomb", "driving_forward", "gravity_torque"):
         assert found[name] == pytest.approx(expected[name], rel=0.02)
+
+
+@pytest.mark.parametrize("joint", [4, 5])
+def test_the_ripple_over_the_output_is_held_against_the_ratio(joint: int) -> None:
+    time, angle, current = np.loadtxt(DATA / "ur10e" / "ur-20_02_05-20sec_12harm.csv", delimiter=",")[
+        :, [0, joint, joint + 12]
+    ].T
+    columns = {"time": time, "output_angle": angle, "current": current}
+    record = Recording(columns, {"time": "s", "output_angle": "rad", "current": "A"})
+    for ratio, is_wrong in ((101.0, False), (161.6, True)):
+        gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=ratio))
+        (check,) = ratio_by_orders(sw.Drive(gear=gear), record, "log")
+        assert check.failed == is_wrong
+        assert "a ratio of 100 or 101" in check.message
+        assert f"{ratio:g}" in check.message

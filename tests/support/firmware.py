@@ -18,6 +18,7 @@ from strainwave.simulation.controller import Observation
 from tests.support.cplusplus import compiler
 
 Array = NDArray[np.float64]
+BAD = (np.nan, np.inf, -np.inf, 3e38, -3e38)
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
 NO_LIBRARY = ("-nostdinc++",)  # nor its headers
 # A loop in C over many steps.
@@ -101,3 +102,22 @@ def run_with(controller: Any, drive: sw.Drive, command: Any) -> sw.Run:
     sampled = drive.control
     plant = drive.replace(control=sw.control.OpenLoop())
     return sw.simulate_controlled(plant, controller, command, period=sampled.period, delay=sampled.delay, sample=sampled.period)
+
+
+def check_bad_samples(firmware: Loaded, inputs: dict[str, Array], limit: float = np.inf) -> None:
+    """Check that a bad input is held and counted: every call returns what it returns for the last good value."""
+    count, outputs = len(next(iter(inputs.values()))), dict[str, Array]()
+    for place, (name, bad) in enumerate((name, bad) for name in inputs for bad in BAD):
+        k = 1 + place % (count - 2)
+
+        def with_sample(value: float, name: str = name, k: int = k) -> dict[str, Array]:
+            return firmware.run(**inputs | {name: np.concatenate((inputs[name][:k], [value], inputs[name][k + 1 :]))})
+
+        held = with_sample(inputs[name][k - 1])
+        assert firmware.state["bad_samples"] == 0
+        outputs = with_sample(bad)
+        assert firmware.state["bad_samples"] == 1
+        for output, values in outputs.items():
+            assert np.array_equal(values, held[output]), (name, bad, output)
+            assert np.abs(values).max() <= limit
+    assert any(np.ptp(values) > 0.0 for values in outputs.values())

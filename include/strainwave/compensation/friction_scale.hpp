@@ -27,6 +27,9 @@ struct FrictionScale {
         gamma must be small. With lambda = 0, a motion of one sense under a position loop does not determine s. The scale is
         constant below omega_min, because rest and presliding do not determine s.
 
+        The law of control must have no integral: PositionSpeed with speed_integral = 0. An integral supplies the missing friction
+        itself, so that sigma no longer depends on s, and the scale may move the wrong way.
+
         >>> from strainwave.compensation import FrictionScale
         >>> FrictionScale(gain=5.0).max_scale
         1.5)";

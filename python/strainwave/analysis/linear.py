@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, Gear, _core, arguments, friction, motor
+from strainwave.analysis.continuous import continuous, state_within
 from strainwave.analysis.steady import OVERFLOW, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
@@ -56,6 +57,7 @@ class Linearisation(ComparedByFields):
         inputs: names
         outputs: names, those of a recording's columns
         units: unit of each name
+        notes: on each part of the drive that has no linear model, and was left out
 
     >>> import strainwave as sw
     >>> linear = sw.linearise(sw.Drive(control=sw.control.PID(proportional=2.0, derivative=0.05)))
@@ -71,6 +73,7 @@ class Linearisation(ComparedByFields):
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     units: dict[str, str]
+    notes: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Array]:
         return iter((self.A, self.B, self.C, self.D))
@@ -199,7 +202,8 @@ def linearise(
     nothing depends on. Friction and hysteresis with memory answer each reversal with their initial stiffness, and what they
     lose by sliding is of second order: this view knows none of it; `frequency_response` at amplitude does. Where a slope
     differs between the senses of motion, it is the mean of both, after a small movement to and fro: the first harmonic that a
-    vanishing vibration sees. A drive that runs is seen without its kinematic error, as `equilibrium` sees it.
+    vanishing vibration sees. A drive that runs is seen without its kinematic error, as `equilibrium` sees it. Sampling, noise
+    and steps of sensors, a meter and warming have no linear model: they are left out, and `notes` of the result names them.
 
     Args:
         drive: the drive
@@ -227,12 +231,14 @@ def linearise(
     >>> round(float(abs(linear.response(0.0))), 12)  # it follows its command
     1.0
     """
-    check_continuous(arguments.drive(drive), "linearise")
+    drive, notes = continuous(given := arguments.drive(drive))
+    check_continuous(drive, "linearise")
     inputs = constant_inputs(command, load_torque, temperature, command_rate)
     if state is None:
         state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
-    given = start_of(drive, state, "state").numbers
-    state = State.of(drive, _core.consistent(drive, given))
+    elif notes:
+        state = state_within(drive, start_of(given, state, "state"))
+    state = State.of(drive, _core.consistent(drive, start_of(drive, state, "state").numbers))
     if state.input_speed != 0.0:
         drive = averaged(drive)
     slopes = [_core.differentiate_rates(drive, _vibrating(state, drive, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
@@ -252,7 +258,7 @@ def linearise(
     known = layout.units | units(drive, shown.values()) | _input_units(drive)
     states = tuple(layout.names[place] for place in kept)
     chosen = {name: known[name] for name in (*states, *INPUTS, *shown)}
-    return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen)
+    return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen, notes)
 
 
 def modes(drive: Drive) -> dict[str, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from math import tau
@@ -22,6 +23,7 @@ _ROUNDING_SHARE = 1e-14  # of the terms that cancel [1]
 MAX_ANGLE = 1e12  # rad of the input: beyond, where within a turn it stands is lost
 _NEGLIGIBLE_RATE = 1e-12  # rad/s2, A/s: a term so small has no effect
 OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
+MAX_TIME_TO_REST, TIMES_TO_REST = 40.0, 8  # s, and instants at which a moving drive is looked at
 _MAX_INPUT_SPEED = 1e9  # rad/s: a drive that exceeds it has no steady speed
 
 
@@ -71,9 +73,14 @@ def equilibrium(
     _check_uncounted(drive)
     inputs = constant_inputs(command, load_torque, temperature)
     begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
-    resting = _resting(drive, begin, inputs)
-    balanced = drive if resting is not None else averaged(drive)
-    found = State.of(drive, _running(balanced, begin, inputs) if resting is None else resting)
+    balanced, numbers = drive, _resting(drive, begin, inputs)
+    if numbers is None:
+        try:
+            balanced, numbers = averaged(drive), _running(averaged(drive), begin, inputs)
+        except ValueError:
+            if (numbers := _come_to_rest(drive, begin, inputs)) is None:
+                raise
+    found = State.of(drive, numbers)
     _check_prescribed(balanced, found.numbers, inputs)
     turns = round(found.input_angle / tau)
     return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
@@ -196,6 +203,30 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
     if abs(stopped[slow.layout.places["input_angle"].start]) > MAX_ANGLE:
         return None
     return stopped if rates.vanishes(slow.rows(rates), 1e-9) else None  # a way without end is none
+
+
+def _come_to_rest(drive: Drive, start: Array, inputs: Array) -> Array | None:
+    """The equilibrium where the drive comes to rest in time; none if it does not within `MAX_TIME_TO_REST`.
+
+    A slow motion one way finds none if the load swings back, or if kinetic friction balances it at no angle nearby.
+    """
+    from strainwave.simulation.run import simulate
+    from strainwave.simulation.scenario import constant
+
+    command, load_torque, temperature = (float(inputs[place]) for place in (0, 2, 4))
+    duration = MAX_TIME_TO_REST / TIMES_TO_REST
+    held = constant(command, duration)
+    now = State.of(drive, start)
+    for _ in range(TIMES_TO_REST):
+        try:
+            with warnings.catch_warnings(action="ignore"):
+                run = simulate(drive, held, sample=duration, start=now, load_torque=load_torque, temperature=temperature)
+                now = run.end
+        except (ValueError, FloatingPointError):
+            return None
+        if (found := _resting(drive, _at_rest(drive, now.numbers), inputs)) is not None:
+            return found
+    return None
 
 
 def _pushed(drive: Drive, state: Array, freed: Array, inputs: Array) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.diagnose.detection import CONFIDENCE_LEVEL, FALSE_ALARM
+from strainwave.diagnose.detection import CONFIDENCE_LEVEL, DETECTION_PROBABILITY, FALSE_ALARM, detectable_change
 from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
@@ -52,7 +52,8 @@ class OrderChange:
         change: difference of both
         sigma: standard deviation of the change
         low, high: ends of the interval of the change, of 95 %
-        limit: smallest change that is an alarm
+        limit: smallest change that is an alarm; a true change of this size is an alarm every second time
+        detectable: smallest true change that is an alarm with probability 0.9
         false_alarm: probability of such a change in a joint that did not change, over all tests of the recording
         alarm: True if this probability is below the stated rate
         replicates: number of blocks of the baseline
@@ -71,6 +72,7 @@ class OrderChange:
     low: float
     high: float
     limit: float
+    detectable: float
     false_alarm: float
     alarm: bool
     replicates: int
@@ -302,7 +304,8 @@ def _change(
     probability = min(1.0, tests * 2.0 * float(student.sf(abs(change) / sigma, freedom)))
     limit = sigma * float(student.isf(0.5 * allowed / tests, freedom))
     return OrderChange(
-        order, name, mean, spread, amplitude, change, sigma, change - reach, change + reach, limit, probability,
+        order, name, mean, spread, amplitude, change, sigma, change - reach, change + reach, limit,
+        sigma * detectable_change(DETECTION_PROBABILITY, allowed / tests, freedom), probability,
         probability < allowed, replicates, len(own), condition, is_new,
     )  # fmt: skip
 

@@ -88,6 +88,28 @@ def needed_signal_to_noise(probability: float, false_alarm: float, freedom: floa
     return float(brentq(lambda size: power_of(size, false_alarm, freedom, tests) - probability, 0.0, high, xtol=1e-9))
 
 
+def detectable_change(probability: float, false_alarm: float, freedom: float) -> float:
+    """Return the change over its standard deviation that a two-sided test by Student's distribution finds with a probability.
+
+    Args:
+        probability: of its detection
+        false_alarm: of the test, without a change
+        freedom: degrees of freedom of the standard deviation
+
+    >>> round(detectable_change(0.9, 1e-3, 1e6), 3)  # 3.291 + 1.282
+    4.572
+    """
+    from scipy.optimize import brentq
+    from scipy.stats import nct
+    from scipy.stats import t as student
+
+    threshold = float(student.isf(0.5 * false_alarm, freedom))
+    high = threshold
+    while nct.sf(threshold, freedom, high) < probability:
+        high *= 2.0
+    return float(brentq(lambda size: nct.sf(threshold, freedom, size) - probability, 0.0, high, xtol=1e-9))
+
+
 def amplitude_interval(
     amplitude: float, sigma: float, freedom: float = inf, confidence: float = CONFIDENCE_LEVEL
 ) -> tuple[float, float]:

@@ -110,6 +110,7 @@ def _change(each: OrderChange, unit: str) -> dict[str, str]:
         "amplitude": quantity(each.amplitude, unit),
         "change": f"{interval(each.low, each.high, each.sigma)} {unit}",
         "limit": quantity(each.limit, unit),
+        "detectable": quantity(each.detectable, unit),
         "alarm": _chance(each.false_alarm),
         "state": "alarm" if each.alarm else "no alarm",
     }

@@ -12,6 +12,7 @@ from strainwave import Drive, arguments
 from strainwave.analysis.agreement import Agreement
 from strainwave.analysis.difference import Difference
 from strainwave.analysis.linear import Linearisation, linearise, modes
+from strainwave.analysis.positioning_error import positioning_error
 from strainwave.analysis.strokes import stroke_within, strokes_apart
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
@@ -22,6 +23,7 @@ from strainwave.files.recording import Recording
 from strainwave.messages import one_line, shortened
 
 Row = Sequence[str]
+RAD_PER_ARCSEC = tau / 360.0 / 3600.0
 STROKE_COUNT = 12  # moves of growing stroke
 MIN_STROKE_SHARE = 1e-2  # of the largest stroke [1]: the smallest
 MIN_CORRELATION = 0.5  # smaller ones are not listed
@@ -49,6 +51,20 @@ def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> s
             lines += ["", *_numbers(gear_set, part.name, model)]
     lines += [*_covariance(gear_set), *_validation(gear_set)]
     return "\n".join([*lines, *_vibration(gear_set), *_ratings(gear_set), *_checks(gear_set, runs or {})])
+
+
+def positioning_table(gear_set: GearSet, load: float) -> str:
+    """Return the positioning error of the output that a gear makes under a load, in arc seconds.
+
+    >>> positioning_table(GearSet.read("csg-20-100"), 20.0).splitlines()[2].split()[5:7]  # typical, and the bound
+    ['24', '48']
+    """
+    rows: list[Row] = [("", "typical", "bound", "why")]
+    rows += [
+        (each.name, f"{each.typical / RAD_PER_ARCSEC:.3g}", f"{each.bound / RAD_PER_ARCSEC:.3g}", each.why)
+        for each in positioning_error(gear_set, load=load)
+    ]
+    return "\n".join(["positioning error at the output [arcsec]", *aligned(rows, "<>><")])
 
 
 def agreement_table(found: Sequence[Agreement]) -> str:

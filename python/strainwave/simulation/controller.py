@@ -24,6 +24,8 @@ from strainwave.simulation.state import State
 
 Array = NDArray[np.float64]
 
+MAX_SIGNAL = 1e9  # SI: controllers hold what exceeds it; no signal of a joint does, and its square fits into a float
+
 
 class Observation(NamedTuple):
     """Observation of a controller at an instant: the time, the command, and the drive through its sensors.

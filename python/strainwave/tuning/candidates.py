@@ -123,8 +123,11 @@ def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Con
 
 
 def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> ControllerCandidate:
-    """Return the same with an observer of the scale of friction in place of one of the disturbance."""
-    law = tuned_law(plant, setting)
+    """Return the same with an observer of the scale of friction in place of the integral and of one of the disturbance.
+
+    An integral would supply the missing friction itself, and leave no error by which the scale moves.
+    """
+    law = tuned_law(plant, setting).replace(speed_integral=0.0)
     scale = compensation.FrictionScale(gain=_scale_gain(plant, setting), position_gain=law.position_gain)
     added = _compensation(plant, effects, setting).replace(observer=scale)
     name = f"{_name(effects, setting)}, scale of friction observed"

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
-from strainwave.simulation.controller import Observation
+from strainwave.simulation.controller import MAX_SIGNAL, Observation
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning.cascade import Plant
 from strainwave.tuning.linear_plant import LinearPlant, optimal
@@ -100,6 +100,8 @@ class PredictiveController:
         gains: of the states and the actuation before, where no limit acts
         states: names of those states
         unsolved: number of periods since the begin in which the solver ran out of iterations
+        bad_samples: number of calls since the begin with a signal that is not finite or larger than 1e9; its last good value
+            replaces it
 
     >>> import strainwave as sw
     >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), damping=5.0)
@@ -121,7 +123,8 @@ class PredictiveController:
     def reset(self) -> None:
         """Forget the motion so far, and what the solver began with."""
         self._solver = self._program.solver()
-        self.unsolved = 0
+        self.unsolved = self.bad_samples = 0
+        self._good = Observation(*np.zeros(len(Observation._fields)).tolist())
         self._plan = np.zeros(self._program.horizon)
         self._bias = np.zeros(len(self.states))
         self._predicted = np.zeros(len(self.states) + 1)
@@ -136,6 +139,7 @@ class PredictiveController:
         if seen.time == 0.0:
             self.reset()
         self._check_period(seen.time)
+        seen = self._held(seen)
         parameters = np.concatenate((self._measured(seen), self._bias, *self._commanded(seen)))
         self._plan = self._planned(parameters)
         actuation = float(self._plan[0]) * self._effort
@@ -199,6 +203,13 @@ class PredictiveController:
             return np.append(self._plan[1:], self._plan[-1])
         limit = program.bound[0]
         return np.asarray(np.clip(solution.x[: program.horizon], -limit, limit))
+
+    def _held(self, seen: Observation) -> Observation:
+        """Return what is seen, with the last good value in place of each bad one."""
+        held = Observation(*(value if abs(value) <= MAX_SIGNAL else good for value, good in zip(seen, self._good, strict=True)))
+        self.bad_samples += held[:-2] != seen[:-2]  # no limits count as limits here
+        self._good = held
+        return held
 
     def _measured(self, seen: Observation) -> Array:
         """Return the states and the actuation before, after the bias of the states has been estimated from them."""

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.simulation.controller import MAX_SIGNAL
+
 Array = NDArray[np.float64]
 
 HEADER = """\
@@ -32,6 +34,9 @@ double predictive_step(const predictive_measured *measured, const double angle[P
 /* Number of periods in which the solver ran out of iterations; the plan before was continued there. */
 extern int predictive_unsolved;
 
+/* Number of calls with a number that is not finite or larger than {max_signal:g}; its last good value replaces it. */
+extern int predictive_bad_samples;
+
 #endif
 """
 
@@ -45,18 +50,23 @@ enum {{ STATES = {states}, HORIZON = PREDICTIVE_HORIZON, ROWS = {rows}, PARAMETE
 
 {constants}
 {arrays}
-int predictive_unsolved;
+int predictive_unsolved, predictive_bad_samples;
 
+static predictive_measured good;
+static double good_angle[HORIZON], good_rate[HORIZON];
 static double plan[HORIZON], bias[STATES], predicted[STATES + 1];
 static int is_first = 1;
 
 void predictive_reset(void) {{
+    static const predictive_measured zero;
     int i;
+    good = zero;
+    for (i = 0; i < HORIZON; ++i) good_angle[i] = good_rate[i] = 0.0;
     for (i = 0; i < HORIZON; ++i) plan[i] = 0.0;
     for (i = 0; i < STATES; ++i) bias[i] = 0.0;
     for (i = 0; i <= STATES; ++i) predicted[i] = 0.0;
     is_first = 1;
-    predictive_unsolved = 0;
+    predictive_unsolved = predictive_bad_samples = 0;
     osqp_cold_start(&solver);
 }}
 
@@ -69,6 +79,13 @@ static double product(const double *row, const double *vector, int count) {{
 }}
 
 static double absolute(double value) {{ return value < 0.0 ? -value : value; }}
+
+/* Replaces the last good value by a new one, if this is good. Returns 1 if it is not. */
+static int held(double *last, double value) {{
+    if (!(absolute(value) <= max_signal)) return 1;
+    *last = value;
+    return 0;
+}}
 
 static int solved(void) {{
     return solver.info->status_val == OSQP_SOLVED || solver.info->status_val == OSQP_SOLVED_INACCURATE;
@@ -105,14 +122,23 @@ static void planned(const double *parameters) {{
     }}
 }}
 
+static void states_of(const predictive_measured *measured, double states[STATES]) {{
+    const double input_angle = measured->input_angle, input_speed = measured->input_speed;
+    const double output_speed = measured->output_speed, transmission_error = input_angle / ratio - measured->output_angle;
+    const double values[STATES] = {{{names}}};
+    int i;
+    for (i = 0; i < STATES; ++i) states[i] = values[i];
+}}
+
 double predictive_step(const predictive_measured *measured, const double angle[PREDICTIVE_HORIZON],
                        const double rate[PREDICTIVE_HORIZON]) {{
     static double parameters[PARAMETERS];
-    const double input_angle = measured->input_angle, input_speed = measured->input_speed;
-    const double output_speed = measured->output_speed, transmission_error = input_angle / ratio - measured->output_angle;
-    const double states[STATES] = {{{names}}};
-    double actuation;
-    int i;
+    double states[STATES], actuation;
+    int i, bad = held(&good.input_angle, measured->input_angle) | held(&good.input_speed, measured->input_speed) |
+                 held(&good.output_angle, measured->output_angle) | held(&good.output_speed, measured->output_speed);
+    for (i = 0; i < HORIZON; ++i) bad |= held(&good_angle[i], angle[i]) | held(&good_rate[i], rate[i]);
+    predictive_bad_samples += bad;
+    states_of(&good, states);
     for (i = 0; i < STATES; ++i) {{
         if (!is_first) bias[i] += share * (states[i] - predicted[i] - bias[i]);
         parameters[i] = states[i];
@@ -121,8 +147,8 @@ double predictive_step(const predictive_measured *measured, const double angle[P
     is_first = 0;
     parameters[STATES] = predicted[STATES];
     for (i = 0; i < HORIZON; ++i) {{
-        parameters[2 * STATES + 1 + i] = angle[i];
-        parameters[2 * STATES + 1 + HORIZON + i] = rate[i];
+        parameters[2 * STATES + 1 + i] = good_angle[i];
+        parameters[2 * STATES + 1 + HORIZON + i] = good_rate[i];
     }}
     planned(parameters);
     actuation = plan[0] * effort;
@@ -135,7 +161,7 @@ double predictive_step(const predictive_measured *measured, const double angle[P
 
 
 def write_c(
-    folder: Path, states: Sequence[str], horizon: int, constants: Mapping[str, float], arrays: Mapping[str, Array]
+    folder: Path, states: Sequence[str], horizon: int, constants: dict[str, float], arrays: Mapping[str, Array]
 ) -> None:
     """Write `predictive.h` and `predictive.c` into the folder of the solver.
 
@@ -152,10 +178,12 @@ def write_c(
         rows=count,
         parameters=parameters,
         names=", ".join(states),
-        constants="\n".join(f"static const double {name} = {value!r};" for name, value in constants.items()),
+        constants="\n".join(
+            f"static const double {name} = {value!r};" for name, value in (constants | {"max_signal": MAX_SIGNAL}).items()
+        ),
         arrays="\n".join(f"static const double {name}[] = {{\n{_numbers(array)}}};" for name, array in arrays.items()),
     )
-    (folder / "predictive.h").write_text(HEADER.format(horizon=horizon), encoding="utf-8")
+    (folder / "predictive.h").write_text(HEADER.format(horizon=horizon, max_signal=MAX_SIGNAL), encoding="utf-8")
     (folder / "predictive.c").write_text(source, encoding="utf-8")
 
 

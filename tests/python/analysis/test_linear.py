@@ -462,3 +462,45 @@ def test_modes_need_an_output_shaft_that_is_free(load: object) -> None:
         sw.modes(sw.Drive(load=load))
     with pytest.raises(TypeError, match="drive"):
         sw.modes(sw.Gear())
+
+
+@pytest.mark.parametrize("name", sw.catalogue("drives"))
+def test_every_drive_of_the_catalogue_is_linearised_with_notes_on_what_is_left_out(name: str) -> None:
+    drive = sw.load(name)
+    assert isinstance(drive, sw.Drive)
+    linear = sw.linearise(drive)
+    assert np.isfinite(linear.poles).all()
+    assert bool(linear.notes) == (
+        isinstance(drive.control, sw.control.Sampled)
+        or any(clock.endswith(".clock") for clock in drive.rest())
+        or not isinstance(drive.meter, sw.meter.NoMeter)
+    )
+
+
+def test_a_state_of_the_whole_drive_is_taken_over() -> None:
+    law = sw.control.PID(proportional=2.0, derivative=0.05)
+    plain = sw.Drive(control=law, load=sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0))
+    whole = plain.replace(control=sw.control.Sampled(law=law, period=1e-3), meter=sw.meter.EnergyMeter())
+    held = sw.equilibrium(plain, command=0.5)
+    state = whole.rest().replace({name: value for name, value in held.items() if name in whole.rest()})
+    expected, found = sw.linearise(plain, held, command=0.5), sw.linearise(whole, state, command=0.5)
+    assert np.array_equal(found.A, expected.A)
+    assert [note.partition(":")[0] for note in found.notes] == ["control", "meter"]
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 6e-5])
+def test_a_load_that_swings_back_comes_to_rest(amplitude: float) -> None:
+    """Its weight overcomes friction at the beginning, and the way to its rest goes over angles where friction differs."""
+    coulomb = sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4)
+    drive = sw.Drive(
+        gear=sw.load("hfuc-20-80").replace(
+            friction_input=sw.friction.Cyclic(law=coulomb, order=[2.0], amplitude=[0.3], phase=[0.5]),
+            kinematic_error=sw.kinematic_error.Fourier(order=[2.0], amplitude=[amplitude], phase=[0.3]),
+        ),
+        motor=sw.motor.CurrentSource(torque_constant=0.0755, inertia=1e-4),
+        load=sw.loads.Pendulum(inertia=0.8, gravity_torque=11.0, gravity_phase=0.6),
+    )
+    state = sw.equilibrium(drive)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), start=state, sample=0.1)
+    assert np.ptp(run["output_angle"]) < 1e-9
+    assert np.isfinite(sw.linearise(drive).poles).all()

@@ -17,7 +17,7 @@ from strainwave.simulation.controller import Observation
 
 from tests.realtime.test_firmware import CORTEX, LIBM, printed, undefined
 from tests.support.cplusplus import compiler, zig
-from tests.support.firmware import STRICT, Loaded, compiled, library, run_with, written
+from tests.support.firmware import STRICT, Loaded, check_bad_samples, compiled, library, run_with, written
 from tests.support.strategies import made, suited
 
 PERIOD = 1e-3  # s
@@ -128,6 +128,7 @@ FLOAT_SHARES = {
     "linearised": 2e-4,
     "kalman": 3e-3,
 }
+LIMIT = 1.5  # of the amplifier, in the motor's unit
 CLOSED_LOOP_ERROR = 1e-7  # rad of the output, between the runs under both
 
 
@@ -150,6 +151,29 @@ def test_single_precision_is_as_accurate_as_stated(name: str, doubled: dict[str,
         rounded.start()
         by_single = run_with(rounded, chosen, COMMAND)
         assert np.max(np.abs(by_single["output_angle"] - by_double["output_angle"])) < CLOSED_LOOP_ERROR
+
+
+def moved(firmware: Loaded) -> dict[str, np.ndarray]:
+    """Return inputs of a controller along a motion, of about the size of a joint's, with limits that are met."""
+    time, ratio = PERIOD * np.arange(60), GEAR.kinematics.ratio
+    scale = {"input_angle": 0.3 * ratio, "input_speed": 0.3 * ratio}
+    inputs = {name: scale.get(name, 0.3) * np.sin(40.0 * time + 0.01 * i) for i, name in enumerate(firmware.firmware.inputs)}
+    return inputs | {"low": np.full(60, -LIMIT), "high": np.full(60, LIMIT)}
+
+
+@pytest.mark.whole_path("export")
+@pytest.mark.parametrize("name", FLOAT_SHARES)
+def test_a_bad_sample_is_held_and_counted(name: str, single: dict[str, Loaded]) -> None:
+    check_bad_samples(single[name], moved(single[name]), LIMIT)
+
+
+@pytest.mark.whole_path("export")
+def test_limits_that_cross_are_held(single: dict[str, Loaded]) -> None:
+    inputs = moved(single["model"])
+    expected = single["model"].run(**inputs)["motor_torque"]
+    inputs["low"][7], inputs["high"][9] = LIMIT + 1.0, -LIMIT - 1.0
+    assert np.array_equal(single["model"].run(**inputs)["motor_torque"], expected)
+    assert single["model"].state["bad_samples"] == 2
 
 
 @pytest.mark.parametrize(
@@ -211,6 +235,15 @@ def test_every_law_compiles_and_asks_for_mathematics_and_nothing_else(tmp_path: 
     assert not [line for line in printed("nm", *tmp_path.glob("*.o")) if line.split()[-2:-1] in (["b"], ["B"], ["d"], ["D"])]
 
 
+@pytest.mark.slow("export")
+def test_every_law_and_compensator_holds_bad_samples(tmp_path: Path) -> None:
+    firmware = [written(each, tmp_path, "float", name=f"c{number}") for number, each in enumerate(every_controller())]
+    shared = library(tmp_path, firmware, "-O0")
+    for each in firmware:
+        program = Loaded(each, shared)
+        check_bad_samples(program, moved(program), LIMIT)
+
+
 def test_a_microcontroller_computes_in_single_precision_throughout(tmp_path: Path) -> None:
     """Clang copies and clears a state by calling memcpy and memset, which every freestanding environment has to provide."""
     sw.export.firmware(DRIVES["model"], tmp_path)
@@ -239,7 +272,8 @@ def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(doubled
     run_with(firmware, chosen, COMMAND)
     numbers = dict(zip((name for name, *_ in _core.state(chosen)[0]), simulated.end.numbers, strict=True))
     of_control = [value for name, value in numbers.items() if name.startswith("control.")]
-    assert list(firmware.state.values())[:-1] == of_control[:-1]  # the last is the time to the next sample
+    numbers_in_c = list(firmware.state.values())
+    assert numbers_in_c[: len(of_control) - 1] == of_control[:-1]  # the last is the time to the next sample
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from strainwave.native.static_type import Scalar
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 from tests.support.cplusplus import checker
-from tests.support.firmware import NO_LIBRARY, Array, Loaded, library, written
+from tests.support.firmware import NO_LIBRARY, Array, Loaded, check_bad_samples, library, written
 
 FLOAT_SHARE = 1e-4  # of the largest value of a signal
 # A shaft that has just stopped holds what drives it, which falls fast: there an instant later shows.
@@ -70,6 +70,27 @@ def test_firmware_moves_as_simulation(name: str, programs: dict[str, Loaded]) ->
         difference = np.abs(values - run[output])[smooth]
         share = 0.0 if scalar == "double" else FLOAT_SHARES.get((name, output), FLOAT_SHARE)
         assert difference.max() <= share * np.abs(run[output]).max(), output
+
+
+@pytest.mark.slow("export")
+@pytest.mark.parametrize("name", NAMES)
+def test_a_bad_sample_is_held_and_counted(name: str, programs: dict[str, Loaded]) -> None:
+    inputs = {
+        each: values[:40] if np.size(values) > 1 else np.full(40, values) for each, values in motion(PERIODS[name]).items()
+    }
+    check_bad_samples(programs[name], inputs | {"temperature_rate": np.zeros(40)})
+
+
+@pytest.mark.slow("export")
+@pytest.mark.parametrize("name", NAMES)
+def test_a_state_that_grows_beyond_all_numbers_begins_anew(name: str, programs: dict[str, Loaded]) -> None:
+    """Load torque and temperature of 1e9 count as good, and spoil the state of some drives."""
+    program, zeros = programs[name], np.zeros(400)
+    run = program.run(temperature=np.where(np.arange(400) == 9, 1e9, ROOM_TEMPERATURE), load_torque=1e9 * (np.arange(400) == 9))
+    assert np.isfinite(list(program.state.values())).all()
+    rest = program.run(temperature=ROOM_TEMPERATURE + zeros)
+    if program.state["bad_samples"]:
+        assert run["output_speed"][-1] == rest["output_speed"][-1]
 
 
 @pytest.mark.slow("export")

@@ -14,7 +14,7 @@ from strainwave import _core
 from strainwave.export.firmware import FLAGS
 
 from tests.support.cplusplus import checker
-from tests.support.firmware import NO_LIBRARY, Loaded, library, written
+from tests.support.firmware import NO_LIBRARY, Loaded, check_bad_samples, library, written
 from tests.support.strategies import made, suited
 
 PERIOD = 2.0**-10  # s; its multiples are exact
@@ -114,6 +114,14 @@ def test_firmware_of_a_law_has_its_bits(family: str, name: str, programs: dict[s
     assert np.ptp(found[1]) > 0.0
     for firmware, expected in zip(found[::2], found[1::2], strict=True):
         assert np.array_equal(firmware, expected)
+
+
+@pytest.mark.whole_path("export")
+@pytest.mark.parametrize(("family", "name"), [each for each in LAWS if not each[1].startswith("no_")])
+def test_a_bad_sample_is_held_and_counted(family: str, name: str, programs: dict[str, Loaded]) -> None:
+    scale, time = {"twist": 1e-3, "input_angle": 30.0}, PERIOD * np.arange(40)
+    inputs = {each: scale.get(each, 0.3) * np.cos(99.0 * time + i) for i, each in enumerate(programs[name].firmware.inputs)}
+    check_bad_samples(programs[name], inputs | {"temperature": 300.0 + time} if family == "friction" else inputs)
 
 
 @pytest.mark.slow("export")

@@ -113,6 +113,22 @@ def test_a_command_that_is_known_beforehand_is_followed_before_it_turns() -> Non
     assert error[1] < 0.5 * error[0]
 
 
+@pytest.mark.parametrize("bad", [np.nan, -np.inf, 3e38])
+def test_a_bad_sample_is_held_and_counted(bad: float) -> None:
+    def pushed(fifth: float) -> tuple[list[float], int]:
+        controller = sw.predictive(joint(), error=ERROR, effort=EFFORT)
+        angles = 0.1 * np.sin(0.3 * np.arange(9))
+        angles[5] = angles[4] if fifth == 0.0 else fifth
+        return [
+            controller(sw.Observation(1e-3 * k, 0.01, 0.0, 5.0, 0.0, float(angle), 0.0, 0.0, 0.0, -2.0, 2.0))
+            for k, angle in enumerate(angles)
+        ], controller.bad_samples
+
+    held, count = pushed(0.0)
+    assert pushed(bad) == (held, 1)
+    assert count == 0
+
+
 def test_a_second_run_begins_anew() -> None:
     controller = sw.predictive(joint(), error=ERROR, effort=EFFORT)
     first, second = moved(controller, STEP, push=5.0), moved(controller, STEP, push=5.0)
@@ -134,7 +150,7 @@ int main(void) {
         }
         printf("%.17g\\n", predictive_step(&m, angle, rate));
     }
-    return predictive_unsolved;
+    return predictive_unsolved + (predictive_bad_samples != BAD);
 }
 """
 
@@ -153,9 +169,13 @@ def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
         given.append(controller(seen))
         return given[-1]
 
-    sw.simulate_controlled(controller.drive, recorded, STEP, period=1e-3, delay=5e-4, load_torque=3.0)
+    def spoilt(seen: sw.Observation) -> float:
+        """A sample in a hundred is lost."""
+        return recorded(seen if round(seen.time / 1e-3) % 100 != 7 else seen._replace(output_speed=np.nan))
+
+    sw.simulate_controlled(controller.drive, spoilt, STEP, period=1e-3, delay=5e-4, load_torque=3.0)
     folder = controller.generate_c(tmp_path / "predictive")
-    (folder / "main.c").write_text(MAIN, encoding="utf-8")
+    (folder / "main.c").write_text(MAIN.replace("BAD", str(controller.bad_samples)), encoding="utf-8")
     sources = ["main.c", "predictive.c", "workspace.c", *(str(each) for each in (folder / "src").glob("*.c"))]
     include = ["-I.", "-Iinc/public", "-Iinc/private"]
     warned = subprocess.run(
@@ -167,6 +187,7 @@ def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
     run = subprocess.run(["./control"], cwd=folder, input="\n".join(lines), capture_output=True, text=True, check=True)
     actuation = np.array(run.stdout.split(), dtype=float)
     assert actuation == pytest.approx(np.array(given), abs=0.01 * EFFORT)
+    assert controller.bad_samples > 0
 
 
 @pytest.mark.parametrize(

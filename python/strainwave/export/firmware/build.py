@@ -124,7 +124,7 @@ def firmware(
         declarations,
         own_source,
         tuple(_elements(found.inputs)),
-        tuple(_elements(source.state_of(found))),
+        tuple(_elements(found.state)),
         tuple(_elements(found.outputs)),
         scalar,
         found.period,

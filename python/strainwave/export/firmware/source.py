@@ -11,17 +11,11 @@ from strainwave.native.static_type import short_name, static_type
 
 FLAGS = "-std=c++20 -O2 -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti"
 OWN_HEADERS = ("strainwave/compiled.hpp", "strainwave/field.hpp")
-NO_STATE = (Member("unused", "", "this part has no memory"),)  # C has no empty struct
 
 
 def texts(step: StepFunction, name: str, scalar: str) -> dict[str, str]:
     """Return the three files of a step by name."""
     return {f"{name}.hpp": _cplusplus(step, name, scalar), f"{name}.h": _c(step, name, scalar), f"{name}.cpp": _joint(name)}
-
-
-def state_of(step: StepFunction) -> tuple[Member, ...]:
-    """Return the members of the state in C, of which there is at least one."""
-    return step.state or NO_STATE
 
 
 def _about(step: StepFunction) -> str:
@@ -44,7 +38,7 @@ def _members(members: Iterable[Member], scalar: str, comment: str) -> str:
 
 def _c(step: StepFunction, name: str, scalar: str) -> str:
     """Return the declarations in C."""
-    members = {"inputs": step.inputs, "state": state_of(step), "outputs": step.outputs}
+    members = {"inputs": step.inputs, "state": step.state, "outputs": step.outputs}
     structs = "\n".join(
         f"typedef struct {{\n{_members(each, scalar, '/* {} */')}}} {name}_{kind};\n" for kind, each in members.items()
     )
@@ -94,10 +88,11 @@ def _cplusplus(step: StepFunction, name: str, scalar: str) -> str:
     """Return the header in C++ that contains all that it needs."""
     package = cplusplus.amalgamated([*cplusplus.headers_of(step.model), *step.headers, *OWN_HEADERS])
     macros = "".join(f"#undef {each}\n" for each in cplusplus.macros(package))
-    members = {"Inputs": step.inputs, "State": state_of(step), "Outputs": step.outputs}
+    members = {"Inputs": step.inputs, "State": step.state, "Outputs": step.outputs}
     structs = "\n".join(f"struct {kind} {{\n{_members(each, 'S', '// {}')}}};\n" for kind, each in members.items())
     numbers = "".join(f"    {line}\n" for line in cplusplus.assignments(step.model, "model"))
     start = "".join(f"    state.{line};\n" for each in step.state for line in _starts(each))
+    bad = ", ".join(each.is_bad.format(name=each.name) for each in step.inputs)
     return f"""/* {name}: {_about(step)}.
    A header of C++20 without includes: {name}::start and {name}::step. */
 #ifndef {name.upper()}_HPP
@@ -133,9 +128,45 @@ constexpr State start() {{
 {start}    return state;
 }}
 
+/// Return the inputs with the last good value in place of each bad one, and count the calls with a bad one.
+static inline Inputs held(State& state, Inputs in) {{
+    constexpr int count = sizeof in / sizeof(S);
+    const bool is_bad[count] = {{{bad}}};
+    S values[count];
+    __builtin_memcpy(values, &in, sizeof in);
+    bool any_bad = false;
+    for (int i = 0; i < count; ++i) {{
+        values[i] = state.good_inputs[i] = is_bad[i] ? state.good_inputs[i] : values[i];
+        any_bad |= is_bad[i];
+    }}
+    state.bad_samples += S(any_bad);
+    __builtin_memcpy(&in, values, sizeof in);
+    return in;
+}}
+
+/// True if all numbers of the state are finite.
+static inline bool is_finite(const State& state) {{
+    S differences{{0.0}};
+    for (unsigned i = 0; i < sizeof state / sizeof(S); ++i) {{
+        S number;
+        __builtin_memcpy(&number, reinterpret_cast<const char*>(&state) + i * sizeof number, sizeof number);
+        differences += number - number;  // not a number, if this one is not finite
+    }}
+    return differences == S(0.0);
+}}
+
+/// Return the state before the first step, with the inputs of now, and one bad sample more.
+static inline State restarted(const State& before) {{
+    State state = start();
+    __builtin_memcpy(state.good_inputs, before.good_inputs, sizeof state.good_inputs);
+    state.bad_samples = before.bad_samples + S(1.0);
+    return state;
+}}
+
 /// Return the outputs at this instant, and move the state on to the next.
-static inline Outputs step(State& state, const Inputs& in) {{
+static inline Outputs step(State& state, const Inputs& measured_inputs) {{
     using namespace constants;
+    const Inputs in = held(state, measured_inputs);
     using Memory = decltype({step.memory});
     strainwave::Flat<S, Memory> numbers;  // with which the state begins
     static_assert(sizeof numbers <= sizeof state);
@@ -145,6 +176,7 @@ static inline Outputs step(State& state, const Inputs& in) {{
 {step.body.removeprefix(chr(10))}
     numbers = strainwave::flattened<S>(x);
     if constexpr (strainwave::size_of<S, Memory> > 0) __builtin_memcpy(&state, &numbers, sizeof numbers);
+    if (!is_finite(state)) state = restarted(state);
     return out;
 }}
 

@@ -11,10 +11,13 @@ from strainwave import Drive, _core, arguments
 from strainwave.export.fmu.variables import RATES
 from strainwave.export.internal_step import MIN_STEP, default_step, internal_step
 from strainwave.messages import shortened
+from strainwave.simulation.controller import MAX_SIGNAL
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.signals import actuation, command_unit, outputs
 
 MAX_STEPS_PER_PERIOD = 1000  # of a sampled controller
 MAX_RELATIVE_REST = 1e-9  # of a step: instants closer than this to a multiple of it are that multiple
+BAD_LIMITS = f"!(S(-{MAX_SIGNAL:g}) <= in.low && in.low <= in.high && in.high <= S({MAX_SIGNAL:g}))"
 RUN_HEADER = "strainwave/integrate.hpp"
 CONTACT_HEADER = "strainwave/friction/contact.hpp"
 
@@ -28,6 +31,7 @@ class Member:
         unit: in SI; empty without one
         doc: what it is, if the name does not suffice
         start: value at the start; several are an array
+        is_bad: condition in C++ on an input, under which its last good value replaces it; by default not finite, or too large
     """
 
     name: str
@@ -35,6 +39,7 @@ class Member:
     doc: str = ""
     start: tuple[float, ...] = (0.0,)
     is_array: bool = False
+    is_bad: str = f"!(strainwave::abs(in.{{name}}) <= S({MAX_SIGNAL:g}))"
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,7 @@ class StepFunction:
         model: part of a drive; its numbers are the constants of the function
         words: what the function does, in one line
         inputs, outputs: members of the structs of these names in C
-        state: numbers of `memory`, then those that `body` adds
+        memory_state: numbers of `memory`, then those that `body` adds
         period: time from one call to the next [s]; 0 if the time does not matter
         memory: described state of the model in C++, over scalars S
         body: C++ that turns the inputs `in` and the memory `x` into the outputs `out`, and `x` into the next memory
@@ -57,10 +62,20 @@ class StepFunction:
     inputs: tuple[Member, ...]
     outputs: tuple[Member, ...]
     body: str
-    state: tuple[Member, ...] = ()
+    memory_state: tuple[Member, ...] = ()
     period: float = 0.0
     memory: str = "strainwave::Stateless<S>{}"
     headers: tuple[str, ...] = ()
+
+    @property
+    def state(self) -> tuple[Member, ...]:
+        """Members of the struct `state` in C: the memory, and what a step keeps of its inputs."""
+        starts = tuple(start for each in self.inputs for start in each.start)
+        return (
+            *self.memory_state,
+            Member("good_inputs", "", "last good value of each input", starts, is_array=True),
+            Member("bad_samples", "1", "calls with an input that was held, or after which the state began anew"),
+        )
 
 
 def step(drive: Drive, part: str, period: float | None) -> StepFunction:
@@ -102,8 +117,8 @@ def _controller(drive: Drive, part: str, period: float | None) -> StepFunction:
             Member("output_speed", "rad/s"),
             Member("current", "A", "of the motor"),
             Member("torque", "N.m", "transmitted, at the output"),
-            Member("low", given.unit, "least actuation that the motor can follow now"),
-            Member("high", given.unit, "largest one"),
+            Member("low", given.unit, "least actuation that the motor can follow now", (-MAX_SIGNAL,), is_bad=BAD_LIMITS),
+            Member("high", given.unit, "largest one", (MAX_SIGNAL,), is_bad=BAD_LIMITS),
         ),
         (Member(given.name, given.unit, "for the motor, within [low, high]"),),
         f"""
@@ -111,7 +126,7 @@ def _controller(drive: Drive, part: str, period: float | None) -> StepFunction:
     const strainwave::control::Measurement<S> measured{{in.input_angle, in.input_speed, in.output_angle, in.output_speed,
                                                        in.current, in.torque, {{in.low, in.high}}}};
     x = model.elapsed(model.sampled(x, x.until_sample, command, measured), model.period);
-    out = {{model.held(x)}};""",
+    out = {{strainwave::clip(model.held(x), in.low, in.high)}};""",
         tuple(_state(drive, "control", "control.")),
         control.period,
         "model.initial_discrete()",
@@ -135,7 +150,7 @@ def _drive(drive: Drive, part: str, period: float | None) -> StepFunction:
             Member("command_rate", RATES.get(command, f"{command}/s"), "its rate within the period; 0 if it is held"),
             Member(load, load_unit, load_doc),
             Member(f"{load}_rate", RATES.get(load_unit, f"{load_unit}/s"), "its rate"),
-            Member("temperature", "K", "around the drive"),
+            Member("temperature", "K", "around the drive", (ROOM_TEMPERATURE,)),
             Member("temperature_rate", "K/s", "its rate"),
         ),
         tuple(Member(each.name, each.unit, _one_line(each.doc)) for each in shown),
@@ -216,7 +231,7 @@ def _friction(drive: Drive, part: str, period: float | None) -> StepFunction:
             Member("speed", "rad/s"),
             Member("angle", "rad", "where it depends on that, else 0"),
             Member("load", "N.m", "torque transmitted; positive if it drives a positive speed; 0 if the law has no use for it"),
-            Member("temperature", "K"),
+            Member("temperature", "K", start=(ROOM_TEMPERATURE,)),
         ),
         (Member("torque", "N.m", "against the speed"), *held),
         f"""

@@ -20,6 +20,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.orders.ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
 
@@ -29,6 +30,7 @@ STANDARD_GRAVITY = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
 MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
 RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
+RIPPLE_COLUMNS = ("current", "motor_torque", "torque")  # in which the ripple of the wave generator is looked for
 MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
 MOTION_BLOCKS = 10  # of the motion
 MIN_ROWS_PER_BLOCK = 5
@@ -56,6 +58,7 @@ def checks_of_motion(
         yield from (by_ratio := list(ratio_by_gravity(best, drive, recording, source)))
         if not any(check.failed for check in by_ratio) and _has_gravity(best):
             yield from angle_in_gravity(best, drive, recording, source)
+    yield from ratio_by_orders(drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
     yield from negative_parts(best.log, drive, held_out.plain if np.isfinite(held_out.plain) else held_out.error, source)
@@ -144,6 +147,31 @@ def _is_less(squares: Array, usual: Array) -> bool:
 def _delay(best: MotionCandidate) -> float:
     """Return the delay of the effort that was fitted [s]."""
     return next((each.value for each in best.fit.estimates if each.path == "delay"), 0.0)
+
+
+def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator[Check]:
+    """Yield the check that the ripple over the output's angle is that of a wave generator with the ratio of the gear.
+
+    Without an angle of the input nothing else shows the ratio.
+    """
+    column = next((name for name in RIPPLE_COLUMNS if name in recording), None)
+    if column is None or "output_angle" not in recording or "input_angle" in recording:
+        return
+    try:
+        concluded = ripple(recording, column, angle="output_angle", side="output").concluded
+    except ValueError:  # too short, too slow or at rest: there is nothing to compare
+        return
+    if not concluded:
+        return
+    ratio = abs(float(drive.gear.kinematics.ratio))
+    off = min(abs(each - ratio) for each in concluded)
+    found = " or ".join(map(str, concluded))
+    yield Check(
+        "ratio by orders", source, off, 1.0, "1", off > 1.0,
+        f"the ripple of the {column.replace('_', ' ')} over the angle of the output is that of a ratio of {found}, the ratio "
+        f"of the gear is {ratio:.6g}",
+        f"see whether the start set is that of this gear, or give its ratio: --constant ratio={concluded[0]}",
+    )  # fmt: skip
 
 
 def _mistakes(recording: Recording, ratio: float) -> dict[str, float]:
