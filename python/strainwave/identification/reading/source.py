@@ -12,15 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.array_table import ArrayTable, Grid, grid_table
+from strainwave.files.array_table import ArrayTable, Grid, GridTable, grid_table
 from strainwave.files.folder import FolderFiles, files_below
-from strainwave.files.labels import ColumnSource, Label, places_of
+from strainwave.files.labels import ColumnSource, Label, labels_of, places_of
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
 from strainwave.files.tables import FORMATS, is_table_of_numbers, open_table
+from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
-from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint
+from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint, meaning
 from strainwave.identification.reading.slopes import is_slope
 from strainwave.identification.reading.times import merged, with_one_time
 from strainwave.messages import listed, one_line
@@ -110,11 +111,12 @@ class MeasurementFile:
 
     @property
     def is_of_one_quantity(self) -> bool:
-        """True if its name contains a quantity, and its columns have no names but that of a time."""
-        if _quantity_in(self.path) is None or self.path.is_dir():
+        """True if its name contains a quantity, and its columns have no names, or that of this quantity, but for a time."""
+        own = _quantity_in(self.path)
+        if own is None or self.path.is_dir():
             return False
         try:
-            return nameless(self.raw)
+            return nameless(self.raw) or _names_one_quantity(self.raw, own[0])
         except (ValueError, OSError):
             return False
 
@@ -198,8 +200,8 @@ def _table_of(recording: Recording, name: str) -> ArrayTable:
 def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
     """Return the files, with those that are one recording together as one.
 
-    Files are of one recording if their columns have no names, and their names differ in the quantity alone, as `q_run_1.csv`
-    and `tau_run_1.csv`.
+    Files are of one recording if their columns have no names, or a time and one quantity, and the names of the files differ in
+    the quantity alone, as `q_run_1.csv` and `tau_run_1.csv`.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -244,6 +246,13 @@ def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
     return None
 
 
+def _names_one_quantity(table: OpenTable, name: str) -> bool:
+    """True if a table has a time, and columns that are named as one quantity of several joints."""
+    found = [each.quantity if (each := meaning(label)) else None for label in table.labels]
+    others = {quantity for quantity in found if quantity != "time"}
+    return found.count("time") == 1 and others == {QUANTITY_OF.get(name.casefold())} and len(found) > 1
+
+
 def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
     """Return the table of a recording with one file for each quantity.
 
@@ -258,7 +267,7 @@ def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
     grids = [Grid(part.time, part.columns) for part in read if part.time is not None]
     file = one_line(listed(part.path.name for part in parts))
     if grids and len(grids) == len([part for part in read if part.series]):
-        return grid_table(file, "", merged(grids), {})
+        return _with_labels(grid_table(file, "", merged(grids), {}))
     rows = [len(part.series[0]) for part in read]
     if len(set(rows)) > 1:
         counts = listed(f"{part.path.name} has {count}" for part, count in zip(parts, rows, strict=True))
@@ -269,13 +278,19 @@ def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
     return ArrayTable(file, "", [Label(name, name, None) for name in columns], list(columns.values()))
 
 
+def _with_labels(table: GridTable) -> GridTable:
+    """Return a table with the units that its headings contain."""
+    return replace(table, labels=[table.labels[0], *labels_of([label.text for label in table.labels[1:]])])
+
+
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """One file of a recording: the quantity in its name, its series, and its time if it has one."""
+    """One file of a recording: the quantity in its name, its series, its time if it has one, and the names of its columns."""
 
     name: str
     series: list[Array]
     time: Array | None
+    names: Sequence[str] = ()
 
     @staticmethod
     def of(file: MeasurementFile) -> _Part:
@@ -283,6 +298,11 @@ class _Part:
         table = file.raw
         numbers, _ = table.measured([ColumnSource(place, str(place), str(place), "1") for place in range(len(table.labels))])
         series = list(numbers.values())
+        if _names_one_quantity(table, name):
+            meanings = enumerate(map(meaning, table.labels))
+            at = next(place for place, found in meanings if found and found.quantity == "time")
+            time = convert(series.pop(at), table.labels[at].unit or "s", "s")
+            return _Part(name, series, time, [label.text for place, label in enumerate(table.labels) if place != at])
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None)
         time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
@@ -290,6 +310,8 @@ class _Part:
 
     @property
     def columns(self) -> dict[str, Array]:
+        if self.names:
+            return dict(zip(self.names, self.series, strict=True))
         if len(self.series) == 1:
             return {self.name: self.series[0]}
         return {f"{self.name}_{number}": values for number, values in enumerate(self.series, start=1)}
