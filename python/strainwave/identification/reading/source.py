@@ -301,8 +301,8 @@ class _Part:
         if _names_one_quantity(table, name):
             meanings = enumerate(map(meaning, table.labels))
             at = next(place for place, found in meanings if found and found.quantity == "time")
-            time = convert(series.pop(at), table.labels[at].unit or "s", "s")
-            return _Part(name, series, time, [label.text for place, label in enumerate(table.labels) if place != at])
+            instants = convert(series.pop(at), table.labels[at].unit or "s", "s")
+            return _Part(name, series, instants, [label.text for place, label in enumerate(table.labels) if place != at])
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None)
         time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
