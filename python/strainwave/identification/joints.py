@@ -14,6 +14,8 @@ from strainwave.identification.reading.recognise import joints_of
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
 
 ALL = "all"  # in place of the name of a joint
+ONE = "1"  # name of the joint of files that name none
+NAMES_NO_JOINT = "its columns name no joint, and those of other files do"
 MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids have 50
 
 
@@ -52,11 +54,11 @@ def identify_joints(
 
     Raises:
         TypeError: as `identify`
-        ValueError: no joint moves in any file, more than `MAX_JOINTS` do, or none can be identified, with the reason of each
+        ValueError: no file can be read, more than `MAX_JOINTS` joints move, or none can be identified, with the reason of each
     """
     check_arguments(files, mapping)
     user_mapping = mapping or (lambda path: FileMapping())
-    by_joint, left_out = dict[str, list[MeasurementFile]](), dict[str, str]()
+    by_joint, left_out, nameless = dict[str, list[MeasurementFile]](), dict[str, str](), list[MeasurementFile]()
     opened = measurement_files(files)
     left_out |= {link.name: LINK_NOT_FOLLOWED for link in opened.links}
     for file in opened.files:
@@ -66,14 +68,14 @@ def identify_joints(
             left_out[file.path.name] = str(error)
             continue
         if not joints:
-            left_out[file.path.name] = (
-                "its columns are not named as angles of several joints of which one moves; name its joint with --joint"
-            )
+            nameless.append(file)
+            left_out[file.path.name] = NAMES_NO_JOINT
         for joint in joints:
             by_joint.setdefault(joint, []).append(file)
+    if not by_joint and nameless:  # files of one joint, which need no name for it
+        by_joint[ONE], left_out = nameless, {name: why for name, why in left_out.items() if why != NAMES_NO_JOINT}
     if not by_joint:
-        why = "; ".join(f"{name}: {each}" for name, each in left_out.items())
-        raise ValueError(f"no file contains several joints; leave out --joint, or name one: {why}")
+        raise ValueError(f"no file can be used: {'; '.join(f'{name}: {each}' for name, each in left_out.items())}")
     if len(by_joint) > MAX_JOINTS:
         raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
     found, refused = dict[str, Identified](), dict[str, str]()

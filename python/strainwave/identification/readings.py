@@ -204,7 +204,8 @@ def _asked(question: str, remaining: Sequence[_Reading]) -> str:
 
 def _options_of(file: Recognised) -> str:
     """Return the options with which a file is read as it was."""
-    units = {name: file.units[name] for each in file.alternatives for name in each.mapping.units if name in file.units}
+    known = {**{column: file.units[name] for name, column in file.columns.items() if name in file.units}, **file.units}
+    units = {name: known[name] for each in file.alternatives for name in each.mapping.units if name in known}
     side = [f"--side {file.side}"] if file.side is not None else []
     return " ".join([*side, *(f"--unit {name}={unit}" for name, unit in units.items())])
 

@@ -60,13 +60,11 @@ def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Pa
         assert f"{name} is not used" in page
 
 
-def test_a_file_of_one_joint_has_no_others(tmp_path: Path, log: Path) -> None:
+def test_a_file_of_one_joint_is_that_of_all_joints(tmp_path: Path, log: Path) -> None:
     rows = np.loadtxt(log, delimiter=",", skiprows=1)[:, [0, 2, 5, 8]]
     np.savetxt(tmp_path / "one.csv", rows, "%.6f", ",", header="time,q,dq,tau", comments="")
-    with pytest.raises(
-        ValueError, match=r"leave out --joint, or name one: one.csv: its columns are not named as angles of several joints"
-    ):
-        identify_joints("hfuc-25-100", [tmp_path / "one.csv"])
+    joints = identify_joints("hfuc-25-100", [tmp_path / "one.csv"])
+    assert (list(joints.found), joints.left_out) == (["1"], {})
 
 
 def test_more_joints_than_any_robot_has_are_refused(tmp_path: Path) -> None:

@@ -15,7 +15,16 @@ from strainwave.files.units import measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import QUANTITIES, is_of_joint, meaning, unit_in, which_of, words_of
+from strainwave.identification.reading.names import (
+    QUANTITIES,
+    Meaning,
+    is_of_joint,
+    meaning,
+    meaning_by_unit,
+    unit_in,
+    which_of,
+    words_of,
+)
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
 
@@ -65,6 +74,12 @@ def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     return [which for which, span in spans.items() if span > 0.0 and span >= least]
 
 
+def numbered_joint(table: OpenTable) -> list[str]:
+    """Return the number of the joint that all angles have in their names, as q7; empty if they have none, or several."""
+    found = {column.which for column in _by_name(table, FileMapping()) if column.channel.quantity == "angle"}
+    return sorted(found) if len(found) == 1 and all(each.isdigit() for each in found) else []
+
+
 # ---- By their names --------------------------------------------------------------------------------------------------
 
 
@@ -72,10 +87,11 @@ def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] =
     """Return the columns with a known name, but for channels that a person named."""
     taken = {column.position for column in by_user}
     columns = []
-    for position, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
+    for position, (label, content, found) in enumerate(
+        zip(table.labels, table.contents, _meanings(table, mapping), strict=True)
+    ):
         if content == "other" or position in taken:
             continue
-        found = meaning(label._replace(unit=None) if label.name in mapping.units else label)
         is_time = found is not None and found.quantity == "time"
         if found is None or (content == "dates" and not is_time) or (is_time and "rate" in mapping.constants):
             continue
@@ -85,6 +101,17 @@ def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] =
             unit = "s" if content == "dates" else found.unit or label.unit or None
             columns.append(Column(position, label, channel, found.which, found.robot, unit=unit, estimated=found.estimated))
     return _numbered_apart(_without_estimates(_of_measured_structure(columns)))
+
+
+def _meanings(table: OpenTable, mapping: FileMapping) -> list[Meaning | None]:
+    """Return the meaning of each column; by its unit alone only if no other column has a measurement of that quantity."""
+    labels = [label._replace(unit=None) if label.name in mapping.units else label for label in table.labels]
+    found = [meaning(label) for label in labels]
+    named = {each.quantity for each in found if each is not None and not each.commanded}
+    by_unit = [meaning_by_unit(label) if own is None else None for label, own in zip(labels, found, strict=True)]
+    return [
+        own or (other if other and other.quantity not in named else None) for own, other in zip(found, by_unit, strict=True)
+    ]
 
 
 def _of_measured_structure(columns: Sequence[Column]) -> list[Column]:

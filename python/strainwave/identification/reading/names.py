@@ -77,6 +77,7 @@ FINE_UNITS = ("arcsec", "arcmin", "\u2033", "\u2032")  # in which a deviation is
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
 SHARES = {"permille": "permille", "promille": "permille", "percent": "%", "pct": "%", "prozent": "%"}
+MEASURED_BY_UNIT: tuple[Quantity, ...] = ("angle", "speed", "torque")  # of names that end with their unit and no other word
 # Symbols with two meanings at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
     "qm": ("q", "motor"), "qg": ("q", "reference"), "ql": ("q", "link"), "qdes": ("q", "desired"), "qref": ("q", "reference"),
@@ -177,6 +178,20 @@ def _of_unit_alone(name: str) -> Meaning | None:
         return None
     quantity = next((each for each, standard in UNITS.items() if measures(name, standard)), None)
     return Meaning(quantity, unit=name) if quantity else None
+
+
+def meaning_by_unit(label: Label) -> Meaning | None:
+    """Return the meaning of a name that means nothing but in its unit, with which it ends; None if it ends with none.
+
+    >>> meaning_by_unit(Label("table_deg", "table_deg", None))
+    Meaning(quantity='angle', side=None, commanded=False, which='table', unit='deg', robot=False, estimated=False)
+    """
+    found = ((quantity, *_without_unit(label.name, quantity)) for quantity in MEASURED_BY_UNIT)
+    by_unit = next(((quantity, rest, unit) for quantity, rest, unit in found if unit and len(unit) > 1), None)
+    if by_unit is None or any(word in OTHERS for word in words_of(label.name)):
+        return None
+    quantity, rest, unit = by_unit
+    return Meaning(quantity, which=which_of(words_of(rest)), unit=unit)
 
 
 def words_of(name: str) -> list[str]:

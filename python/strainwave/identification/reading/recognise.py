@@ -18,7 +18,7 @@ from strainwave.identification.reading.angles import jumps, renewed_rows, unwrap
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import clock, regular
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import chosen, moving_joints
+from strainwave.identification.reading.columns import chosen, moving_joints, numbered_joint
 from strainwave.identification.reading.layout import interleaved, nameless
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
@@ -248,7 +248,7 @@ def _further(source: MeasurementFile, given: FileMapping, undecided: UndecidedEr
 
 def _other_units(columns: Sequence[Column], found: Mapping[str, Column], given: FileMapping) -> tuple[Alternative, ...]:
     """Return other units of the channels without one, if their numbers fit them as well."""
-    names = {column.position: name for name, column in found.items()}
+    names = {each.position: each.name if name in REFLECTED else name for name, each in found.items()}
     ways = []
     for units in other_units([column for column in columns if column.own and column.position in names]):
         by_name = {names[place]: unit for place, unit in units.items()}
@@ -344,7 +344,7 @@ def _with_speed_of_name(columns: Sequence[Column], given: FileMapping, path: Pat
 
 
 def joints_of(file: str | Path | MeasurementFile, mapping: FileMapping | None = None) -> tuple[str, ...]:
-    """Return the joints that move in a file, by their names in it; the one in its own name if its columns name none.
+    """Return the joints that move in a file, by their names in it; the one that its columns or its own name contain.
 
     Args:
         file, mapping: as of `recognise`
@@ -354,7 +354,9 @@ def joints_of(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     """
     source = measurement_file(file)
     moving, named = moving_joints(source.table, mapping or FileMapping()), joint_in(source.path)
-    return (named,) if named and (named in moving or not moving) else tuple(moving)
+    if named and (named in moving or not moving):
+        return (named,)
+    return tuple(moving or numbered_joint(source.table))
 
 
 def check_one_joint(files: Sequence[Recognised]) -> None:
