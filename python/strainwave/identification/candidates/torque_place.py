@@ -41,17 +41,27 @@ class TorquePlace:
     remark: str = ""
 
 
-def torque_place(log: MotionLog, drive: Drive) -> TorquePlace:
+def torque_place(log: MotionLog, drive: Drive, motor_given: bool = False) -> TorquePlace:
     """Return the place at which the torque of a log was measured, by the sizes of its inertia and friction.
 
     Args:
         log: of the torque
         drive: with the inertias of motor and gear, and the friction of the gear, as guessed before
+        motor_given: True if a person knows the motor's inertia, so that the torque is that of the motor; that of the gear is
+            a guess all the same
     """
     ratio, motor, gear = drive.gear.kinematics.ratio, drive.motor.inertia, drive.gear.input_inertia
     inertia, sigma = inertia_with_sigma(log, drive)
     rotor, total = motor + gear, max(inertia + SIGNIFICANCE_SIGMA * sigma, 0.0)  # no more than that turns
     sizes = f"all that turns has {inertia * ratio**2:.3g} kg·m² at the output, the rotor {rotor * ratio**2:.3g} kg·m²"
+    if motor_given:
+        rest = max(inertia - motor, 0.0)
+        if total >= rotor or total < motor:
+            return TorquePlace(drive)
+        return TorquePlace(
+            _with_rotor(drive, motor, SHARE_OF_ROTOR * rest), total - motor,
+            remark=f"{sizes}: that of the start set's wave generator is too large; the load's is not separable from it",
+        )  # fmt: skip
     if log.effort == "joint_torque":
         share = _friction_share(fit_plain(log, drive), log, drive)
         if share < MIN_FRICTION_SHARE or total < ROTOR_MARGIN * rotor:

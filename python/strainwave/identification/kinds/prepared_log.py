@@ -83,10 +83,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
     log, is_of_speed = along_best_motion(log, recording, drive)
-    is_given = (
-        "motor_inertia" in file.constants and log.effort != "joint_torque"
-    )  # a person knows it, so that no size doubts it
-    place = TorquePlace(drive) if in_current or is_given else torque_place(log, drive)
+    is_given = "motor_inertia" in file.constants and log.effort != "joint_torque"
+    place = TorquePlace(drive) if in_current else torque_place(log, drive, motor_given=is_given)
     remarks += [place.remark] * bool(place.remark)
     remarks += [
         "the speed is taken as it was recorded: along it the torque is predicted better than along the angle"

@@ -49,6 +49,16 @@ def test_no_inertia_of_a_start_set_is_more_than_all_that_turns(size: str, total:
     assert (place.remark == "") == (rotor == pytest.approx(before))
 
 
+@pytest.mark.parametrize("size", SETS)
+def test_beside_a_given_motor_the_wave_generator_is_a_guess_of_the_set(size: str) -> None:
+    place = torque_place(MotionLog.of(record("input_torque", 1.4e-5), drive(size)), drive(size), motor_given=True)
+    assert place.drive.motor.inertia == 1e-5
+    too_large = drive(size).gear.input_inertia > 4e-6
+    assert bool(place.remark) == too_large
+    assert place.drive.gear.input_inertia < 4e-6
+    assert (place.open_inertia > 0.0) == too_large
+
+
 def test_a_torque_without_friction_was_measured_behind_the_gear() -> None:
     place = torque_place(MotionLog.of(record("joint_torque", 1e-4, friction=0.0, noise=1e-6), drive()), drive())
     assert not place.has_friction
