@@ -15,6 +15,7 @@ from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
+from strainwave.identification.fitting.waves import Waves
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.linear_fit import solved, without_rounding
 from strainwave.statistics.residuals import correlation_length
@@ -262,10 +263,13 @@ class Problem:
             ]
         )
 
+        waves = Waves.of(self.plan.unknowns, whole, free)
+        begun, (lowest, highest) = waves.parts(whole), waves.limits(self.limits())[free].T
+
         def with_free(part: Array) -> Array:
-            x = whole.copy()
-            x[free] = part
-            return x
+            parts = begun.copy()
+            parts[free] = part
+            return waves.unknowns(parts)
 
         squared = isinstance(loss, Squared)
         samples, priors, rows_of_squares = len(lengths), len(right), max(MIN_ROWS, len(free) + 1)
@@ -276,7 +280,7 @@ class Problem:
             x = with_free(np.frombuffer(part))
             of_data = [-each.rows * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
             left = np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
-            slopes = np.concatenate((self.jacobian(x, weights), of_priors))[:, free]
+            slopes = waves.slopes(np.concatenate((self.jacobian(x, weights), of_priors)), x)[:, free]
             columns = np.column_stack((slopes, left))
             if not squared:
                 return columns
@@ -298,7 +302,7 @@ class Problem:
             if squared:
                 step, gain = _step(rows, left)
                 if gain <= MIN_RELATIVE_GAIN * tolerance * float(left @ left):
-                    raise _SettledError(np.clip(part + step, low[free], high[free]))
+                    raise _SettledError(np.clip(part + step, lowest, highest))
             return rows
 
         def cost(squares: Array) -> Array:
@@ -311,9 +315,9 @@ class Problem:
             try:
                 solution = least_squares(
                     residuals,
-                    whole[free],
+                    begun[free],
                     jac=jacobian,
-                    bounds=(low[free], high[free]),
+                    bounds=(lowest, highest),
                     x_scale="jac",
                     loss="linear" if squared else cost,  # type: ignore[arg-type]  # stubs ask for more
                     xtol=tolerance,
