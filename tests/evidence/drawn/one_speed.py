@@ -23,7 +23,7 @@ def outcome(seed: int) -> Outcome:
     velocity = speed * np.clip(
         np.where(phase < half, np.minimum(phase, half - phase), -np.minimum(phase - half, 2.0 * half - phase)) / ramp, -1.0, 1.0
     )
-    angle = np.cumsum(velocity) / rate
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]))]) / rate
     acceleration = np.gradient(velocity, 1.0 / rate)
     coulomb = float(np.exp(random.uniform(np.log(0.01), np.log(0.1))))
     viscous = coulomb * float(random.uniform(0.05, 0.6)) / (RATIO * speed)

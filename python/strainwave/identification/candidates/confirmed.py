@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from strainwave.identification.candidates.motion_model import INPUT
 from strainwave.identification.candidates.plain import held_out_residuals, moving
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.fitting.fit import solved_problem
+from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import plain
 
@@ -89,9 +91,20 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
     problem, x = solved_problem(best.fit)
     rows = np.arange(len(best.log.motion.rows))
     blocks = [(rows >= each[0]) & (rows <= each[-1]) for each in np.array_split(rows, JACKKNIFE_BLOCKS)]
-    without = np.array(list(without_rows(problem, x, blocks, ())))
-    spread = np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(without, axis=0))
-    return {plain(each.path): float(sigma) for each, sigma in zip(problem.plan.unknowns, spread, strict=False)}
+    without = np.array(list(without_rows(problem, x, blocks, ()))).T
+    numbers = {plain(each.path): values for each, values in zip(problem.plan.unknowns, without, strict=False)}
+    return {
+        path: float(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(values)))
+        for path, values in with_sum(numbers, best.model.one_speed).items()
+    }
+
+
+def with_sum(numbers: Mapping[str, Any], speed: float) -> dict[str, Any]:
+    """Return numbers by their paths with the friction at the one speed of a record [rad/s], if it has one."""
+    whole = dict(numbers)
+    if speed:
+        whole[STEADY] = whole[f"{INPUT}coulomb"] + speed * whole.get(f"{INPUT}viscous", 0.0)
+    return whole
 
 
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
@@ -99,18 +112,27 @@ def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -
 
     Numbers of friction are compared within one law: those of another law have another meaning.
     """
-    values = dict(zip(map(plain, best.model.free), best.values, strict=True))
+    values = _numbers(best)
     found = dict.fromkeys(values, 0.0)
     for other in others:
         if not other.predicts_as_well_as(best):
             continue
         is_one_law = type(other.model.law) is type(best.model.law)
-        for path, value in zip(map(plain, other.model.free), other.values, strict=True):
+        for path, value in _numbers(other).items():
             if path in found and (is_one_law or not path.startswith(INPUT)):
                 off = abs(value - values[path])
                 turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if "phase" in path else off
                 found[path] = max(found[path], float(turned))
     return found
+
+
+def _numbers(candidate: MotionCandidate) -> dict[str, float]:
+    """Return the numbers that are free, and the friction at the one speed of a record, by path."""
+    model = candidate.model
+    numbers = dict(zip(map(plain, model.free), candidate.values, strict=True))
+    if model.one_speed:
+        numbers[STEADY] = float(model.law.coulomb + model.one_speed * model.law.viscous)
+    return numbers
 
 
 def other_laws(best: MotionCandidate, others: Sequence[MotionCandidate]) -> list[MotionCandidate]:

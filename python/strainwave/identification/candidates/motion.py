@@ -54,6 +54,7 @@ Rows = NDArray[np.bool_]
 
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
 GRAVITY = ("load.gravity_torque", "load.gravity_phase")
+AS_IN_SET = "split as in the start set"
 BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
 NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 MIN_STRETCH = 20  # samples of a stretch that is held out
@@ -61,6 +62,8 @@ MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is c
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
 SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
+SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
+MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
 
 
 def fit_motion(
@@ -86,9 +89,9 @@ def fit_motion(
     """
     held_out = stretches(logs[0])
     _check_compared(logs[0], held_out)
-    search = _Search(drive, held_out, priors or {})
     logs = [each for each in logs if len(each.motion.rows) >= MIN_SLIDING] or [logs[0].in_full_band()]
-    simple = _simple(logs[0], drive, inertia)
+    simple, of_split = _simple(logs[0], drive, inertia)
+    search = _Search(drive, held_out, {**(priors or {}), **of_split})
     best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
     delay = best_delay(logs[0], drive)
     late = [search.tried(each) for each in _delayed(best.model, delay)] if delay else []
@@ -109,10 +112,12 @@ def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
 
 def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     """Return the model without the parts that the record does not show, and with those that make it predict better."""
+    best = _with(best, search.tried(_with_own_split(best.model)))
     best = search.rippled(best)  # first, as what varies over the angle hides smaller parts
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
-    return search.rippled(search.grown(best, list(PARTS)))
+    best = search.rippled(search.grown(best, list(PARTS)))
+    return _with(best, search.tried(_with_own_split(best.model)))  # which a delay hides
 
 
 def _check_compared(log: MotionLog, held_out: Sequence[Rows]) -> None:
@@ -201,16 +206,34 @@ class _Search:
         return min((each for each in self.every if each.errors[-1] < limit), key=lambda each: each.error, default=best)
 
 
-def _simple(log: MotionLog, drive: Drive, inertia: str) -> MotionModel:
-    """Return the model with Coulomb and viscous friction alone, as plain least squares has it."""
+def _simple(log: MotionLog, drive: Drive, inertia: str) -> tuple[MotionModel, dict[str, tuple[float, float]]]:
+    """Return the model with Coulomb and viscous friction alone, as plain least squares has it, and priors of their numbers.
+
+    A record at one speed has its ramps alone to separate them: the share of the viscous friction by the start set is the prior.
+    """
     plain, speed = fit_plain(log, drive), one_speed(log)
     start, free = _start(drive, plain, inertia)
     friction_free: tuple[str, ...] = COULOMB
+    priors = dict[str, tuple[float, float]]()
     if speed:
         start, friction_free = _with_viscous_share(start, drive.gear.friction_input, speed), COULOMB[:1]
+        priors = {COULOMB[1]: prior_of_viscous(start.gear.friction_input, speed)}
     zero = [plain.offset * per_torque(drive, log.effort)] if log.both_ways else []
-    name = "Coulomb and viscous" + (", split as in the start set" if speed else "")
-    return MotionModel(name, log.starting((*zero, *plain.shares)), start, (*free, *friction_free), FOLLOWS, speed)
+    name = "Coulomb and viscous" + (f", {AS_IN_SET}" if speed else "")
+    return MotionModel(name, log.starting((*zero, *plain.shares)), start, (*free, *friction_free), FOLLOWS, speed), priors
+
+
+def _with_own_split(model: MotionModel) -> MotionModel | None:
+    """Return the model of a record at one speed with the division of friction that its ramps show."""
+    if not model.one_speed or (viscous := model.path_of("viscous")) in model.free:
+        return None
+    return replace(model, name=model.name.replace(AS_IN_SET, "split by ramps"), free=(*model.free, viscous))
+
+
+def prior_of_viscous(law: Any, speed: float) -> tuple[float, float]:
+    """Return the viscous friction of a law, as the start set's share of the friction at a speed [rad/s], and its spread."""
+    viscous = float(law.viscous)
+    return viscous, max(SPREAD_OF_VISCOUS * viscous, MIN_SPREAD_OF_SHARE * (law.coulomb / speed + viscous))
 
 
 # ---- Parts that a record may not show -------------------------------------------------------------------------------------
@@ -260,9 +283,11 @@ PARTS: tuple[Part, ...] = (with_delay, with_curved_viscous_part, with_another_fr
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:
-    """True unless a part was fitted that cannot be: a delay longer than a clock makes it, or a change of friction at speeds
-    beyond the fastest motion."""
+    """True unless a part was fitted that cannot be: a delay longer than a clock makes it, a change of friction at speeds beyond
+    the fastest motion, or none of the viscous friction that is known before."""
     log, model = candidate.log, candidate.model
+    if model.path_of("viscous") in candidate.priors and model.law.viscous <= 0.0:
+        return False
     falls = model.path_of("stribeck_speed") in model.free
     sensible = not falls or (model.law.stribeck_speed < float(np.abs(log.motion.speed).max()))
     return bool(abs(log.delay) < MAX_DELAY_SAMPLES * log.motion.step and sensible)

@@ -19,6 +19,7 @@ from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
+from strainwave.parameters import plain
 from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
@@ -162,7 +163,8 @@ class MotionCandidate(ComparedByFields):
 
 def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> MotionCandidate:
     """Fit a model as nearly as comparisons need, from where it starts."""
-    known = {path: prior for path, prior in {**priors, **by_full_band(model)}.items() if path in model.free}
+    before = {plain(path): prior for path, prior in priors.items()}
+    known = {**{path: before[plain(path)] for path in model.free if plain(path) in before}, **by_full_band(model)}
     asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
     problem = problem_of(asked, model.drive, [model.log], [None])
     x = problem.solve(problem.start(), problem.first_weights(), MAX_RELATIVE_COST, trials=MAX_STEPS)

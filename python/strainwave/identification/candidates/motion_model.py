@@ -29,8 +29,8 @@ class MotionModel(ComparedByFields):
         drive: from which a fit starts
         free: paths of the numbers that are fitted
         ties: numbers that follow others, by path
-        one_speed: size of the speed at which alone friction was measured [rad/s]; 0 if the record has several. The viscous
-            part is then the start set's share of the friction at that speed, and is not fitted
+        one_speed: size of the speed at which alone friction was measured [rad/s]; 0 if the record has several. Only the sum of
+            Coulomb and viscous friction is determined then
         of_full_band: paths of free numbers that the pass band of the log does not contain
     """
 

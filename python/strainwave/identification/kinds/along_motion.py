@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
-from strainwave.identification.candidates.motion import bands, fit_motion
+from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT, LOSSES, MotionModel, sliding
+from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
 from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
 from strainwave.identification.candidates.rotor import (
     SHARE_OF_UNKNOWN_ROTOR,
@@ -36,6 +36,7 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.determined import friction_at
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -52,8 +53,6 @@ from strainwave.statistics.determined_sum import DeterminedSum
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
-SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
-MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
 DETENT, DEPTH = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
@@ -290,6 +289,8 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
         path = plain(estimate.path)
+        if best.model.one_speed and path in (COULOMB, VISCOUS):
+            continue
         law = encoder if path == "load.gravity_phase" else ""
         turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
         own = max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0), turned * unknown
@@ -308,7 +309,7 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         elif path.startswith(DETENT) and not best.log.both_ways:
             found = replace(found, why=ONE_WAVE)
         elif path.startswith(DEPTH) and best.model.one_speed:
-            share = _spread_of_split(best.model) * best.model.one_speed / best.model.law.coulomb
+            share = prior_of_viscous(best.model.law, best.model.one_speed)[1] * best.model.one_speed / best.model.law.coulomb
             found = replace(found, sigma=float(np.hypot(sigma, share * found.value)), why=DEPTH_BY_SET, in_combination=True)
         elif is_uncertain(found.value, abs(turned) * unknown):
             found = replace(found, why=OF_ROTOR)
@@ -318,32 +319,33 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
             found = replace(found, why="the log determines no gravity")
-        if best.model.one_speed and path == COULOMB:
-            for each in _at_one_speed(found, best, taken.relative):
-                yield each.in_current() if in_current else each
-            continue
+        yield found.in_current() if in_current else found
+    for each in _at_one_speed(best, spread, apart) if best.model.one_speed else ():
+        found = each.resting_on(taken.relative)
         yield found.in_current() if in_current else found
 
 
-def _spread_of_split(model: MotionModel) -> float:
-    """Return the standard deviation of the viscous friction of a record at one speed, by the start set [N.m.s/rad]."""
-    law = model.law
-    at_speed = float(law.steady(model.one_speed))
-    return max(SPREAD_OF_VISCOUS * float(law.viscous), MIN_SPREAD_OF_SHARE * at_speed / model.one_speed)
+def _at_one_speed(best: MotionCandidate, spread: Mapping[str, float], apart: Mapping[str, float]) -> Iterator[FileEstimate]:
+    """Yield the friction at the one speed of a record, and Coulomb and viscous friction, with the spread of the start set.
 
-
-def _at_one_speed(coulomb: FileEstimate, best: MotionCandidate, relative: float) -> Iterator[FileEstimate]:
-    """Yield the friction at the one speed of a record, and how the start set splits it into Coulomb and viscous friction."""
-    speed, viscous = best.model.one_speed, float(best.model.law.viscous)
-    at_speed = friction_at(speed, coulomb.value + speed * viscous, coulomb.sigma)
-    both = DeterminedSum((COULOMB, VISCOUS), (1.0, speed), at_speed.value, at_speed.sigma, coulomb.unit)
-    why = f"determined together, at the one speed of the record: {both}; the split is that of the start set"
-    spread = max(SPREAD_OF_VISCOUS * viscous, MIN_SPREAD_OF_SHARE * at_speed.value / speed)
-    together = not at_speed.why
-    own = replace(
-        coulomb, sigma=float(np.hypot(coulomb.sigma, spread * speed)), why=coulomb.why or why, in_combination=together
+    Args:
+        best: the model
+        spread, apart: standard deviations by blocks of the record, and by models that predict as well, by path
+    """
+    speed, law, fitted = best.model.one_speed, sliding(best.fit.parts[0].model), best.fit
+    weights = np.array([{COULOMB: 1.0, VISCOUS: speed}.get(plain(each.path), 0.0) for each in fitted.estimates])
+    acting = np.flatnonzero(weights)
+    variance = float(weights[acting] @ fitted.covariance[np.ix_(acting, acting)] @ weights[acting])
+    own = max(float(np.sqrt(max(variance, 0.0))), spread[STEADY])
+    at_speed = friction_at(speed, float(law.coulomb + speed * law.viscous), float(np.hypot(own, apart[STEADY])))
+    if not best.log.both_ways:
+        at_speed = replace(at_speed, sigma=np.inf, why=ONE_WAY)
+    yield at_speed
+    both = DeterminedSum((COULOMB, VISCOUS), (1.0, speed), at_speed.value, at_speed.sigma, "N.m")
+    why = at_speed.why or (
+        f"determined together, at the one speed of the record: {both}; the split is that of the start set within its spread"
     )
-    yield at_speed if not coulomb.why else replace(at_speed, why=coulomb.why)
-    yield own
-    split = FileEstimate(VISCOUS, "N.m.s/rad", viscous, spread, "", own.why, in_combination=together)
-    yield split.resting_on(relative)
+    together, (_, split) = not at_speed.why, prior_of_viscous(law, speed)
+    coulomb = float(np.hypot(at_speed.sigma, split * speed))
+    yield FileEstimate(COULOMB, "N.m", float(law.coulomb), coulomb, "", why, in_combination=together)
+    yield FileEstimate(VISCOUS, "N.m.s/rad", float(law.viscous), split, "", why, in_combination=together)
