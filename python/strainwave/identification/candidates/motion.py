@@ -27,10 +27,11 @@ from strainwave.identification.candidates.motion_model import (
     INPUT,
     MotionModel,
     bristled,
-    with_another_friction_at_low_speed,
     with_curved_viscous_part,
     with_delay,
+    with_higher_friction_at_low_speed,
     with_loss_under_load,
+    with_lower_friction_at_low_speed,
     without,
 )
 from strainwave.identification.candidates.plain import (
@@ -279,7 +280,10 @@ def _without_viscous(best: MotionCandidate) -> MotionModel | None:
 # ---- Parts that may be added -------------------------------------------------------------------------------------------
 
 Part = Callable[[MotionModel], MotionModel | None]
-PARTS: tuple[Part, ...] = (with_delay, with_curved_viscous_part, with_another_friction_at_low_speed, with_loss_under_load)
+PARTS: tuple[Part, ...] = (
+    with_delay, with_curved_viscous_part, with_higher_friction_at_low_speed, with_lower_friction_at_low_speed,
+    with_loss_under_load,
+)  # fmt: skip
 
 
 def _is_sensible(candidate: MotionCandidate) -> bool:

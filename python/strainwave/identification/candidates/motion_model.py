@@ -120,12 +120,22 @@ def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
     )
 
 
-def with_another_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
-    """Return the model with friction that is higher, or lower, at low speed."""
+def with_higher_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
+    """Return the model with friction that falls with the speed at first; the fit may make it rise."""
+    return _with_another_friction_at_low_speed(model, 1.3)
+
+
+def with_lower_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
+    """Return the model with friction that rises with the speed at first; the fit may make it fall."""
+    return _with_another_friction_at_low_speed(model, 0.7)
+
+
+def _with_another_friction_at_low_speed(model: MotionModel, share: float) -> MotionModel | None:
+    """Return the model with a Stribeck torque whose fit starts with a share of Coulomb's torque at rest [1]."""
     law = model.law
     if not isinstance(law, friction.Coulomb) or model.one_speed:
         return None
-    falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
+    falling = friction.Stribeck(coulomb=law.coulomb, breakaway=share * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
     ties = {path: other for path, other in model.ties.items() if path != model.path_of("breakaway")}
     return replace(model, ties=ties).having("another friction at low speed", falling, "breakaway", "stribeck_speed")
 
