@@ -49,7 +49,7 @@ class Contents(Protocol):
     def validation(self) -> tuple[Validation, ...]: ...
 
 
-MAX_GEAR_BYTES = 2**21  # of a gear file: a covariance of 200 parameters takes half of it
+MAX_TOML_BYTES = 2**21  # of a gear or mapping file: a covariance of 200 parameters takes half of it
 _TEXTS = ("name", "maker", "note")
 _PART_OF_KEY = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|(?<![\w-])[\w-]++)[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?:{_PART_OF_KEY}\.[ \t]*+){{{MAX_DEPTH}}}")
@@ -176,7 +176,7 @@ def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
 def document(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file; `ValueError` if it cannot be read, is no TOML or is empty."""
     try:
-        text = read_regular(path, MAX_GEAR_BYTES).decode("utf-8-sig")
+        text = read_regular(path, MAX_TOML_BYTES).decode("utf-8-sig")
         if _LONG_KEY.search(text):
             raise RefusedFile(f"contains a key of more than {MAX_DEPTH} parts")  # which tomllib reads in quadratic memory
         content = tomllib.loads(text)
