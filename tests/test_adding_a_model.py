@@ -44,6 +44,8 @@ TRIED = "identification/candidates/"  # where a fit of each model starts that is
 DIVIDED = "whose Coulomb and viscous friction a set divides where a file determines their sum"
 ALONE = "that of a gear whose log determines no load or motor"
 WRITTEN = "export/"  # another program has a place for some models only
+LINEAR = "what has no linear model, and what takes its place"
+SHAFTS_ALONE = "angles of both shafts show neither bodies within the gear nor a stiffness that varies"
 ELSEWHERE = {
     "ModelFeedforward": {
         "parameter_drive.hpp": BOUND_TO_ANY,
@@ -88,12 +90,17 @@ ELSEWHERE = {
         "diagnose/actuator_ramp.py": SERIES,
     },
     "Lumped": {
+        "analysis/output_torque.py": SHAFTS_ALONE,
         "gear.hpp": DEFAULT,
         "native/kernels.py": "bodies within the gear make a step too long to be inlined",
         "diagnose/actuator_ramp.py": SERIES,
         "identification/kinds/between_encoders.py": "a log does not tell the springs of stages apart",
     },
-    "Constant": {"gear.hpp": DEFAULT, "structure/staged.hpp": "what its springs do where nothing else is said"},
+    "Constant": {
+        "analysis/output_torque.py": SHAFTS_ALONE,
+        "gear.hpp": DEFAULT,
+        "structure/staged.hpp": "what its springs do where nothing else is said",
+    },
     "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Viscous": {
         "identification/dynamics/log.py": LOG,
@@ -135,6 +142,7 @@ ELSEWHERE = {
     },
     "PID": {"control/sampled.hpp": "what it samples by default"},
     "Sampled": {
+        "analysis/continuous.py": LINEAR,
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/control.cpp": BOUND_TO_ANY,
         "native/static_type.py": "whose law and compensation are parameters of its type",
@@ -146,14 +154,18 @@ ELSEWHERE = {
     },
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
     "Ideal": {
+        "analysis/continuous.py": LINEAR,
         "sensor/delayed.hpp": "what it delays by default",
         "sensor/noisy.hpp": "what it adds noise to by default",
         "sensor/quantised.hpp": "what it reads in steps by default",
     },
     "BristleObserver": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Delayed": {"parameter_drive.hpp": BOUND_TO_ANY},
-    "Noisy": {"parameter_drive.hpp": BOUND_TO_ANY},
-    "Quantised": {"parameter_drive.hpp": BOUND_TO_ANY},
+    "Encoder": {
+        "analysis/continuous.py": LINEAR,
+    },
+    "Noisy": {"analysis/continuous.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
+    "Quantised": {"analysis/continuous.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {

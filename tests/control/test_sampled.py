@@ -166,7 +166,5 @@ def test_what_is_wrong_is_refused() -> None:
         sw.control.Sampled(law=LAW, period=1e-3, delay=2e-3)
     with pytest.raises(TypeError, match=r"sampled\.law must be one of OpenLoop, PID"):
         sw.control.Sampled(law=sw.control.Sampled(law=LAW))  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"linearise needs a controller that acts all the time"):
-        sw.linearise(drive())
     with pytest.raises(ValueError, match=r"acts 2e\+11 times in 0\.2 s"):
         sw.simulate(drive(period=1e-12), COMMAND)

@@ -37,6 +37,11 @@ class ErrorBound:
         typical: by the numbers of the set [rad]
         bound: that a gear does not exceed, by the maker's bounds and the spreads or standard deviations of the set [rad]
         why: of the bound, in words
+
+    >>> import strainwave as sw
+    >>> kinematic, *_ = sw.positioning_error("csg-20-100")
+    >>> kinematic.name, 4.0 < 206265.0 * kinematic.bound < 60.0  # arc seconds
+    ('kinematic error, peak to peak', True)
     """
 
     name: str

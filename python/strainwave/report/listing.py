@@ -11,7 +11,7 @@ import numpy as np
 from strainwave import Drive, arguments
 from strainwave.analysis.agreement import Agreement
 from strainwave.analysis.difference import Difference
-from strainwave.analysis.linear import Linearisation, linearise, modes
+from strainwave.analysis.linear import linearise, modes
 from strainwave.analysis.positioning_error import positioning_error
 from strainwave.analysis.strokes import stroke_within, strokes_apart
 from strainwave.files.described import parameters, parts
@@ -238,27 +238,16 @@ def _closed_loop(drive: Drive) -> Row:
     """Return how the drive vibrates about its rest, with its controller, friction and damping."""
     name = "at rest, under its controller"
     try:
-        linear, taken = _linear(drive)
+        linear = linearise(drive)
     except ValueError as error:
         return name, f"not determined: {error}", ""
     stuck = " and ".join(side for side in ("input", "output") if f"{side}_speed" not in linear.states)
     fastest = max((abs(pole) for pole in linear.poles.tolist()), default=0.0)
     pairs = [pole for pole in linear.poles.tolist() if pole.imag > NO_FREQUENCY * fastest]
     damping = ", ".join(f"{_rounded(-pole.real / abs(pole)):.3g}" for pole in pairs)
-    remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck), *taken)
+    notes = [note for note in linear.notes if not note.startswith(("meter", "thermal"))]  # which are not seen in a vibration
+    remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck), *notes)
     return name, _frequencies([abs(pole) for pole in pairs]), "; ".join(filter(None, remarks))
-
-
-def _linear(drive: Drive) -> tuple[Linearisation, list[str]]:
-    """Return the drive about its rest, without parts that have no linear model, and the assumptions made for it in words."""
-    default, law, taken = Drive(), getattr(drive.control, "law", None), []
-    plain = drive.replace(control=law or drive.control, thermal=default.thermal, meter=default.meter)
-    if law:
-        taken.append("controller taken as acting all the time")
-    try:
-        return linearise(plain), taken
-    except ValueError:
-        return linearise(plain.replace(sensors=default.sensors)), [*taken, "sensors taken as ideal"]
 
 
 def _rounded(ratio: float) -> float:

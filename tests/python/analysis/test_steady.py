@@ -344,6 +344,7 @@ def test_a_free_drive_stays_where_it_is() -> None:
 # Refusals
 
 
+@pytest.mark.slow("analysis")
 def test_what_has_no_equilibrium_says_why() -> None:
     torque_source = sw.motor.DC(resistance=1.0, back_emf=0.0, torque_constant=0.1, inertia=1e-4)
     with pytest.raises(ValueError, match=r"cannot rest at command = 1 V.*nothing limits its speed"):

@@ -103,14 +103,17 @@ def test_a_sampled_controller_is_told_as_its_law_and_meter_and_heat_do_not_matte
     texts = [listing(sw.GearSet.of(each, name="x", source="y")) for each in (plain, sampled)]
     plainly, acting = (re.split(r"\s{2,}", line_of(text, "at rest, under its controller"))[2:] for text in texts)
     assert plainly[0].endswith("Hz)")
-    assert acting == [plainly[0], f"{plainly[1]}; controller taken as acting all the time"]
+    assert acting == [
+        plainly[0],
+        f"{plainly[1]}; control: sampling every 0.001 s with a delay of 0 s is left out, as is a compensation",
+    ]
 
 
-def test_sensors_that_have_no_linear_model_are_taken_as_ideal() -> None:
+def test_counts_of_a_sensor_are_left_out() -> None:
     counting = sw.Sensors(output_angle=sw.sensor.Encoder(counts=1000))
     texts = [listing(sw.GearSet.of(each, name="x", source="y")) for each in (DRIVE, DRIVE.replace(sensors=counting))]
     ideal, counted = (line_of(text, "at rest, under its controller") for text in texts)
-    assert counted == f"{ideal}; sensors taken as ideal"
+    assert counted == f"{ideal}; sensors.output_angle: noise, steps and counts are left out"
 
 
 def test_turning_freely_is_no_vibration() -> None:

@@ -103,7 +103,7 @@ def firmware(
     >>> law = sw.control.PositionSpeed(position_gain=30.0, speed_proportional=0.1, speed_integral=2.0)
     >>> drive = sw.Drive(control=sw.control.Sampled(law=law))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     firmware(drive, folder).state, firmware(drive, folder, part="gear.stiffness").outputs
+    ...     firmware(drive, folder).state[:4], firmware(drive, folder, part="gear.stiffness").outputs
     (('law_speed_integral', 'actuation', 'pending', 'until_sample'), ('torque', 'tangent'))
     """
     found = step(_drive_with(drive, part), part, period)

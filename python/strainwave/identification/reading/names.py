@@ -72,7 +72,8 @@ OTHERS = (
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
     "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
-DEVIATIONS = {"error", "err", "fehler", "deviation", "abweichung", "position", "positioning", "angle", "angular"}
+ERRORS = {"error", "err", "fehler", "deviation", "abweichung"}
+DEVIATIONS = ERRORS | {"position", "positioning", "angle", "angular"}
 FINE_UNITS = ("arcsec", "arcmin", "\u2033", "\u2032")  # in which a deviation is one of the position
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
@@ -136,7 +137,7 @@ def meaning(label: Label) -> Meaning | None:
     words = words_of(name)
     if unit is not None and measures(unit, UNITS["vibration"]):
         return Meaning("vibration", unit=unit)
-    if unit in FINE_UNITS and set(words) <= DEVIATIONS:
+    if unit in FINE_UNITS and set(words) <= DEVIATIONS and ERRORS & set(words):
         return Meaning("twist", unit=unit)
     if any(word in OTHERS for word in words):
         return None
