@@ -117,7 +117,7 @@ mine.save("elbow.toml")
 if find_spec("fmpy") and shutil.which("c++"):
     import fmpy
 
-    ((name, content),) = sw.export.fmu(mine).files.items()
+    name, content = next(each for each in sw.export.fmu(mine).files.items() if each[0].endswith(".fmu"))
     Path(name).write_bytes(content)
     start = {"command": 0.005}
     block = fmpy.simulate_fmu(name, stop_time=0.5, output_interval=1e-3, start_values=start, output=["output_angle", "torque"])
