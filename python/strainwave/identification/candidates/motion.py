@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, friction, loads
+from strainwave.identification.candidates.confirmed import refit
 from strainwave.identification.candidates.motion_candidate import (
     MAX_ERROR,
     MotionCandidate,
@@ -112,9 +113,18 @@ def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
 
 
 def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
-    """Return the model without the parts that the record does not show, and with those that make it predict better."""
+    """Return the model without the parts that the record does not show, and with those that make it predict better.
+
+    What varies over the angle hides smaller parts, and may stand for a part that is missing: it comes first, or last.
+    """
     best = _with(best, search.tried(_with_own_split(best.model)))
-    best = search.rippled(best)  # first, as what varies over the angle hides smaller parts
+    rippled = search.rippled(best)
+    found = [_with_parts(search, each) for each in ([best] if rippled is best else [rippled, best])]
+    return min(found, key=lambda each: each.error)
+
+
+def _with_parts(search: _Search, best: MotionCandidate) -> MotionCandidate:
+    """Return the model without and with parts, those over the angle last."""
     for less in (_without_gravity, _without_inertia, _without_viscous):
         best = search.reduced(best, less(best))
     best = search.rippled(search.grown(best, list(PARTS)))
@@ -189,9 +199,16 @@ class _Search:
         return best
 
     def rippled(self, best: MotionCandidate) -> MotionCandidate:
-        """Return the model with the waves over the angle that predict better, in the pass band or in the full band."""
+        """Return the model with the waves over the angle that predict better, in the pass band or in the full band.
+
+        Waves of the full band are estimated from all of the record: a fit without its last stretch must predict it better, too.
+        """
         found = self.tried(with_ripple(best.model))
-        return found if found is not None and (found.explains_more_than(best) or found.is_better_than(best)) else best
+        if found is None or not (found.explains_more_than(best) or found.is_better_than(best)):
+            return best
+        if not found.model.of_full_band:
+            return found
+        return found if refit(found)[0].error < refit(best)[0].error else best
 
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
         """Return the best model; if plain least squares predicts clearly better, the best of those better at the end."""
