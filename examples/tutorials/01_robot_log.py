@@ -150,7 +150,7 @@ for parameter in found.parameters:
     print(f"{estimate.path:30} {estimate.value:10.4g} {truth[estimate.path]:9.4g} {distance:10.1f}")
 
 # %% [markdown]
-# Four numbers of five are within two standard deviations. **Viscous friction is 5 % too low**, 2.3 standard deviations. The
+# Coulomb friction is 2 % too high, 2.1 standard deviations. **Viscous friction is 5 % too low**, 3.8 standard deviations. The
 # cause is the rate of the log, 100 samples a second: at a reversal the friction changes its sign between two of them. The
 # same joint recorded at 250 Hz gives 2.91e-4 ± 0.10e-4 N·m·s/rad. So **record faster** if you can, or [add a table of
 # friction](05_which_friction.md).

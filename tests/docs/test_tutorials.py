@@ -19,11 +19,12 @@ MAX_BYTES = 150_000  # of a file that belongs to a tutorial
 
 
 def robot_log(page: str) -> None:
-    """Viscous friction is too low by more than two standard deviations, and all other numbers are not."""
+    """At 100 samples a second friction is off, as the text says; inertia and gravity are not."""
     distances = dict(re.findall(r"^((?:gear|load)\.\S+) +\S+ +\S+ +(-?\d+\.\d)$", page, re.MULTILINE))
     assert len(distances) == 5
-    assert [path for path, distance in distances.items() if abs(float(distance)) > 2.0] == ["gear.friction_input.viscous"]
-    assert -3.0 < float(distances["gear.friction_input.viscous"]) < -2.0
+    coulomb, viscous, *others = (float(distance) for distance in distances.values())
+    assert max(map(abs, others)) < 2.0
+    assert (2.0 < coulomb < 2.5, -4.0 < viscous < -3.5) == (True, True)
 
 
 def wrong_assumptions(page: str) -> None:
@@ -55,7 +56,7 @@ def which_friction(page: str) -> None:
     """The law with a fall at low speed is the first; without slow speeds it is not; the numbers are those of the truth."""
     assert re.search(r"cost \[µs\]\n  with a fall at low speed +4 ", page)
     assert "law taken: Coulomb and viscous\n" in page
-    assert "friction_input.stribeck_speed is not determined" in page
+    assert re.search(r"determined only together: .*friction_input\.breakaway by .*friction_input\.stribeck_speed by", page)
     known = re.findall(r" (\S+) ± (\S+) +truth (\S+) ", page)
     assert len(known) == 4
     assert [row for row in known if abs(float(row[0]) - float(row[2])) > 2.0 * float(row[1])] == []

@@ -105,15 +105,6 @@ def solved(columns: Array, target: NDArray[Any]) -> NDArray[Any]:
     return np.asarray((coefficients.T / size).T)
 
 
-def without_rounding(columns: Array) -> Array:
-    """Return the columns less the directions that are not separated, so that no step is taken along them, as in `solved`."""
-    size = np.linalg.norm(columns, axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    left, singular, directions = np.linalg.svd(columns / size, full_matrices=False)
-    live = singular > MIN_SINGULAR * singular.max(initial=0.0)
-    return columns if live.all() else np.asarray((left[:, live] * singular[live]) @ directions[live] * size)
-
-
 def normal_inverse(columns: Array) -> Array:
     """Return the inverse of A' A of columns A: the covariance of their coefficients for noise of variance 1, shape (n, n).
 

@@ -63,6 +63,7 @@ MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
+MIN_WAVE_SIGMA = 2.0  # standard deviations of a wave over the angle: the whole fit makes a smaller one vanish
 SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
 SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
 MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
@@ -118,9 +119,11 @@ def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     What varies over the angle hides smaller parts, and may stand for a part that is missing: it comes first, or last.
     """
     best = _with(best, search.tried(_with_own_split(best.model)))
-    rippled = search.rippled(best)
-    found = [_with_parts(search, each) for each in ([best] if rippled is best else [rippled, best])]
-    return min(found, key=lambda each: each.error)
+    rippled, plain = search.rippled(best), _with_parts(search, best)
+    if rippled is best:
+        return plain
+    first = _with_parts(search, rippled)
+    return first if first.explains_more_than(plain) or first.is_better_than(plain) else plain
 
 
 def _with_parts(search: _Search, best: MotionCandidate) -> MotionCandidate:
@@ -205,6 +208,9 @@ class _Search:
         """
         found = self.tried(with_ripple(best.model))
         if found is None or not (found.explains_more_than(best) or found.is_better_than(best)):
+            return best
+        sizes = [each for each in found.fit.estimates if "amplitude[" in each.path or "detent_torque[" in each.path]
+        if any(MIN_WAVE_SIGMA * each.sigma > abs(each.value) for each in sizes):
             return best
         if not found.model.of_full_band:
             return found

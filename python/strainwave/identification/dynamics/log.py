@@ -135,9 +135,12 @@ def _set_in_motion(log: DriveLog, drive: Drive) -> Drive:
 
 
 def _moves(log: DriveLog, drive: Drive) -> bool:
-    """True if a drive moves under the command of the log."""
+    """True if a drive moves under the command of the log; False if its simulation diverges."""
     zeros = np.array([nuisance.start for nuisance in log.nuisances])
-    return not log.stands_still(log.predict(drive, [], zeros)[0])
+    try:
+        return not log.stands_still(log.predict(drive, [], zeros)[0])
+    except (ValueError, FloatingPointError):
+        return False
 
 
 def _halved(law: Any) -> Any:

@@ -17,7 +17,7 @@ from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, cu
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
 from strainwave.identification.fitting.waves import Waves
 from strainwave.statistics.covariance import posterior_of
-from strainwave.statistics.linear_fit import solved, without_rounding
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
@@ -25,7 +25,6 @@ FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
 MIN_NOISE = 1e-12  # of the size of a channel: no measurement has less noise
 MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost smaller; one with less is the last
 MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
-MIN_ROWS = 100  # of a triangle, with zeros below: SciPy takes singular values for zero by the rounding of as many
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 
 
@@ -272,28 +271,22 @@ class Problem:
             return waves.unknowns(parts)
 
         squared = isinstance(loss, Squared)
-        samples, priors, rows_of_squares = len(lengths), len(right), max(MIN_ROWS, len(free) + 1)
+        samples, priors = len(lengths), len(right)
 
         @lru_cache(1)  # solvers ask for residuals and derivatives of a point one after the other
         def linearised(part: bytes) -> Array:
-            """Return derivatives and residuals as columns; of squares their triangle, whose columns have the same products."""
+            """Return derivatives and residuals as columns."""
             x = with_free(np.frombuffer(part))
             of_data = [-each.rows * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
             left = np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
             slopes = waves.slopes(np.concatenate((self.jacobian(x, weights), of_priors)), x)[:, free]
-            columns = np.column_stack((slopes, left))
-            if not squared:
-                return columns
-            triangle = np.zeros((rows_of_squares, len(free) + 1))
-            triangle[: len(free) + 1] = np.linalg.qr(columns, mode="r")
-            triangle[:, :-1] = without_rounding(triangle[:, :-1])
-            return triangle
+            return np.column_stack((slopes, left))
 
         def residuals(part: Array) -> Array:
             try:
                 return linearised(part.tobytes())[:, -1]
             except (ValueError, FloatingPointError):  # out of the domain, or diverged: SciPy takes a quarter of such a step
-                return np.full(rows_of_squares if squared else samples + priors, np.inf)
+                return np.full(samples + priors, np.inf)
 
         def jacobian(part: Array) -> Array:
             """Return the derivatives where a step ended; SciPy would go on until rounding, or a kink, made its steps fail."""
