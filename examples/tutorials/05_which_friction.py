@@ -90,8 +90,8 @@ for each in sw.combinations(forced):
 
 # %% [markdown]
 # `identify` takes a simpler law. If you fit the law with a fall to these rows, `sw.combinations` reports that the numbers of
-# the fall are determined only together. Both are right: the rows contain no low speeds. So **record slow speeds if your joint moves
-# slowly**.
+# the fall are determined only together. Both are right: the rows contain no low speeds. So **record slow speeds if your
+# joint moves slowly**.
 #
 # **A table does not separate laws that differ before sliding.** `LuGre` has bristles that bend before the contact slides. At
 # constant speed it is the law with a fall:
