@@ -59,7 +59,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a recording.
+    """Outcome of a recording at its first commands.
 
     Attributes:
         commands: that were needed
@@ -165,9 +165,9 @@ def suggested(words: Sequence[str], message: str, case: Case) -> list[str] | Non
     if not commands:  # options in the sentence, which a person adds to the command
         firsts = re.sub(r"(?:,|\() ?or (?:name columns, as )?--(?:column|joint) \S+|or --joint all", "", message)
         options = list(dict.fromkeys(re.findall(r"--(?:joint|column|unit|constant|side) (?:'[^']*'|[^\s,;)]+)", firsts)))
-        told = [each for each in options if any(word in f"{each} " for word in case.knows)] or options[:1]
+        answers = [each for each in options if any(word in f"{each} " for word in case.knows)] or options[:1]
         try:
-            return [*words, *shlex.split(" ".join(told))] if told else None
+            return [*words, *shlex.split(" ".join(answers))] if answers else None
         except ValueError:  # an option in half a quotation
             return None
     known = [each for each in commands if all(word in f"{each} " for word in case.knows)]

@@ -22,7 +22,7 @@ TYPICAL_SHARE = (
     0.5  # of the maker's bound, that an assumed hysteresis or kinematic error of a set is: docs/reference/catalogue.md
 )
 ASSUMED_SPREAD = 0.3  # of a stiffness without a stated spread
-SIGMAS = 3.0  # standard deviations of an identified number within its bound
+BOUND_SIGMA = 3.0  # standard deviations of an identified number, up to which its bound reaches
 ANGLES_PER_TURN = 3600  # of the input
 LOST_MOTION_SHARE = 0.04  # of the rated torque, either way, between which makers state the lost motion
 MAX_LOAD = 1e9  # N.m
@@ -133,7 +133,7 @@ def _factor(gear_set: GearSet, part: str) -> tuple[float, str]:
     sources = {path: entry for path, entry in gear_set.sources.items() if path.partition("[")[0] in _names(numbers)}
     deviations = _relative_deviations(gear_set, numbers)
     if deviations:
-        spread = SIGMAS * max(deviations)
+        spread = BOUND_SIGMA * max(deviations)
         return 1.0 + spread, f"{part.replace('_', ' ')} is identified: three standard deviations, {100.0 * spread:.2g} %"
     if part != "stiffness" and any(entry.assumed for entry in sources.values()):
         return 1.0 / TYPICAL_SHARE, f"{part.replace('_', ' ')} is assumed: a typical gear has half of the maker's bound"

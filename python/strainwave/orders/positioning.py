@@ -21,7 +21,7 @@ MIN_ROWS = 8  # of positions
 MIN_TARGETS = 3  # approached from both sides
 APPROACHES_OF_STANDARD = 5  # of each target in each direction
 FAR_SHARE = 0.5  # of the longest way since a reversal: beyond it a first estimate takes the lost motion for passed
-PASSES = 5  # of the estimate, in which rows within the lost motion are left out
+MAX_ROUNDS = 5  # of the estimate: each leaves out the rows that lie within the lost motion of the one before
 MAX_OFF_TARGET = 0.25  # steps, between approaches of one target
 OUTPUT_ORDERS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
 INPUT_ORDERS = (1.0, 2.0, 4.0)
@@ -99,7 +99,7 @@ def positioning(commanded: ArrayLike, measured: ArrayLike, *, ratio: float | Non
     sense, way = _approach(moved)
     target = np.round(wanted / (2.0 * MAX_OFF_TARGET * float(np.median(steps)))).astype(np.int64)
     deviation, lost, kept = reached - wanted, 0.0, way > FAR_SHARE * way.max()
-    for _ in range(PASSES):
+    for _ in range(MAX_ROUNDS):
         lost = float(np.mean(_differences(target, sense, deviation, kept) or [nan]))
         last, kept = kept, (sense != 0) & (way > max(lost, 0.0) * (1.0 + 1e-9)) if np.isfinite(lost) else sense != 0
         if np.array_equal(last, kept):

@@ -232,7 +232,7 @@ def test_files_of_one_channel_with_a_time_of_their_own(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("named", [True, False])
 def test_files_of_one_quantity_with_a_time_and_named_joints(tmp_path: Path, named: bool) -> None:
-    """As of TIAGo. The names of the columns contain the quantity, or that of the file does."""
+    """Files as TIAGo writes them: the names of the columns contain the quantity, or the name of the file does."""
     quantities = {"position": (ANGLE, "rad"), "velocity": (SPEED, "rad/s"), "effort": (TORQUE, "Nm")}
     for quantity, (values, unit) in quantities.items():
         end = f"_{quantity}" if named else ""
