@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 
 ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:include filename="{folder}/elbow.xacro"/>
-  <link name="upper_arm"/><link name="forearm"/>
+  <link name="upper_arm"/>
+  <link name="forearm"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
   <xacro:elbow_joint parent="upper_arm" child="forearm" lower="-2.6" upper="2.6" xyz="0 0 0.3"/>
   <xacro:elbow_ros2_control plugin="mine/System"/>
 </robot>"""
@@ -27,22 +28,24 @@ def test_parameters_have_the_numbers_of_the_joint():
 
 
 def test_macros_make_a_joint_of_a_robot(tmp_path):
-    """By xacro and urdfdom, as a robot's description includes the file."""
-    xacro, urdf = pytest.importorskip("xacro"), pytest.importorskip("urdf_parser_py.urdf")
+    """By xacro and MuJoCo's reader of robots, as a robot's description includes the file."""
+    xacro, mujoco = pytest.importorskip("xacro"), pytest.importorskip("mujoco")
     gear_set = sw.GearSet.read("csg-20-100")
     found = sw.export.ros2(gear_set, name="elbow")
     (tmp_path / "elbow.xacro").write_text(found.files["elbow.xacro"])
     (tmp_path / "arm.xacro").write_text(ROBOT.format(folder=tmp_path))
     text = xacro.process_file(str(tmp_path / "arm.xacro")).toxml()
-    joint = urdf.URDF.from_xml_string(text).joint_map["elbow"]
-    assert (joint.parent, joint.child, joint.origin.xyz) == ("upper_arm", "forearm", [0.0, 0.0, 0.3])
-    assert (joint.limit.lower, joint.limit.upper) == (-2.6, 2.6)
-    assert joint.limit.effort == pytest.approx(gear_set.ratings["peak_torque"].value)
-    assert joint.limit.velocity * abs(gear_set.gear.kinematics.ratio) == pytest.approx(
-        3500.0 * np.pi / 30.0
-    )  # average input speed of the ratings
-    assert joint.dynamics.friction == found.numbers["frictionloss"][0]
-    (system,) = ElementTree.fromstring(text).findall("ros2_control")
+    model = mujoco.MjModel.from_xml_string(text)
+    joint, forearm = model.joint("elbow"), model.body("forearm")
+    assert joint.bodyid == forearm.id and forearm.pos.tolist() == [0.0, 0.0, 0.3]
+    assert joint.range.tolist() == [-2.6, 2.6]
+    peak_torque = gear_set.ratings["peak_torque"].value
+    assert model.jnt_actfrcrange[joint.id] == pytest.approx([-peak_torque, peak_torque])
+    assert model.dof_frictionloss[joint.dofadr] == found.numbers["frictionloss"][0]
+    robot = ElementTree.fromstring(text)
+    speed = float(robot.find("joint/limit").get("velocity")) * abs(gear_set.gear.kinematics.ratio)
+    assert speed == pytest.approx(3500.0 * np.pi / 30.0)  # average input speed of the ratings
+    (system,) = robot.findall("ros2_control")
     assert (system.get("type"), system.findtext("hardware/plugin")) == ("system", "mine/System")
     assert float(system.findtext("transmission/joint/mechanical_reduction")) == gear_set.gear.kinematics.ratio
     assert {each.get("name") for each in system.iter("joint")} == {"elbow"}
