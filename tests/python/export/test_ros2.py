@@ -37,7 +37,8 @@ def test_macros_make_a_joint_of_a_robot(tmp_path):
     text = xacro.process_file(str(tmp_path / "arm.xacro")).toxml()
     model = mujoco.MjModel.from_xml_string(text)
     joint, forearm = model.joint("elbow"), model.body("forearm")
-    assert joint.bodyid == forearm.id and forearm.pos.tolist() == [0.0, 0.0, 0.3]
+    assert joint.bodyid == forearm.id
+    assert forearm.pos.tolist() == [0.0, 0.0, 0.3]
     assert joint.range.tolist() == [-2.6, 2.6]
     peak_torque = gear_set.ratings["peak_torque"].value
     assert model.jnt_actfrcrange[joint.id] == pytest.approx([-peak_torque, peak_torque])
