@@ -79,7 +79,9 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive, regressors=file.regressors)
     if fit_plain(log, drive).sense < 0.0:
-        remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
+        of_output = drive.gear.kinematics.ratio < 0.0 and log.effort != "joint_torque"
+        how = "in the sense of the output, which turns against the input" if of_output else "against the motion"
+        remarks.append(f"{log.effort} is counted {how}: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
     log, is_of_speed = along_best_motion(log, recording, drive)

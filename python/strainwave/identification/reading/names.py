@@ -254,6 +254,8 @@ def _without_unit(name: str, of: Quantity | None = None) -> tuple[str, str | Non
         rest = "_".join([*words[:-count], *number]).removesuffix("_in")  # position in rad
         quantity = of or _quantity(words_of(rest), None)[0]
         unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
+        if unit == "C" and quantity in ("time", "temperature"):  # T_C: no time is in coulombs
+            return rest, "degC"
         if quantity is not None and measures(unit, UNITS[quantity]):
             return rest, unit
         if len(unit) > 1 and set(words_of(rest)) <= {*COMMANDED, *NEUTRAL} | DEVIATIONS and measures(unit, "rad"):

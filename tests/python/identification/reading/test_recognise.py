@@ -168,6 +168,16 @@ def test_a_side_that_nothing_determines_is_asked_for(tmp_path: Path) -> None:
     assert "reaches 2865 1/min, so it is at the input" in words_of(recognise(fast))
 
 
+def test_a_speed_a_ratio_faster_than_its_angle_is_that_of_the_motor(tmp_path: Path) -> None:
+    """As servo drives record the angle of the axis beside the speed of the motor."""
+    angle, speed = np.degrees(0.5 * SWING), 80.0 * np.gradient(0.5 * SWING, TIME) * 30.0 / np.pi
+    series = (TIME, angle, speed, np.sign(speed) + 0.01 * angle)
+    names = "Time [s],ActPos [deg],ActVel [rpm],ActTorque [N.m]"
+    found = recognise(write(tmp_path / "servo.csv", names, *series), FileMapping(columns={"input_torque": "ActTorque"}))
+    assert found.columns == {"time": "Time", "output_angle": "ActPos", "input_speed": "ActVel", "input_torque": "ActTorque"}
+    assert "ActVel runs 80 times as fast as ActPos, so it is at the input" in words_of(found)
+
+
 def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "q [rad],dq [rad/s],tau [N.m]", SWING, SWING, SWING)
     found = recognise(path, FileMapping(constants={"rate": 500.0}))
