@@ -149,12 +149,15 @@ class Torsion(Kind):
         )
 
 
-def is_loaded_in_steps(columns: Sequence[Column], mapping: FileMapping) -> bool:
-    """True for a spring that a rig loads in steps, with the time of each: a log has more rows in a second, or turns."""
+def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
+    """True for a spring that a rig loads, with time: a log has more rows in a second, turns, or is softer than any gear."""
     times, angles, torques = (measured(columns, quantity) for quantity in ("time", "angle", "torque"))
     if not times or len(angles) != 1 or len(torques) != 1 or measured(columns, "speed", "current", "voltage"):
         return False
-    return not _exceeds_twist(angles[0], mapping) and in_steps(times[0].si, angles[0].si, torques[0].si)
+    angle, torque = angles[0].si, torques[0].si
+    if _exceeds_twist(angles[0], mapping):
+        return False
+    return in_steps(times[0].si, angle, torque) or (_is_spring(angle, torque) and _is_as_stiff_as_a_gear(angle, torque))
 
 
 def is_series_spring(columns: Sequence[Column]) -> bool:
@@ -202,6 +205,11 @@ def _is_spring(angle: Array, torque: Array) -> bool:
     """True if the torque alternates and follows the angle."""
     alternates = torque.min() < 0.0 < torque.max() and np.ptp(angle) > 0.0
     return bool(alternates and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING)
+
+
+def _is_as_stiff_as_a_gear(twist: Array, torque: Array) -> bool:
+    """True if a torque grows with an angle as at the output of a gear: weight and inertia of no joint are as stiff."""
+    return bool(np.cov(twist, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(twist) and np.ptp(twist) < MAX_TWIST)
 
 
 def _why_output(angle: Column, torque: Column) -> str:

@@ -316,6 +316,12 @@ def test_a_spring_that_is_loaded_in_steps_is_a_torsion_loop_and_a_fast_one_may_b
     assert recognise(columns_of(tmp_path, interval * np.arange(len(twist)), twist, 4.0 * twist)).kind == kind
 
 
+def test_a_fast_record_as_stiff_as_an_output_is_a_torsion_loop(tmp_path: Path) -> None:
+    twist = np.concatenate([np.linspace(a, b, 60) for a, b in ((2e-3, -2e-3), (-2e-3, 2e-3))])
+    loop = 1.5e4 * twist + np.repeat([-0.6, 0.6], 60)
+    assert recognise(columns_of(tmp_path, 0.01 * np.arange(len(twist)), twist, loop)).kind == "torsion"
+
+
 def test_a_slow_log_whose_torque_follows_the_speed_remains_a_log(tmp_path: Path) -> None:
     time = np.arange(300.0)
     angle = 2.0 * np.sin(0.2 * time)
