@@ -21,8 +21,8 @@ UNITS: dict[Quantity, str] = {
 # English, German, French, Spanish and Italian words without accents, and the symbols of textbooks and robots.
 QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "time": (
-        "time", "t", "zeit", "zeitstempel", "uhrzeit", "datum", "date", "datetime", "timestamp", "stamp", "temps", "heure", "tiempo",
-        "hora", "tempo", "ora", "clock", "elapsed",
+        "time", "t", "zeit", "zeitstempel", "uhrzeit", "datum", "date", "datetime", "timestamp", "stamp", "temps", "heure",
+        "tiempo", "hora", "tempo", "ora", "clock", "elapsed",
     ),
     "angle": (
         "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
