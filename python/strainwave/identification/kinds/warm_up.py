@@ -48,7 +48,7 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     why = "" if sure else "the friction does not change with the temperature beyond chance"
     why = ONE_WAY if sure and found.one_way else why
     low, high = slope.interval(0.95)
-    remarks = (
+    remarks: tuple[str, ...] = (
         f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
         f"{_celsius(found.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
         f"with 95 % between {low:.3g} and {high:.3g}",
