@@ -33,6 +33,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.undetermined import with_set_before
+from strainwave.statistics.determined_sum import DeterminedSum
 
 Array = NDArray[np.float64]
 
@@ -293,10 +294,18 @@ def _shared(best: TorsionCandidate, gear: Any, loop: TorsionLoop, friction_measu
         return {f"gear.{estimate.path}": why for estimate in best.fit.estimates}
     if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
         return {}
-    sum_of, ratio = "the loop determines the sum of", abs(loop.input_ratio)
+    ratio, breakaway = abs(loop.input_ratio), "friction_input.breakaway"
+    held = 0.5 * float(np.ptp(loop.friction(gear)))  # at the output
     if isinstance(best.dissipation, InputFriction):
-        why = f"{sum_of} {ratio:g} x friction_input.breakaway and the torque of the hysteresis, which was kept"
-        return {"gear.friction_input.breakaway": why}
-    why = f"{sum_of} the torque of the hysteresis and {ratio:g} x friction_input.breakaway, which was kept"
-    paths = [estimate.path for estimate in best.fit.estimates if estimate.path.startswith("hysteresis.breakaway")]
-    return {f"gear.{path}": why for path in paths}
+        elements = getattr(gear.hysteresis, "breakaway", ())
+        kept = {f"hysteresis.breakaway[{place}]": (1.0 / ratio, f) for place, f in enumerate(elements)}
+    else:
+        kept = {breakaway: (ratio, held / ratio)}
+    paths, factors = tuple(kept), tuple(factor for factor, _ in kept.values())
+    rest = sum(factor * value for factor, value in kept.values())
+    sums = (
+        DeterminedSum((each.path, *paths), (1.0, *factors), each.value + rest, each.sigma, each.unit)
+        for each in best.fit.estimates
+        if each.path.startswith(("hysteresis.breakaway", breakaway))
+    )
+    return {f"gear.{each.paths[0]}": each.with_others for each in sums}
