@@ -157,7 +157,7 @@ def _answer(question: QuestionError) -> list[str]:
     """Print a question. Return the words that answer it, if a person at a terminal chooses some; else none."""
     first, *lines = question.lines(["strainwave", *sys.argv[1:]])
     _print("".join(f"{line}\n" for line in [f"strainwave: {first}", *lines]), sys.stderr)
-    if not (question.answers and sys.stdin.isatty() and sys.stdout.isatty() and sys.stderr.isatty()):
+    if not question.answers or not _is_terminal():
         return []
     try:
         chosen = input(f"answer, 1 to {len(question.answers)}, or Enter to end: ").strip()
@@ -167,6 +167,11 @@ def _answer(question: QuestionError) -> list[str]:
         return [word.replace(NUMBER, input(f"{NUMBER} in {word}: ").strip()) if NUMBER in word else word for word in words]
     except EOFError:
         return []
+
+
+def _is_terminal() -> bool:
+    """True if a person reads the output and can type."""
+    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr))
 
 
 def _misuse(error: Any) -> str:
