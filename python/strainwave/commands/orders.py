@@ -39,6 +39,7 @@ def orders(
     from strainwave.identification.reading.source import MeasurementFile
     from strainwave.messages import one_line
     from strainwave.orders.ripple import MAX_ORDER
+    from strainwave.questions import QuestionError
     from strainwave.report.orders import orders_files, orders_summary
     from strainwave.report.provenance import Provenance
 
@@ -58,6 +59,8 @@ def orders(
             turn(run.path.name)
             try:
                 found.append(_of_file(run, given, ratio, rate, highest))
+            except QuestionError:
+                raise
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
         turn("report")

@@ -11,10 +11,11 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, commanded, measured, names_of
-from strainwave.identification.reading.sides import UndecidedError, pair
+from strainwave.identification.reading.sides import pair
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.orders.positioning import Positioning, positioning
+from strainwave.questions import QuestionError
 
 MIN_INPUT_ORDER = 0.5  # of the input's turn: slower errors are named by the axis alone
 EFFORTS = ("torque", "current", "voltage", "speed", "vibration")
@@ -39,7 +40,7 @@ class PositioningSteps(Kind):
         elif len(error) == 1 and len([*wanted, *reached]) == 1:
             found = {"command": [*wanted, *reached][0], "twist": error[0]}
         else:
-            raise UndecidedError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
+            raise QuestionError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
         return ColumnRoles(self.name, found, "output", (f"its columns are {pair(*found.values())}: {self.title}",))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:

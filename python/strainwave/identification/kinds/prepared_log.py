@@ -19,7 +19,8 @@ from strainwave.identification.experiments.motion_log import MIN_INERTIA, Motion
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
-from strainwave.messages import as_option, listed
+from strainwave.messages import listed
+from strainwave.questions import Answer, QuestionError
 
 RECORDER_BIAS = 0.05  # of the rotor's inertia: a current recorded where a controller has just acted shows it larger (assumed)
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
@@ -178,11 +179,12 @@ def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> moto
     """
     known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
     if missing := [name for name, value in known.items() if value == 0.0]:
-        options = " and ".join(f"--constant {name}=…" for name in missing)
-        raise ValueError(
-            f"a voltage determines the torque of a motor that is known: give {options}; what a controller asks of an amplifier "
-            f"of currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
-        )
+        units = {"resistance": "Ohm, of the motor", "torque_constant": "N.m/A, of the motor"}
+        ways = [
+            Answer("the motor is known", {"constants": dict.fromkeys(missing, 1.0)}, {name: units[name] for name in missing}),
+            Answer("a controller asks it of an amplifier of currents", {"columns": {"current": file.columns["voltage"]}}),
+        ]
+        raise QuestionError("a voltage determines the torque of a motor that is known", ways)
     induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
     return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
 
