@@ -13,6 +13,8 @@ from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.source import measurement_files
 
+from tests.evidence.drawn import readings
+
 TURN = 2.0 * np.pi
 RATIO, COULOMB, VISCOUS, INERTIA = 100.0, 0.06, 4e-4, 2.0  # at the input, but for the inertia
 
@@ -132,13 +134,14 @@ def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_pat
 
 
 @pytest.mark.slow("identification")
-def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> None:
+def test_a_torque_that_may_be_of_the_other_side_is_asked_about(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
     rows[:, 3] /= RATIO
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
-    checks = {each.name: each for each in identify("csg-20-100", [path]).failed}
-    assert "give --column input_torque=tau" in checks["friction of the start set"].remedy
+    with pytest.raises(ValueError, match=r"tau may be a torque of the motor in N\.m, a torque of the joint in") as asked:
+        identify("csg-20-100", [path])
+    assert "--column input_torque=tau" in str(asked.value)
     found = with_options(path, "--column input_torque=tau")
     assert not found.failed
     assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
@@ -164,12 +167,18 @@ def test_an_effort_without_a_unit_that_may_be_a_current_is_asked_about(tmp_path:
     time, angle, speed, effort = np.loadtxt(path, delimiter=",", skiprows=1).T
     rows = np.column_stack([time, angle, speed, effort / 9.85])
     np.savetxt(path, rows, delimiter=",", header="time,joint_position,joint_velocity,joint_effort", comments="")
-    with pytest.raises(ValueError, match="joint_effort has no unit, and may be a torque in N·m or the current") as asked:
+    with pytest.raises(ValueError, match="joint_effort may be a current of the motor in A, a torque of the joint") as asked:
         identify("csg-20-100", [path])
-    first, second = (re.search(rf"(--{option} \S+)", str(asked.value)) for option in ("unit", "column"))
-    assert first is not None
-    assert second is not None
-    as_torque = with_options(path, first[1])
-    as_current = with_options(path, second[1].replace("…", "") + " --constant torque_constant=0.0985")
+    second, first = re.findall(r"--column (?:current|joint_torque)=joint_effort", str(asked.value))
+    as_torque = with_options(path, first)
+    as_current = with_options(path, second + " --constant torque_constant=0.0985")
     assert values(as_torque)["load.gravity_torque"] == pytest.approx(25.0 / 9.85, rel=0.01)
     assert values(as_current)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("seed", [0, 20, 25, 37, 71, 74])
+def test_a_drawn_file_is_read_right_or_asked_about(seed: int) -> None:
+    """Currents in mA without a unit, torques of either side, speeds and angles in rad, deg and rev, commands beside them."""
+    found = readings.outcome(seed)
+    assert found.verdict != "wrong", found.message

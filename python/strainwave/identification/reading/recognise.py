@@ -53,6 +53,7 @@ class Recognised:
         remarks: what was left out, assumed or corrected, in short sentences
         constants: numbers that a person gave with it
         recording: the channels in SI units, with the names of `CHANNELS`
+        mapping: what a person, or a choice between readings, states of it
         neighbours: the columns of the recording with the angles of other joints that move, by the names of these joints
         regressors: the columns of the recording with torques of which unknown shares act
         joint: the joint of the recording by its name in the file; empty if it has none
@@ -74,6 +75,7 @@ class Recognised:
     remarks: tuple[str, ...]
     constants: Mapping[str, float]
     recording: Recording
+    mapping: FileMapping = field(default_factory=FileMapping)
     neighbours: Mapping[str, str] = field(default_factory=dict)
     regressors: tuple[str, ...] = ()
     joint: str = ""
@@ -199,6 +201,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         remarks=(*remarks, *in_time, *_of_unused(unused)),
         constants=dict(given.constants),
         recording=Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
+        mapping=given,
         neighbours={column.which: name for name, column in neighbours.items()},
         regressors=tuple(regressors),
         joint=_joint_of(found.columns, source.path),
