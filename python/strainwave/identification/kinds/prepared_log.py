@@ -146,7 +146,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
     inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
-    if not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
+    if "voltage" in file.columns and not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
         by_voltage = _motor_by_voltage(file, given, inertia)
         share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance
         remarks.append(
