@@ -15,6 +15,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
 from strainwave.identification.candidates.torque_place import TorquePlace, torque_place
 from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
+from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
@@ -124,10 +125,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
 
 def _with_angle(recording: Recording) -> tuple[Recording, str]:
     """Return a recording of a speed with the angle that it makes, and a remark."""
-    from scipy.integrate import cumulative_trapezoid
-
     side = next(name.removesuffix("_speed") for name in recording.names if name.endswith("_speed"))
-    angle = cumulative_trapezoid(recording.values(f"{side}_speed", "rad/s"), recording.time, initial=0)
+    angle = integrated(recording.values(f"{side}_speed", "rad/s"), recording.time)
     remark = f"no angle was recorded: {side}_speed is summed up, from 0 at the first row, and with it an error of its zero"
     return recording.with_column(f"{side}_angle", angle, "rad"), remark
 
