@@ -105,15 +105,21 @@ def verb_of(form: Form) -> Any:
 
 def option_of(parameter: Parameter, meanings: dict[str, str]) -> Iterator[Parameter]:
     """Yield the option of an argument; none if its value is none that a command line can have."""
-    annotation = str if get_origin(parameter.annotation) is Literal else parameter.annotation
-    kinds = {*(get_args(annotation) or (annotation,))}
+    kinds = _kinds(parameter.annotation)
     if parameter.name in CONVERSIONS:
         yield parameter.replace(annotation=CONVERSIONS[parameter.name].annotation)
     elif scalars := kinds & {str, float, int, bool}:
         option = _option(parameter, scalars, meanings[parameter.name])
-        (scalar,) = scalars if len(scalars) == 1 else (annotation,)
+        (scalar,) = scalars if len(scalars) == 1 else (parameter.annotation,)
         typed = scalar | None if NoneType in kinds else scalar
         yield parameter.replace(annotation=Annotated[typed, option], kind=Parameter.KEYWORD_ONLY)
+
+
+def _kinds(annotation: Any) -> set[Any]:
+    """Return the types that an annotation allows; words that it lists are texts."""
+    if get_origin(annotation) is Literal:
+        return {str}
+    return {kind for each in get_args(annotation) for kind in _kinds(each)} or {annotation}
 
 
 def _option(parameter: Parameter, kinds: set[Any], meaning: str) -> Any:

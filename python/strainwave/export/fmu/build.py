@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from strainwave import Drive, _core, arguments
+from strainwave.export.command_mode import Command, command_mode
 from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.fmu.comparison import difference_to_simulation
 from strainwave.export.fmu.description import Description, build_description, model_description, terminals
@@ -67,6 +68,7 @@ def fmu(
     version: int = 2,
     platforms: Iterable[str] | None = None,
     model_exchange: bool = False,
+    command: Command | None = None,
     step: float | None = None,
     name: str | None = None,
 ) -> Exported:
@@ -83,6 +85,8 @@ def fmu(
             needs no compiler. Platforms other than this machine need the extra `compiler`
         model_exchange: the solver of the tool moves the drive. Co-simulation is recommended: it is faster, and has the steps of
             the simulation
+        command: of co-simulation, as long as its rate is 0 or not connected: "held" within a communication step, as a
+            staircase, or "followed": it goes on at the rate of the last step; by default followed if it is an angle or a speed
         step: internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the model and the file; by default that of the gear set
 
@@ -109,7 +113,8 @@ def fmu(
     found, states = variables(drive, step), state_variables(drive) if model_exchange else []
     if model_exchange and load_input(drive) == "output_angle":
         raise ValueError("model exchange needs an output shaft that torques move; the load of this drive prescribes its motion")
-    files, token = sources(drive, found, version, model_exchange)
+    mode = command_mode(drive, command)
+    files, token = sources(drive, found, version, model_exchange, mode == "followed" and not model_exchange)
     identifier = re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII)
     about = Description(name, identifier, token, in_words(drive), step, found, states, model_exchange and has_events(drive))
     binaries, seconds = {}, {}
@@ -128,7 +133,7 @@ def fmu(
         {"internal_step": (step, "s")},
         tuple(losses),
         tuple(_left_out(drive, model_exchange)),
-        tuple(_remarks(about, binaries, seconds, len(content))),
+        tuple(_remarks(about, mode, binaries, seconds, len(content))),
     )
 
 
@@ -161,11 +166,14 @@ def _left_out(drive: Drive, model_exchange: bool) -> Iterable[str]:
         yield "counts and options of the models: they are constants of the FMU, as the models themselves are"
 
 
-def _remarks(about: Description, binaries: dict[str, bytes], seconds: dict[str, float], size: int) -> Iterable[str]:
+def _remarks(
+    about: Description, mode: Command, binaries: dict[str, bytes], seconds: dict[str, float], size: int
+) -> Iterable[str]:
     if about.states:
         yield "the solver of the tool integrates the rates of sw.simulate; its tolerance determines the error"
     else:
         yield "the FMU steps the drive by the C++ code of sw.simulate"
+        yield f"the command is {mode} from step to step, unless command_rate is connected"
     yield f"{size / 1e3:.0f} kB; {_counted(about.variables)}"
     for each, content in binaries.items():
         yield f"binary for {each}: {len(content) / 1e3:.0f} kB, compiled in {seconds[each]:.1f} s"
