@@ -122,7 +122,8 @@ def fmu(
         began = time.perf_counter()
         binaries[each] = _binary(each, tuple(sorted(files.items())), version)
         seconds[each] = time.perf_counter() - began
-    content = _archive(about, files, binaries, version)
+    origins = model.origins if isinstance(model, GearSet) else []
+    content = _archive(about, origins, files, binaries, version)
     losses = []
     if not model_exchange and set(own_platform()) <= set(binaries):
         losses = difference_to_simulation(content, drive, found, version, step)
@@ -223,12 +224,12 @@ def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
     return compiler, flags, () if name.endswith("-windows") else ("-lm",)
 
 
-def _archive(about: Description, files: dict[str, str], binaries: dict[str, bytes], version: int) -> bytes:
+def _archive(about: Description, origins: list[str], files: dict[str, str], binaries: dict[str, bytes], version: int) -> bytes:
     """Return the bytes of the FMU, a zip archive."""
     contents: dict[str, str | bytes] = {"modelDescription.xml": model_description(about, version)}
     if version == 3:
         contents["terminalsAndIcons/terminalsAndIcons.xml"] = terminals(about)
-    contents["documentation/index.html"] = _documentation(about)
+    contents["documentation/index.html"] = _documentation(about, origins)
     contents |= {f"sources/{path}": text for path, text in sorted(files.items())}
     contents["sources/buildDescription.xml"] = build_description(about, version)
     for name, content in binaries.items():
@@ -241,13 +242,14 @@ def _archive(about: Description, files: dict[str, str], binaries: dict[str, byte
     return archive.getvalue()
 
 
-def _documentation(about: Description) -> str:
+def _documentation(about: Description, origins: list[str]) -> str:
     """Return the page that tools show of the FMU."""
     lines = "".join(
         f"<tr><td>{escape(each.name)}</td><td>{each.causality}</td><td>{escape(each.unit)}</td>"
         f"<td>{escape(each.description)}</td></tr>\n"
         for each in about.variables
     )
+    stated = "<h2>Origin of the numbers</h2>\n<pre>" + escape("\n".join(origins)) + "</pre>\n" if origins else ""
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(about.name)}</title></head><body>
 <h1>{escape(about.name)}</h1>
@@ -256,7 +258,7 @@ Communication steps are cut into internal steps of at most {about.step!r} s.</p>
 <table>
 <tr><th>name</th><th>causality</th><th>unit</th><th>meaning</th></tr>
 {lines}</table>
-</body></html>
+{stated}</body></html>
 """
 
 
