@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args,
 import typer
 from typer.core import TyperGroup
 
-from strainwave.commands.options import numeric, whole
+from strainwave.commands.drive_parts import DriveParts
+from strainwave.commands.options import numeric, whole, with_groups
 
 if TYPE_CHECKING:
     from strainwave.export.exported import Exported, Form
@@ -87,15 +88,18 @@ def verb_of(form: Form) -> Any:
     model, *others = signature(form.write, eval_str=True).parameters.values()
     first = model.replace(name=form.model, annotation=MODELS[form.model])
     options = [option for each in others for option in option_of(each, meanings)]
+    own = {each.name for each in options}
+    parts = [each for each in signature(DriveParts, eval_str=True).parameters.values() if each.name not in own]
     out = Parameter("out", Parameter.KEYWORD_ONLY, default=Path("out", form.folder or form.verb), annotation=Out)
 
     def verb(**values: Any) -> None:
-        gear, folder = GearSet.read(values.pop(form.model)), values.pop("out")
+        given = {each.name: values.pop(each.name) for each in parts}
+        gear, folder = DriveParts(**given).on(GearSet.read(values.pop(form.model)), form.model == "drive"), values.pop("out")
         for name in CONVERSIONS.keys() & values:
             values[name] = CONVERSIONS[name].argument(values[name])
         _write(form.write(gear, **values), folder)
 
-    parameters = [first, *options, out]
+    parameters = [first, *options, *(each.replace(kind=Parameter.KEYWORD_ONLY) for each in parts), out]
     verb.__signature__ = signature(verb).replace(parameters=parameters)  # type: ignore[attr-defined]
     verb.__annotations__ = {each.name: each.annotation for each in parameters}
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -147,8 +151,10 @@ def _sentence(words: str) -> str:
 
 
 @export.command("firmware")
+@with_groups
 def firmware(
     drive: Annotated[str, typer.Argument(help="A drive, by name or as a file; for a law of the gear, a gear alone will do.")],
+    parts: DriveParts,
     part: Annotated[
         str,
         typer.Option(help="control, drive, or a law of the gear, as gear.friction_input."),
@@ -164,7 +170,7 @@ def firmware(
     from strainwave.export.firmware import firmware as exported
     from strainwave.files.gear_set import GearSet
 
-    found = GearSet.read(drive)
+    found = parts.on(GearSet.read(drive), not part.startswith("gear."))
     written = exported(found, out, part=part, name=name, scalar=scalar, period=period)  # type: ignore[arg-type] # checked there
     for kind in ("inputs", "outputs"):
         print(f"{kind}: {', '.join(getattr(written, kind))}")
