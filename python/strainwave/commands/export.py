@@ -161,6 +161,9 @@ def firmware(
     ] = "control",
     scalar: Annotated[str, typer.Option(help="Type of all numbers: float or double.")] = "float",
     period: Annotated[float | None, numeric("Time between steps of a drive or a friction in s; 0.2 ms or shorter.")] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Print size and instructions of a step on a Cortex-M4F, by GCC and QEMU.")
+    ] = False,
     name: Annotated[
         str | None, typer.Option(help="Of the files, and prefix of all names in C; else the end of the part.")
     ] = None,
@@ -176,7 +179,11 @@ def firmware(
         print(f"{kind}: {', '.join(getattr(written, kind))}")
     print(f"size of the state: {len(written.state)}")
     every = f", to be called every {written.period:g} s" if written.period else ""
-    files = (written.header, written.declarations, written.source)
+    files = (written.header, written.declarations, written.source, written.example)
+    if report:
+        from strainwave.export.firmware.microcontroller import report as lines
+
+        print(*lines(found, part, written.scalar, period), sep="\n")
     print(f"wrote {', '.join(each.name for each in files)} to {out}{every}")
 
 

@@ -62,13 +62,13 @@ def test_every_export_is_a_verb(tmp_path: Path) -> None:
 
 def test_a_controller_becomes_firmware(tmp_path: Path) -> None:
     done = strainwave("export", "firmware", "robot-joint", "--name", "joint", "--out", "firmware", folder=tmp_path)
-    assert "wrote joint.hpp, joint.h, joint.cpp to firmware, to be called every 0.00025 s" in done.stdout
+    assert "wrote joint.hpp, joint.h, joint.cpp, joint_main.c to firmware, to be called every 0.00025 s" in done.stdout
     assert (tmp_path / "firmware" / "joint.cpp").exists()
 
 
 def test_a_law_of_a_gear_becomes_firmware(tmp_path: Path) -> None:
     done = strainwave("export", "firmware", "csg-20-100", "--part", "gear.stiffness", "--out", "firmware", folder=tmp_path)
-    assert "wrote stiffness.hpp, stiffness.h, stiffness.cpp to firmware\n" in done.stdout
+    assert "wrote stiffness.hpp, stiffness.h, stiffness.cpp, stiffness_main.c to firmware\n" in done.stdout
 
 
 def test_a_gear_alone_gets_motor_load_and_control(tmp_path: Path) -> None:
