@@ -14,12 +14,13 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT
-from strainwave.identification.candidates.plain import held_out_error, moving
+from strainwave.identification.candidates.plain import held_out_residuals, moving, stretches
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import plain
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
@@ -37,16 +38,17 @@ def confirmed(
 
     Returns:
         the model, of all tried the one with the smallest error if none is as good; its error and that of plain least squares,
-        with the terms of other joints or without, whichever is smaller; and its prediction, as `refit`
+        with terms of other joints only if these predict all stretches no worse than the model; and its prediction, as `refit`
     """
-    last, tried = best.folds[-1].stretch, []
-    logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
-    plain = min(held_out_error(log, drive, last) for log in logs)
+    logs, tried = {tuple(each.log.regressors): each.log for each in (best, *others)}.values(), []
+    of_plain = [(log, held_out_residuals(log, drive, stretches(log))) for log in logs]
+    counted = [left[-1] for log, left in of_plain if not log.regressors or rms(np.concatenate(left)) <= best.error]
+    plain = min(map(rms, counted), default=np.nan)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
         tried.append((each, held_out, predicted))
-        if held_out.share_of_plain < held_out.max_share_of_plain and held_out.relative < 1.0:
+        if not held_out.share_of_plain > held_out.max_share_of_plain and held_out.relative < 1.0:
             return tried[-1]
     return min(tried, key=lambda found: found[1].error)
 
