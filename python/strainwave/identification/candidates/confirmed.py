@@ -37,13 +37,12 @@ def confirmed(
     Models were compared by one step of Gauss and Newton, which may hide numbers that the rest of the motion does not determine.
 
     Returns:
-        the model, of all tried the one with the smallest error if none is as good; its error and that of plain least squares,
-        with terms of other joints only if these predict all stretches no worse than the model; and its prediction, as `refit`
+        the model, of all tried the one with the smallest error if none is as good; its error and the smallest one of plain
+        least squares, with terms of other joints or without; and its prediction, as `refit`
     """
     logs, tried = {tuple(each.log.regressors): each.log for each in (best, *others)}.values(), []
     of_plain = [(log, held_out_residuals(log, drive, stretches(log))) for log in logs]
-    counted = [left[-1] for log, left in of_plain if not log.regressors or rms(np.concatenate(left)) <= best.error]
-    plain = min(map(rms, counted), default=np.nan)
+    plain = min((rms(left[-1]) for log, left in of_plain if not (log.regressors and _is_chance(left, best))), default=np.nan)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
@@ -51,6 +50,11 @@ def confirmed(
         if not held_out.share_of_plain > held_out.max_share_of_plain and held_out.relative < 1.0:
             return tried[-1]
     return min(tried, key=lambda found: found[1].error)
+
+
+def _is_chance(left: Sequence[Array], best: MotionCandidate) -> bool:
+    """True if residuals of plain least squares are smaller than those of a model in the last stretch, but not in all."""
+    return rms(left[-1]) < best.errors[-1] and rms(np.concatenate(left)) > best.error
 
 
 def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:

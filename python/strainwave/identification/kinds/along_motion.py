@@ -39,7 +39,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.determined import friction_at
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
+from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA
@@ -62,7 +62,6 @@ OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=…"
 )
-BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
