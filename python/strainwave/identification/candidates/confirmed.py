@@ -14,13 +14,14 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT, slope_of
-from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_error, moving
+from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_error, moving, stretches
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import plain
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
@@ -39,19 +40,24 @@ def confirmed(
     Models were compared by one step of Gauss and Newton, which may hide numbers that the rest of the motion does not determine.
 
     Returns:
-        the model, of all tried the one with the smallest error if none is as good; its error and that of plain least squares,
-        with the terms of other joints or without, whichever is smaller; and its prediction, as `refit`
+        the model, of all tried the one with the smallest error if none is as good; its error and the smallest one of plain
+        least squares, with terms of other joints or without; and its prediction, as `refit`
     """
-    last, tried = best.folds[-1].stretch, []
-    logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
-    plain = min(held_out_error(log, drive, last) for log in logs)
+    logs, tried = {tuple(each.log.regressors): each.log for each in (best, *others)}.values(), []
+    of_plain = [(log, held_out_residuals(log, drive, stretches(log))) for log in logs]
+    plain = min((rms(left[-1]) for log, left in of_plain if not (log.regressors and _is_chance(left, best))), default=np.nan)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
         tried.append((each, held_out, predicted))
-        if held_out.share_of_plain < held_out.max_share_of_plain and held_out.relative < 1.0:
+        if not held_out.share_of_plain > held_out.max_share_of_plain and held_out.relative < 1.0:
             return tried[-1]
     return min(tried, key=lambda found: found[1].error)
+
+
+def _is_chance(left: Sequence[Array], best: MotionCandidate) -> bool:
+    """True if residuals of plain least squares are smaller than those of a model in the last stretch, but not in all."""
+    return rms(left[-1]) < best.errors[-1] and rms(np.concatenate(left)) > best.error
 
 
 def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
