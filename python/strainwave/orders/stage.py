@@ -205,7 +205,7 @@ class _Lines:
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Bounds of the logarithms of the natural frequency [rad per sample], among the lines compared, and the damping ratio."""
+        """Bounds of the logarithms of the natural frequency [rad per sample], within the lines compared, and of the damping."""
         return np.log([4.0 * pi / self.count, 1e-3]), np.log([2.0 * pi * MAX_FREQUENCY, 3.0])
 
     def is_within_bounds(self, fitted: _Fitted) -> bool:

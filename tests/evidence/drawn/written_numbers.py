@@ -249,11 +249,14 @@ def _is_limit(each: Parameter) -> bool:
 
 
 def _of_lists(found: sw.Identified) -> Iterator[str]:
-    """Yield the estimates that are listed as identified and are limits or rounding."""
-    for parameter in found.parameters:
-        each = parameter.estimate
-        if abs(each.value) < MIN_NUMBER and not each.is_phase:
-            yield f"{each.path} = {each.value:.3g} ± {each.sigma:.2g} is listed as identified"
+    """Yield the estimates that are rounding, and those that are listed as identified and are a limit of 0."""
+    for each in (estimate for file in found.files for estimate in file.estimates):
+        sigma = each.sigma if np.isfinite(each.sigma) else 0.0
+        if 0.0 < abs(each.value) < max(MIN_NUMBER, MIN_SIGMA * sigma) and not each.is_phase:
+            yield f"{each.path} = {each.value:.3g} ± {each.sigma:.2g} is rounding"
+    for each in (parameter.estimate for parameter in found.parameters):
+        if each.value == 0.0 and not each.is_phase:
+            yield f"{each.path} = 0 ± {each.sigma:.2g} is listed as identified"
 
 
 def _of_export(written: Path) -> Iterator[str]:
