@@ -14,7 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT
-from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_residuals, moving
+from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_error, moving
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
@@ -42,7 +42,7 @@ def confirmed(
     """
     last, tried = best.folds[-1].stretch, []
     logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
-    plain = min(float(np.sqrt(np.mean(held_out_residuals(log, drive, [last])[0] ** 2))) for log in logs)
+    plain = min(held_out_error(log, drive, last) for log in logs)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)

@@ -74,7 +74,7 @@ def test_a_loop_from_the_input_alone_determines_friction_and_hysteresis_together
 
 
 def test_a_number_without_effect_has_that_reason_and_is_that_of_the_set() -> None:
-    """Steady friction depends on bristles by rounding alone, and not on how their damping fades, which is at its limit 0."""
+    """Steady friction depends on bristles by rounding alone, and not on what lets their damping fade, at its limit 0."""
     law = sw.friction.LuGre(
         coulomb=0.05, breakaway=0.06, bristle_stiffness=40.0, bristle_damping=1e-4, stribeck_speed=2.0, viscous=3e-4
     )
