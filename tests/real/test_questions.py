@@ -22,7 +22,7 @@ RECORDINGS = [each for each in sorted(TRIALS.rglob("*.*")) if each.suffix != ".m
 
 
 def check(command: str, path: Path, folder: Path) -> None:
-    for words, result in outcomes([*command.split(), str(path)], folder):
+    for words, result in outcomes([*command.split(), str(path)], folder, most=2):
         assert result.returncode in (0, 3) or "record" in result.stderr, f"{words}: {result.stderr}"
 
 

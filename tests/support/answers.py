@@ -50,8 +50,11 @@ def _with_number(word: str) -> str:
     return word.replace(NUMBER, next(number for name, number in NUMBERS.items() if name in word))
 
 
-def outcomes(words: list[str], folder: Path, asked: tuple[str, ...] = ()) -> list[tuple[str, Result]]:
-    """Each command that a command leads to, itself if it asks nothing, with its result; fails if one is led in circles."""
+def outcomes(words: list[str], folder: Path, most: int = 20, asked: tuple[str, ...] = ()) -> list[tuple[str, Result]]:
+    """Each command that a command leads to, itself if it asks nothing, with its result; fails if one is led in circles.
+
+    Of a question with many answers the first ones and the last, `most` in all, as of the joints of an arm.
+    """
     result = strainwave(*words, folder=folder)
     commands = commands_in(result)
     if not commands:
@@ -61,4 +64,5 @@ def outcomes(words: list[str], folder: Path, asked: tuple[str, ...] = ()) -> lis
     assert len(asked) < MAX_QUESTIONS, f"a third question: {shlex.join(words)}: {result.stderr}"
     assert result.returncode == 2
     assert len({shlex.join(each) for each in commands}) == len(commands), result.stderr
-    return [found for command in commands for found in outcomes(command, folder, (*asked, question))]
+    some = commands if len(commands) <= most else [*commands[: most - 1], commands[-1]]
+    return [found for command in some for found in outcomes(command, folder, most, (*asked, question))]
