@@ -83,8 +83,8 @@ def _of_file(
     ratio = read.constants.get("ratio") if ratio is None else ratio
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
     if read.kind == "positioning":
-        steps = positioning_of(read, ratio)
-        return OrdersFound(file.path.name, None, None, (*read.remarks, *positioning_words(steps), *steps.remarks))
+        steps = positioning_of(read)
+        return OrdersFound(file.path.name, None, None, (*read.remarks, *positioning_words(steps, ratio), *steps.remarks))
     side: Any = mapping.side
     found = orders_found(read.recording, file.path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

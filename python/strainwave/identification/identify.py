@@ -350,7 +350,10 @@ def read_measurements(
     sources = {file.path: file for file in opened.files}
     in_one_reading = consistent(_only_read(read), sources)
     start = with_ratio_of_all(start, in_one_reading)
-    read |= {each.path: _decided(each, sources[each.path], GearSoFar(start, start)) for each in in_one_reading}
+    for each in in_one_reading:
+        source = sources[each.path]
+        given = _mapping_of(mapping, each.path, source.kind) or FileMapping()
+        read[each.path] = _decided(each, source, GearSoFar(start, start), given)
     for link in opened.links:
         read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
     return read, start
@@ -375,9 +378,9 @@ def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised
     return [each for each in files.values() if isinstance(each, Recognised)]
 
 
-def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised | FileResult:
+def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised | FileResult:
     """Return a file as it is read, or its question if neither its names nor a fit determine how."""
-    file = decided(file, source, with_ratio(known, file))
+    file = decided(file, source, with_ratio(known, file), given)
     return file if file.question is None else not_used(file.path, file.question, file)
 
 

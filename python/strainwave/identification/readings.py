@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.identification.candidates.plain import fit_plain, sliding_squares
-from strainwave.identification.checks.sizes import REST_SPEED, input_speed
+from strainwave.identification.checks.sizes import input_speed
+from strainwave.identification.effort_readings import with_effort
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.sides import GIVEN
 from strainwave.identification.reading.source import MeasurementFile
@@ -35,12 +35,6 @@ MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction driv
 UNITS_OPEN = "no unit is stated, and another one than the usual explains more"
 UNITS_EQUAL = "no unit is stated, and several explain it equally well"
 TORQUES = ("joint_torque", "input_torque")
-EFFORTS = {"effort", "efforts", "eff"}  # words of robots for a torque or a current
-USUAL_TORQUE_CONSTANT = 0.1  # N.m/A, of motors of robots' joints (assumed)
-CONSTANT_SPREAD = float(np.log(2.0))  # standard deviation of its logarithm (assumed)
-FRICTION_SPREAD = float(np.log(3.0))  # of the logarithm of the friction of gears of about one size (assumed)
-SHARE_OF_TORQUES = 0.8  # of the recorded efforts, that are torques (assumed)
-MIN_ODDS = 10.0  # for a torque, above which the usual reading is taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,48 +66,17 @@ class _Reading:
         return sigmas_of_gain(gains) > MIN_READING_GAIN_SIGMA and self.error < share * other.error
 
 
-def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
-    """Return a log in the reading of motion and effort that leaves least open; with its question, if several remain."""
-    read = _with_motion(file, source, known)
-    return read if read.question else _with_effort(read, known)
+def decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised:
+    """Return a log in the reading of motion and effort that leaves least open; with its question, if several remain.
 
-
-def _with_effort(file: Recognised, known: GearSoFar) -> Recognised:
-    """Return a log; with its question, if its effort without a unit may be a current.
-
-    Robots record currents of motors under this name as well as torques. Both readings have the same fit. The size of the
-    friction separates them: by Bayes' rule with the spread of friction between gears, that of torque constants between motors,
-    and the share of robots that record a torque.
+    Args:
+        file: as it is usually read
+        source: to read it again
+        known: the gear before the file is fitted
+        given: what a person states of it
     """
-    name = "joint_torque"
-    column = file.columns.get(name, "")
-    if file.kind != "log" or name not in file.units_assumed or not EFFORTS & set(words_of(column)):
-        return file
-    gear = known.gear_set.gear
-    ratio, law = abs(gear.kinematics.ratio), gear.friction_input
-    try:
-        log = log_of(replace(file, neighbours={}).at_ratio(ratio), known)
-    except (ValueError, FloatingPointError):
-        return file
-    plain, speed = fit_plain(log.log, log.drive), float(np.median(np.abs(log.log.motion.speed[log.log.sound])))
-    friction, usual = plain.coulomb + plain.viscous * speed, float(law.steady(max(speed, REST_SPEED)))
-    if not friction > 0.0 or not usual > 0.0:
-        return file
-    as_current = friction * ratio * USUAL_TORQUE_CONSTANT
-    evidence = log_density(np.log(friction / usual), FRICTION_SPREAD) + np.log(SHARE_OF_TORQUES / (1.0 - SHARE_OF_TORQUES))
-    evidence -= log_density(np.log(as_current / usual), float(np.hypot(FRICTION_SPREAD, CONSTANT_SPREAD)))
-    if evidence > np.log(MIN_ODDS):
-        return file
-    motor = {"columns": {"current": column}, "constants": {"torque_constant": USUAL_TORQUE_CONSTANT}}
-    ways = [
-        Answer("a torque in N·m", {"units": {column: "N.m"}}, gives=f"friction {friction:.2g} N·m at the input"),
-        Answer(
-            "the current of the motor in A", motor, {"torque_constant": "N.m/A, of the motor"},
-            gives=f"friction {as_current:.2g} N·m at the input with {USUAL_TORQUE_CONSTANT:g} N·m/A",
-        ),
-    ]  # fmt: skip
-    question = f"{column} has no unit, and may be a torque in N·m or the current of the motor in A; the start set has friction"
-    return replace(file, question=QuestionError(f"{question} of {usual:.2g} N·m at {speed:.3g} rad/s of the input", ways))
+    read = _with_motion(file, source, known)
+    return read if read.question else with_effort(read, source, known, given)
 
 
 def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
@@ -151,11 +114,6 @@ def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) ->
     if len(remaining) == 1 and all(best.is_better_than(each, MAX_OF_USUAL) for each in rivals):
         return _taken(best, others, file)
     return replace(file, question=_asked(UNITS_OPEN, [*rivals, *remaining]))
-
-
-def log_density(distance: float, spread: float) -> float:
-    """Return the logarithm of the normal density, but for a constant."""
-    return float(-0.5 * (distance / spread) ** 2 - np.log(spread))
 
 
 def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> Recognised:

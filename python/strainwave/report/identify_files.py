@@ -22,7 +22,7 @@ from strainwave.report.errors import share_held_out
 from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 
 COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",

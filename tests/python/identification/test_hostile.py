@@ -140,7 +140,10 @@ def outlying() -> np.ndarray:
 
 LIMIT = 0.6 * float(np.abs(CURRENT).max())
 SAID: dict[str, tuple[Make, str]] = {
-    "a reversed current": (log(current=-CURRENT), "current is counted against the motion: its sign is turned round"),
+    "a reversed current": (
+        log(current=-CURRENT),
+        "current is counted in the sense of the output, which turns against the input",
+    ),
     "outliers": (log(current=outlying()), r"clipped samples of current are left out: \d+, [\d.]+ % of all"),
     "a clipped current": (log(current=np.clip(CURRENT, -LIMIT, LIMIT)), "outliers or clipped samples of current are left out"),
 }

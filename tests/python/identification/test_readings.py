@@ -10,6 +10,7 @@ from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.questions import Answer
 
+from tests.evidence.drawn import readings
 from tests.support.answers import answer_with, mapping_of
 
 TURN = 2.0 * np.pi
@@ -79,7 +80,7 @@ def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
     with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well") as asked:
         identify("csg-20-100", [path])
-    identified = with_answer(path, answer_with(asked.value, "output_angle in rev"))
+    identified = with_answer(path, answer_with(asked.value, "rev, rev/s"))
     inertia = values(identified)["load.inertia"] + identified.gear_set.gear.input_inertia * RATIO**2
     assert inertia == pytest.approx(INERTIA, rel=0.02)
 
@@ -112,19 +113,19 @@ def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_pat
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
     with pytest.raises(ValueError, match="no unit is stated, and another one than the usual explains more") as asked:
         identify("csg-20-100", [path])
-    by_turns = with_answer(path, answer_with(asked.value, "output_angle in rev"))
+    by_turns = with_answer(path, answer_with(asked.value, "rev, rev/s"))
     assert values(by_turns)["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
 
 
 @pytest.mark.slow("identification")
-def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> None:
+def test_a_torque_that_may_be_of_the_other_side_is_asked_about(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
     rows[:, 3] /= RATIO
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
-    checks = {each.name: each for each in identify("csg-20-100", [path]).failed}
-    assert "give --column input_torque=tau" in checks["friction of the start set"].remedy
-    found = identify("csg-20-100", [path], mapping=FileMapping(columns={"input_torque": "tau"}))
+    with pytest.raises(ValueError, match=r"tau may be a torque of the motor in N\.m, a torque of the joint in") as asked:
+        identify("csg-20-100", [path])
+    found = with_answer(path, answer_with(asked.value, "a torque of the motor in N.m"))
     assert not found.failed
     assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
     assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
@@ -149,10 +150,18 @@ def test_an_effort_without_a_unit_that_may_be_a_current_is_asked_about(tmp_path:
     time, angle, speed, effort = np.loadtxt(path, delimiter=",", skiprows=1).T
     rows = np.column_stack([time, angle, speed, effort / 9.85])
     np.savetxt(path, rows, delimiter=",", header="time,joint_position,joint_velocity,joint_effort", comments="")
-    with pytest.raises(ValueError, match="joint_effort has no unit, and may be a torque in N·m or the current") as asked:
+    with pytest.raises(ValueError, match="joint_effort may be a current of the motor in A, a torque of the joint") as asked:
         identify("csg-20-100", [path])
-    as_torque = with_answer(path, answer_with(asked.value, "a torque in N·m"))
-    of_motor = answer_with(asked.value, "the current of the motor")
+    as_torque = with_answer(path, answer_with(asked.value, "a torque of the joint in N.m"))
+    of_motor = answer_with(asked.value, "a current of the motor in A")
     as_current = with_answer(path, of_motor, constants={"torque_constant": 0.0985})
     assert values(as_torque)["load.gravity_torque"] == pytest.approx(25.0 / 9.85, rel=0.01)
     assert values(as_current)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("seed", [0, 20, 25, 37, 71, 74])
+def test_a_drawn_file_is_read_right_or_asked_about(seed: int) -> None:
+    """Currents in mA without a unit, torques of either side, speeds and angles in rad, deg and rev, commands beside them."""
+    found = readings.outcome(seed)
+    assert found.verdict != "wrong", found.message

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from strainwave.identification.kinds import constant_speed_runs
 from strainwave.identification.kinds.constant_speed_runs import ConstantSpeedRun, Together, is_one_speed, run_of
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
+from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -86,7 +88,13 @@ class ConstantSpeed(Kind):
         run = run_of(file, known)
         if run is None:
             raise _without_motion(file)
-        return constant_speed_runs.of_run(run), known
+        result, warm = constant_speed_runs.of_run(run), warmed(file)
+        if warm is None:
+            return result, known
+        of_temperature, _ = warm
+        return replace(
+            result, remarks=(*of_temperature.remarks, *result.remarks), pictures=(*result.pictures, *of_temperature.pictures)
+        ), known
 
     def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
         """Fit the friction table of the means of all files."""

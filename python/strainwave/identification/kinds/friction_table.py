@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction
+from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
 from strainwave.identification.checks.sizes import (
     friction_of_table,
@@ -48,6 +48,7 @@ from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.prediction import Prediction, judged, model_error
 from strainwave.identification.results.undetermined import with_friction_at, with_set_before
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
+from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length, rms
 
@@ -57,6 +58,7 @@ MIN_ROWS = 4  # speeds of a table
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
 SPEEDS = ("rad/s", "rpm", "rev/s")  # of tables of friction
 UNITS = {"speed": "rad/s", "torque": "N.m"}
+DRY = (".coulomb", ".breakaway")  # torques that a loss under a constant load adds to
 MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
 
 
@@ -214,7 +216,8 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
         paths = [each.path for each in best.fit.estimates]
-        fit, estimates = with_set_before(fit, estimates, known, "gear.")
+        again, estimates = with_set_before(fit, estimates, known, "gear.")
+        fit = written(replace(best, fit=again), gear, experiment)
         estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
@@ -264,9 +267,14 @@ def _shared(best: FrictionCandidate, table: FrictionTable) -> dict[str, str]:
     """Return the parameters that a table determines only together with a loss under load, by path, and how."""
     if table.load is None or is_loaded(table) or not table.load.any():
         return {}
-    held = float(np.abs(table.load).max())
-    why = f"one load of {held:.3g} N·m at the input determines the sum of it and the loss there only"
-    return {f"gear.{each.path}": why for each in best.fit.estimates if not each.path.endswith("viscous")}
+    held, loss = float(np.abs(table.load).max()), "friction_mesh.driving_forward"
+    kept = held * float(getattr(best.fit.gear.friction_mesh, "driving_forward", 0.0))
+    sums = (
+        DeterminedSum((each.path, loss), (1.0, held), each.value + kept, each.sigma, each.unit)
+        for each in best.fit.estimates
+        if each.path.endswith(DRY)
+    )
+    return {f"gear.{each.paths[0]}": each.with_others for each in sums}
 
 
 def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable, start: GearSet) -> Iterator[str]:

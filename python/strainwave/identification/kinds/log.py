@@ -15,7 +15,7 @@ from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.shafts import put_sided
-from strainwave.identification.kinds.torsion_loop import is_loaded_in_steps, is_series_spring
+from strainwave.identification.kinds.torsion_loop import is_loaded_spring, is_series_spring
 from strainwave.identification.kinds.warm_up import warmed, with_fall
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -43,7 +43,7 @@ class Log(Kind):
             return False
         drove = measured(columns, "torque", "current", "voltage") or any(column.channel.commanded for column in columns)
         moves = bool(drove and measured(columns, "angle", "speed"))
-        return moves and not is_loaded_in_steps(columns, mapping) and not is_series_spring(columns)
+        return moves and not is_loaded_spring(columns, mapping) and not is_series_spring(columns)
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torques, currents, remarks = _efforts(columns)

@@ -34,6 +34,7 @@ from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.undetermined import with_set_before
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
+from strainwave.statistics.determined_sum import DeterminedSum
 
 Array = NDArray[np.float64]
 
@@ -148,12 +149,15 @@ class Torsion(Kind):
         )
 
 
-def is_loaded_in_steps(columns: Sequence[Column], mapping: FileMapping) -> bool:
-    """True for a spring that a rig loads in steps, with the time of each: a log has more rows in a second, or turns."""
+def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
+    """True for a spring that a rig loads, with time: a log has more rows in a second, turns, or is softer than any gear."""
     times, angles, torques = (measured(columns, quantity) for quantity in ("time", "angle", "torque"))
     if not times or len(angles) != 1 or len(torques) != 1 or measured(columns, "speed", "current", "voltage"):
         return False
-    return not _exceeds_twist(angles[0], mapping) and in_steps(times[0].si, angles[0].si, torques[0].si)
+    angle, torque = angles[0].si, torques[0].si
+    if _exceeds_twist(angles[0], mapping):
+        return False
+    return in_steps(times[0].si, angle, torque) or (_is_spring(angle, torque) and _is_as_stiff_as_a_gear(angle, torque))
 
 
 def is_series_spring(columns: Sequence[Column]) -> bool:
@@ -201,6 +205,11 @@ def _is_spring(angle: Array, torque: Array) -> bool:
     """True if the torque alternates and follows the angle."""
     alternates = torque.min() < 0.0 < torque.max() and np.ptp(angle) > 0.0
     return bool(alternates and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING)
+
+
+def _is_as_stiff_as_a_gear(twist: Array, torque: Array) -> bool:
+    """True if a torque grows with an angle as at the output of a gear: weight and inertia of no joint are as stiff."""
+    return bool(np.cov(twist, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(twist) and np.ptp(twist) < MAX_TWIST)
 
 
 def _why_output(angle: Column, torque: Column) -> str:
@@ -285,10 +294,18 @@ def _shared(best: TorsionCandidate, gear: Any, loop: TorsionLoop, friction_measu
         return {f"gear.{estimate.path}": why for estimate in best.fit.estimates}
     if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
         return {}
-    sum_of, ratio = "the loop determines the sum of", abs(loop.input_ratio)
+    ratio, breakaway = abs(loop.input_ratio), "friction_input.breakaway"
+    held = 0.5 * float(np.ptp(loop.friction(gear)))  # at the output
     if isinstance(best.dissipation, InputFriction):
-        why = f"{sum_of} {ratio:g} x friction_input.breakaway and the torque of the hysteresis, which was kept"
-        return {"gear.friction_input.breakaway": why}
-    why = f"{sum_of} the torque of the hysteresis and {ratio:g} x friction_input.breakaway, which was kept"
-    paths = [estimate.path for estimate in best.fit.estimates if estimate.path.startswith("hysteresis.breakaway")]
-    return {f"gear.{path}": why for path in paths}
+        elements = getattr(gear.hysteresis, "breakaway", ())
+        kept = {f"hysteresis.breakaway[{place}]": (1.0 / ratio, f) for place, f in enumerate(elements)}
+    else:
+        kept = {breakaway: (ratio, held / ratio)}
+    paths, factors = tuple(kept), tuple(factor for factor, _ in kept.values())
+    rest = sum(factor * value for factor, value in kept.values())
+    sums = (
+        DeterminedSum((each.path, *paths), (1.0, *factors), each.value + rest, each.sigma, each.unit)
+        for each in best.fit.estimates
+        if each.path.startswith(("hysteresis.breakaway", breakaway))
+    )
+    return {f"gear.{each.paths[0]}": each.with_others for each in sums}

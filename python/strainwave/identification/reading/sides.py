@@ -56,8 +56,12 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
         return "output", f"{column.name} is {why}: it is taken to be at the output"
     motions = [each for each in others if {each.channel.quantity, column.channel.quantity} == {"angle", "speed"}]
     for other in motions:
-        if (side := other.channel.side) and _are_of_one_side(column, other, time):
+        times = _times_as_fast(column, other, time)
+        if (side := other.channel.side) and 1.0 / MAX_FACTOR_OF_SIDE < times < MAX_FACTOR_OF_SIDE:
             return side, f"{column.name} runs as {other.name} does, so it is at the {side} too"
+        if column.sure and other.sure and max(times, 1.0 / times) > MIN_FACTOR_OF_SIDES:
+            side = "input" if times > 1.0 else "output"
+            return side, f"{column.name} runs {times:.3g} times as fast as {other.name}, so it is at the {side}"
     fastest = 0.0 if time is None else float(np.quantile(np.abs(_speed(column, time)), SPEED_QUANTILE))
     if fastest > MIN_MOTOR_SPEED:
         _check_unit(column, fastest)
@@ -151,12 +155,12 @@ def _per_minute(speed: float) -> str:
     return f"{speed * 30.0 / np.pi:.4g} 1/min"
 
 
-def _are_of_one_side(first: Column, second: Column, time: Column | None) -> bool:
-    """True if two channels, one of them an angle, run about equally fast."""
+def _times_as_fast(column: Column, other: Column, time: Column | None) -> float:
+    """Return the median speed of a motion over that of another one; not a number if one of them rests, or without a time."""
     if time is None:
-        return False
-    slow, fast = sorted(float(np.median(np.abs(_speed(column, time)))) for column in (first, second))
-    return fast < MAX_FACTOR_OF_SIDE * slow
+        return np.nan
+    own, others = (float(np.median(np.abs(_speed(each, time)))) for each in (column, other))
+    return own / others if own > 0.0 and others > 0.0 else np.nan
 
 
 def _speed(column: Column, time: Column) -> Array:

@@ -172,6 +172,16 @@ def test_a_side_that_nothing_determines_is_asked_for(tmp_path: Path) -> None:
     assert "reaches 2865 1/min, so it is at the input" in words_of(recognise(fast))
 
 
+def test_a_speed_a_ratio_faster_than_its_angle_is_that_of_the_motor(tmp_path: Path) -> None:
+    """As servo drives record the angle of the axis beside the speed of the motor."""
+    angle, speed = np.degrees(0.5 * SWING), 80.0 * np.gradient(0.5 * SWING, TIME) * 30.0 / np.pi
+    series = (TIME, angle, speed, np.sign(speed) + 0.01 * angle)
+    names = "Time [s],ActPos [deg],ActVel [rpm],ActTorque [N.m]"
+    found = recognise(write(tmp_path / "servo.csv", names, *series), FileMapping(columns={"input_torque": "ActTorque"}))
+    assert found.columns == {"time": "Time", "output_angle": "ActPos", "input_speed": "ActVel", "input_torque": "ActTorque"}
+    assert "ActVel runs 80 times as fast as ActPos, so it is at the input" in words_of(found)
+
+
 def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "q [rad],dq [rad/s],tau [N.m]", SWING, SWING, SWING)
     found = recognise(path, FileMapping(constants={"rate": 500.0}))
@@ -309,6 +319,12 @@ def test_a_spring_that_is_loaded_in_steps_is_a_torsion_loop_and_a_fast_one_may_b
 ) -> None:
     twist = np.concatenate([np.linspace(a, b, 60) for a, b in ((0.2, -0.2), (-0.2, 0.2))])
     assert recognise(columns_of(tmp_path, interval * np.arange(len(twist)), twist, 4.0 * twist)).kind == kind
+
+
+def test_a_fast_record_as_stiff_as_an_output_is_a_torsion_loop(tmp_path: Path) -> None:
+    twist = np.concatenate([np.linspace(a, b, 60) for a, b in ((2e-3, -2e-3), (-2e-3, 2e-3))])
+    loop = 1.5e4 * twist + np.repeat([-0.6, 0.6], 60)
+    assert recognise(columns_of(tmp_path, 0.01 * np.arange(len(twist)), twist, loop)).kind == "torsion"
 
 
 def test_a_slow_log_whose_torque_follows_the_speed_remains_a_log(tmp_path: Path) -> None:
