@@ -86,12 +86,12 @@ def cases() -> list[Case]:
     order2 = {"order 2": (121.2e-6, 0.01)}
     found = [
         Case(identify, t / "moteus/output.csv", joint),
-        Case(identify, t / "epos/permille.csv", joint, values={"0.4": "0.4"}),
+        Case(identify, t / "epos/permille.csv", joint, values={"NUMBER": "0.4"}),
         Case(current, t / "belt150/log.csv", {"ratio": (150.0, 1e-3), GRAVITY: (24.98, 0.02)}, knows=("ratio=150",)),
         Case(identify, t / "loadloss/dyno.csv", about(0.050, 3e-4)),
         Case(identify, t / "loadloss/dyno_driving_only.csv", about(0.050, 3e-4)),
         Case(identify, t / "loadloss/friction_load.csv", about(0.050, 3e-4)),
-        Case(identify, t / "twincat/scope_single.csv", joint),
+        Case(identify, t / "twincat/scope_single.csv", joint, values={"NUMBER": "0.4"}),
         Case(identify, t / "plotjuggler/export.csv", joint),
         Case(identify, t / "lostmotion/lost.csv"),
         Case(identify, t / "lostmotion/full.csv", {"gear.stiffness.a1": (1.6e4, 0.02)}),
@@ -105,7 +105,7 @@ def cases() -> list[Case]:
         Case("identify csg-14-50 FILE --joint 3 --constant rate=200", t / "turn4/rl_motor.csv", about(0.022, 3.6e-5, 4.9)),
         Case(
             f"{identify} --constant ratio=101", t / "turn4/ur_effort.csv", about(0.085, 4e-4, 38.0), knows=("current",),
-            values={"torque_constant=N.m/A": "torque_constant=0.0985"},
+            values={"NUMBER": "0.0985"},
         ),
         Case(
             f"{identify} --constant torque_constant=0.12", t / "turn4/bighyst.csv",

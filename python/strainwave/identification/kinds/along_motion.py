@@ -61,7 +61,7 @@ ONE_WAVE = "the motion goes nearly one way: a detent and friction over the angle
 DEPTH_BY_SET = "it counts from Coulomb friction, whose split from viscous friction is that of the start set"
 OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
-    "--constant motor_inertia=…"
+    "--constant motor_inertia=NUMBER"
 )
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
@@ -86,7 +86,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
-        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
+        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=NUMBER")
         between, known = between_encoders(taken, judged, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):

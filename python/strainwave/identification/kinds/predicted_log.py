@@ -74,7 +74,7 @@ def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
     if gear_set.load is None:
         raise ValueError(
             f"{gear_set.name} has no [load], without which no torque along a motion is predicted; identify it from a log, with "
-            "--constant torque_constant=… if the log contains a current: a rough one will do to predict currents"
+            "--constant torque_constant=NUMBER if the log contains a current: a rough one will do to predict currents"
         )
     found = _predicted(file, gear_set)
     if not found.contradicts:
