@@ -20,7 +20,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from unittest import mock
 
@@ -55,6 +55,15 @@ class Case:
     truth: Truth = field(default_factory=dict)
     knows: Sequence[str] = ()
     values: Mapping[str, str] = field(default_factory=dict)
+
+    def started(self, start: str) -> Case:
+        """Return the case from another set; the ratio is given if that of the set is not the true one."""
+        own = re.search(r"identify (\S+)", self.command)
+        if own is None:
+            return self
+        ratio = own[1].rpartition("-")[2]
+        more = "" if start.endswith(f"-{ratio}") or "ratio=" in self.command else f" --constant ratio={ratio}"
+        return replace(self, command=f"{self.command.replace(own[1], start)}{more}")
 
 
 @dataclass(frozen=True)
@@ -236,6 +245,7 @@ def numbers_of(out: Path, printed: str) -> dict[str, list[tuple[float, float]]]:
 def main(given: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="a part of the paths of the recordings (all)")
+    parser.add_argument("--start", default="", help="the set to start from in each command (its own)")
     wanted = parser.parse_args(given)
     counted = Counter[tuple[str, int]]()
     print(f"{'recording':58} {'commands':>8} {'outcome':13} {'s':>5}")
@@ -244,7 +254,7 @@ def main(given: Sequence[str] | None = None) -> int:
             continue
         begun = time.process_time()
         with tempfile.TemporaryDirectory() as folder:
-            found = outcome(case, Path(folder))
+            found = outcome(case.started(wanted.start) if wanted.start else case, Path(folder))
         root = TRIALS if case.file.is_relative_to(TRIALS) else ARMS
         name = f"{case.file.relative_to(root)}{' --joint all' if 'joint all' in case.command else ''}"
         counted[found.verdict, found.commands] += 1

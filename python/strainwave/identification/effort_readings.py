@@ -32,7 +32,8 @@ SHARE_OF_TORQUES = (
     0.8  # of the efforts of robots, that are torques; of those beside a torque constant, that are currents (assumed)
 )
 SHARE_OF_SIDE = 0.8  # of the torques whose name contains no side, that are counted where the motion was measured (assumed)
-SHARE_OF_USUAL_UNIT = 0.9  # of the columns without a unit, that are in N.m or A, and not in thousandths of it (assumed)
+# Of the columns without a unit, in N.m or A and not in thousandths of it: small motors have torques in mN.m (assumed).
+SHARE_OF_USUAL_UNIT = {"current": 0.9, "input_torque": 0.6, "joint_torque": 0.95}
 SHARE_BEHIND_GEAR = 0.2  # of the torques of joints, that a sensor behind the gear measured (assumed)
 RANGE_BEHIND_GEAR = 10.0  # of the logarithm of the friction that such a torque contains, below that of the gear (assumed)
 MIN_ODDS = 10.0  # of a reading against each other one, above which it is taken
@@ -138,12 +139,13 @@ def _readings(file: Recognised, known: GearSoFar, given: FileMapping) -> list[_E
         shares = {each: share * of_torques for each, share in shares.items()} | {"current": 1.0 - of_torques}
     constant = file.constants.get("torque_constant", getattr(known.gear_set.motor, "torque_constant", None))
     per_ampere, spread = (USUAL_TORQUE_CONSTANT, CONSTANT_SPREAD) if constant is None else (float(constant), 0.0)
-    of_unit = (SHARE_OF_USUAL_UNIT, 1.0 - SHARE_OF_USUAL_UNIT) if is_unit_open else (1.0,)
     readings = []
     for each, share in shares.items():
         usual, _ = units = UNITS[CHANNELS[each].quantity]
         size = {"current": per_ampere, "joint_torque": 1.0 / ratio}.get(each, 1.0)
-        for unit, more in zip(units if is_unit_open else (file.units[channel],), of_unit, strict=True):
+        of_usual = SHARE_OF_USUAL_UNIT[each]
+        of_unit = dict(zip(units, (of_usual, 1.0 - of_usual), strict=True)) if is_unit_open else {file.units[channel]: 1.0}
+        for unit, more in of_unit.items():
             torque = size * convert(1.0, unit, usual)
             readings.append(_Effort(each, unit, share * more, torque, spread if each == "current" else 0.0))
     return readings
