@@ -8,6 +8,7 @@ and the shares of recordings with each of them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,8 @@ from strainwave.identification.reading.names import EFFORTS, meaning, words_of
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.messages import as_option, listed, one_line
+from strainwave.messages import listed, one_line
+from strainwave.questions import Answer, QuestionError
 
 USUAL_TORQUE_CONSTANT = 0.1  # N.m/A, of motors of robots' joints (assumed)
 CONSTANT_SPREAD = float(np.log(2.0))  # standard deviation of its logarithm (assumed)
@@ -113,10 +115,10 @@ def with_effort(file: Recognised, source: MeasurementFile, known: GearSoFar, giv
         read = recognise(source, file.mapping.updated(FileMapping({near[0].channel: column}, {column: near[0].unit})))
         why = f"{column} is read as {_described(near[0])}, as its friction is nearest to that of the start set"
         return replace(read, remarks=(one_line(f"{why}: {'; '.join(found)}; {of_set}"), *read.remarks))
-    ways = " or ".join(f"{_options(file, each)} ({found[ranked.index(each)]})" for each in near)
     what = listed(dict.fromkeys(_described(each) for each in near))
-    question = f"{column} may be {what}, and neither its name nor a fit decides; {of_set}: select one by {ways}"
-    return replace(file, question=one_line(question))
+    question = f"{column} may be {what}, and neither its name nor a fit decides; {of_set}"
+    answers = [_answer(column, each, f"friction {friction * each.torque:.2g} N·m at the input") for each in near]
+    return replace(file, question=QuestionError(question, answers))
 
 
 def _readings(file: Recognised, known: GearSoFar, given: FileMapping) -> list[_Effort]:
@@ -161,9 +163,10 @@ def _described(effort: _Effort) -> str:
     return f"{what[effort.channel]} in {effort.unit}"
 
 
-def _options(file: Recognised, effort: _Effort) -> str:
-    """Return the options with which a log is read so."""
-    column = next(file.columns[name] for name in ("current", "input_torque", "joint_torque") if name in file.columns)
-    found = [as_option("column", effort.channel, column), as_option("unit", column, effort.unit)]
-    needs_constant = effort.channel == "current" and effort.spread > 0.0
-    return " ".join([*found, "--constant torque_constant=…"] if needs_constant else found)
+def _answer(column: str, effort: _Effort, gives: str) -> Answer:
+    """Return the answer with which a log is read so."""
+    given: dict[str, Any] = {"columns": {effort.channel: column}, "units": {column: effort.unit}}
+    if effort.channel != "current" or effort.spread == 0.0:
+        return Answer(_described(effort), given, gives=gives)
+    given["constants"] = {"torque_constant": USUAL_TORQUE_CONSTANT}
+    return Answer(_described(effort), given, {"torque_constant": "N.m/A, of the motor"}, gives=f"{gives} with the usual motor")

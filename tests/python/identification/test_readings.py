@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import re
-import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.commands.file_options import FileOptions
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.source import measurement_files
+from strainwave.questions import Answer
 
 from tests.evidence.drawn import readings
+from tests.support.answers import answer_with, mapping_of
 
 TURN = 2.0 * np.pi
 RATIO, COULOMB, VISCOUS, INERTIA = 100.0, 0.06, 4e-4, 2.0  # at the input, but for the inertia
@@ -38,18 +36,8 @@ def values(found: Identified) -> dict[str, float]:
     return {each.estimate.path: each.estimate.value for each in found.parameters}
 
 
-def with_options(path: Path, options: str) -> Identified:
-    words = shlex.split(options)
-    given: dict[str, list[str]] = {}
-    for name, value in zip(words[::2], words[1::2], strict=True):
-        given.setdefault(name, []).append(value)
-    files = measurement_files([path])
-    side = given.get("--side", [None])[0]
-    constant = given.get("--constant")
-    said = FileOptions(column=given.get("--column"), unit=given.get("--unit"), side=side, constant=constant).mapping_of(
-        files.files
-    )
-    return identify("csg-20-100", files, mapping=said)
+def with_answer(path: Path, answer: Answer, **further: object) -> Identified:
+    return identify("csg-20-100", [path], mapping=mapping_of(answer, **further))
 
 
 @pytest.mark.slow("identification")
@@ -76,27 +64,23 @@ def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
 @pytest.mark.slow("identification")
 def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("position", "velocity", "torque"))
-    with pytest.raises(ValueError, match="the fit does not decide between readings; select one by ") as asked:
+    with pytest.raises(ValueError, match="the fit does not decide") as asked:
         identify("csg-20-100", [path])
-    ways = re.findall(r"(--[^()]*) \(([^:()]*): [\d.e+]+ %\)", str(asked.value))
-    options = {described: way for way, described in ways}
-    assert {"rev, rev/s at the output", "rad, rad/s at the output"} <= options.keys()
-    identified = with_options(path, options["rev, rev/s at the output"])
+    identified = with_answer(path, answer_with(asked.value, "rev, rev/s at the output"))
     found, of_gear = values(identified), identified.gear_set.gear.input_inertia * RATIO**2
     assert found["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
     assert found["gear.friction_input.viscous"] == pytest.approx(VISCOUS, rel=0.02)
     assert found["load.inertia"] + of_gear == pytest.approx(INERTIA, rel=0.02)
-    assert not with_options(path, options["rad, rad/s at the output"]).files[0].refused
+    assert not with_answer(path, answer_with(asked.value, "rad, rad/s at the output")).files[0].refused
 
 
 @pytest.mark.slow("identification")
 def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path) -> None:
     """An upright joint: in revolutions or radians it leaves as little, and the side is in the names."""
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
-    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well: .* select one by ") as asked:
+    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well") as asked:
         identify("csg-20-100", [path])
-    (option,) = re.findall(r"or (--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
-    identified = with_options(path, option)
+    identified = with_answer(path, answer_with(asked.value, "rev, rev/s"))
     inertia = values(identified)["load.inertia"] + identified.gear_set.gear.input_inertia * RATIO**2
     assert inertia == pytest.approx(INERTIA, rel=0.02)
 
@@ -110,10 +94,10 @@ def test_an_upright_joint_of_a_robot_is_in_radians(tmp_path: Path) -> None:
 
 def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("position", "velocity", "torque"), pace=2.5)
-    with pytest.raises(ValueError, match="select one by ") as asked:
+    with pytest.raises(ValueError, match="the fit does not decide") as asked:
         identify("csg-20-100", [path])
-    assert "(rad, rad/s at the output: " in str(asked.value)
-    assert "(rev, rev/s at the output: " not in str(asked.value)
+    assert "rad, rad/s at the output with " in str(asked.value)
+    assert "rev, rev/s at the output with " not in str(asked.value)
 
 
 @pytest.mark.slow("identification")
@@ -129,8 +113,8 @@ def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_pat
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
     with pytest.raises(ValueError, match="no unit is stated, and another one than the usual explains more") as asked:
         identify("csg-20-100", [path])
-    (option,) = re.findall(r"(--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
-    assert values(with_options(path, option))["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
+    by_turns = with_answer(path, answer_with(asked.value, "rev, rev/s"))
+    assert values(by_turns)["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
 
 
 @pytest.mark.slow("identification")
@@ -141,8 +125,7 @@ def test_a_torque_that_may_be_of_the_other_side_is_asked_about(tmp_path: Path) -
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
     with pytest.raises(ValueError, match=r"tau may be a torque of the motor in N\.m, a torque of the joint in") as asked:
         identify("csg-20-100", [path])
-    assert "--column input_torque=tau" in str(asked.value)
-    found = with_options(path, "--column input_torque=tau")
+    found = with_answer(path, answer_with(asked.value, "a torque of the motor in N.m"))
     assert not found.failed
     assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
     assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
@@ -169,9 +152,9 @@ def test_an_effort_without_a_unit_that_may_be_a_current_is_asked_about(tmp_path:
     np.savetxt(path, rows, delimiter=",", header="time,joint_position,joint_velocity,joint_effort", comments="")
     with pytest.raises(ValueError, match="joint_effort may be a current of the motor in A, a torque of the joint") as asked:
         identify("csg-20-100", [path])
-    second, first = re.findall(r"--column (?:current|joint_torque)=joint_effort", str(asked.value))
-    as_torque = with_options(path, first)
-    as_current = with_options(path, second + " --constant torque_constant=0.0985")
+    as_torque = with_answer(path, answer_with(asked.value, "a torque of the joint in N.m"))
+    of_motor = answer_with(asked.value, "a current of the motor in A")
+    as_current = with_answer(path, of_motor, constants={"torque_constant": 0.0985})
     assert values(as_torque)["load.gravity_torque"] == pytest.approx(25.0 / 9.85, rel=0.01)
     assert values(as_current)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
 

@@ -21,7 +21,10 @@ UNITS: dict[Quantity, str] = {
 
 # English, German, French, Spanish and Italian words without accents, and the symbols of textbooks and robots.
 QUANTITIES: dict[Quantity, tuple[str, ...]] = {
-    "time": ("time", "t", "zeit", "zeitstempel", "timestamp", "stamp", "temps", "tiempo", "tempo", "clock", "elapsed"),
+    "time": (
+        "time", "t", "zeit", "zeitstempel", "uhrzeit", "datum", "date", "datetime", "timestamp", "stamp", "temps", "heure",
+        "tiempo", "hora", "tempo", "ora", "clock", "elapsed",
+    ),
     "angle": (
         "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
         "ang", "angulo", "angolo", "posicion", "posizione", "encoder", "enc", "geber", "drehgeber", "resolver", "rotation",
@@ -257,6 +260,8 @@ def _without_unit(name: str, of: Quantity | None = None) -> tuple[str, str | Non
         named = words_of(rest)
         quantity = of or ("current" if _is_current(named, unit) else _quantity(named, None)[0])
         unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
+        if unit == "C" and quantity in ("time", "temperature"):  # T_C: no time is in coulombs
+            return rest, "degC"
         if quantity is not None and measures(unit, UNITS[quantity]):
             return rest, unit
         if len(unit) > 1 and set(words_of(rest)) <= {*COMMANDED, *NEUTRAL} | DEVIATIONS and measures(unit, "rad"):
