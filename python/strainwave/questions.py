@@ -94,8 +94,10 @@ the motor with --side input (in Python FileMapping(side="input"))
 
     def __init__(self, question: str, answers: Sequence[Answer] = (), *, by_fit: bool = False) -> None:
         self.question, self.answers, self.by_fit = question, tuple(answers), by_fit
+        in_python = [f" (in Python FileMapping({each.arguments}))" if each.given else "" for each in self.answers]
         ways = [
-            f"{each.label} with {shlex.join(each.options)} (in Python FileMapping({each.arguments}))" for each in self.answers
+            f"{each.label} with {shlex.join(each.options)}{python}"
+            for each, python in zip(self.answers, in_python, strict=True)
         ]
         super().__init__(printable(f"{question}{': ' * bool(ways)}{', or '.join(ways)}"))
 
@@ -125,5 +127,6 @@ the motor with --side input (in Python FileMapping(side="input"))
         return [printable(line).replace("\n", "\\n") for line in found]
 
 
+OF_SIDES = [Answer("of the joint", {"side": "output"}), Answer("of the motor", {"side": "input"})]
 TORQUE_CONSTANT = Answer("the motor is known", {"constants": {"torque_constant": 0.1}}, {"torque_constant": "N.m/A"})
 LOG_AT_RATE = Answer("samples of a log", {"constants": {"rate": 500.0}}, {"rate": "rows per second [Hz]"})

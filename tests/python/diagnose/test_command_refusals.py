@@ -38,10 +38,10 @@ def test_a_usable_recording_keeps_its_columns() -> None:
             recording(revolutions=400.0, rate=100.0),
             r"aliased: order 2 .* passes at .* Hz .* limit is 40 Hz, 0.8 of half .* slower",
         ),
-        (recording(current=True), r"without current or torque: its columns are time, input_angle; .* --column current="),
+        (recording(current=True), r"without current or torque: its columns are time, input_angle; .* record it"),
         (
             recording(input_angle=True),
-            r"without an angle or a speed: its columns are time, current; .* --column output_angle=",
+            r"without an angle or a speed: its columns are time, current; .* record it",
         ),
     ],
 )

@@ -151,7 +151,9 @@ def _with_answers_that_work(source: MeasurementFile, given: FileMapping, questio
     for answer in question.answers:
         try:
             mapping = given.updated(FileMapping(**answer.given))
-            if mapping == given:
+            if mapping == given and not answer.files:
+                continue
+            if mapping.joint == ALL_JOINTS and not joints_of(source, given):
                 continue
             if not answer.files and mapping.joint != ALL_JOINTS:
                 answer = replace(answer, gives=_in_words(_recognised(source, mapping)))
@@ -192,7 +194,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         if question.answers:
             raise
         left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns).values())))
-        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns)) from None
+        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, given.kind)) from None
     neighbours = {
         f"angle_of_joint_{column.which}": column
         for column in columns

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import Side, meaning
-from strainwave.questions import Answer, QuestionError
+from strainwave.questions import OF_SIDES, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
@@ -68,8 +68,8 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
     if {other.channel.side or ("output" if other.robot else None) for other in others} - {None} == {"output"}:
         return "output", f"{column.name} is recorded with channels of a joint: it is taken to be at the output"
-    ways = [Answer("of the joint", {"side": "output"}), Answer("of the motor", {"side": "input"})]
-    raise QuestionError(f"{column.name} may be the {column.channel.quantity} of the joint or of the motor", ways, by_fit=True)
+    question = f"{column.name} may be the {column.channel.quantity} of the joint or of the motor"
+    raise QuestionError(question, OF_SIDES, by_fit=True)
 
 
 def _check_unit(column: Column, fastest: float) -> None:

@@ -37,7 +37,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         there = (
             listed(names) if len(names) <= MAX_LISTED else f"{listed(names[:MAX_LISTED])} and {len(names) - MAX_LISTED} more"
         )
-        raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, []))
+        raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, [], mapping.kind))
     sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
     known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)

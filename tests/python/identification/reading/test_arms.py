@@ -237,7 +237,7 @@ def test_the_question_of_a_matrix_without_time_names_its_blocks(tmp_path: Path, 
     np.savetxt(tmp_path / "b.txt", alone["current"][1])
     with pytest.raises(QuestionError, match="no column has a name that is known") as asked:
         recognise(tmp_path / "b.txt")
-    assert "--column current=1 --constant speed=NUMBER" in options_of(asked.value)
+    assert "--column current=column_1 --constant speed=NUMBER" in options_of(asked.value)
 
 
 def test_what_a_person_names_needs_no_choice_of_what_is_like_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
