@@ -80,7 +80,7 @@ def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
     with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well") as asked:
         identify("csg-20-100", [path])
-    identified = with_answer(path, answer_with(asked.value, "output_angle in rev"))
+    identified = with_answer(path, answer_with(asked.value, "rev, rev/s"))
     inertia = values(identified)["load.inertia"] + identified.gear_set.gear.input_inertia * RATIO**2
     assert inertia == pytest.approx(INERTIA, rel=0.02)
 
@@ -113,7 +113,7 @@ def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_pat
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
     with pytest.raises(ValueError, match="no unit is stated, and another one than the usual explains more") as asked:
         identify("csg-20-100", [path])
-    by_turns = with_answer(path, answer_with(asked.value, "output_angle in rev"))
+    by_turns = with_answer(path, answer_with(asked.value, "rev, rev/s"))
     assert values(by_turns)["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
 
 
