@@ -139,7 +139,10 @@ def cases() -> list[Case]:
         Case("identify csg-17-50 FILE", t / "turn4/rotor_detent.csv", about(0.084, 3.82e-4)),
         Case(identify, t / "turn4/07-sea.csv", {"series_stiffness": (130.0, 0.0)}),
         Case(identify, t / "turn4/08-panda-theta.csv", {"gear.stiffness.a1": (1.6e4, 0.0)}, knows=("input_angle=theta",)),
-        Case(current, t / "turn4/erob_data.txt", {COULOMB: (0.0118, 0.0)}, knows=("spd=rpm", "output")),
+        Case(
+            current, t / "turn4/erob_data.txt", {"gear.friction_input.law.coulomb": (0.0118, 0.0)},
+            knows=("spd=rpm", "output"),
+        ),
         Case(identify, t / "turn4/gravity_compensated.csv", about(0.06, 4e-4)),
     ]  # fmt: skip
     ur = ("--joint 1 ", "current=block3")
