@@ -14,7 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT, slope_of
-from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_error, moving, stretches
+from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_residuals, moving, stretches
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
