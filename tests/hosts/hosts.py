@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -85,7 +87,8 @@ def outcome(host: Host, gear_set: sw.GearSet, folder: Path) -> Outcome:
 
 def _compared(host: Host, gear_set: sw.GearSet, folder: Path) -> Compared | str:
     try:
-        return host.run(gear_set, folder)
+        with redirect_stdout(io.StringIO()):  # FMPy names inputs without a signal
+            return host.run(gear_set, folder)
     except Exception as error:
         return f"{type(error).__name__}: {' '.join(str(error).split())[:100]}"
 
