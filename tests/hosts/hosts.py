@@ -203,13 +203,16 @@ def in_firmware(scalar: Any) -> Callable[[sw.GearSet, Path], Compared]:
     def run(gear_set: sw.GearSet, folder: Path) -> Compared:
         firmware = written(gear_set, folder, scalar, name="drive", part="drive")
         program = Loaded(firmware, library(folder, [firmware]))
-        instants = firmware.period * np.arange(round(DURATION / firmware.period))
-        inputs = {"command": motion().value(instants), "command_rate": motion().rate(instants)}
+        steps = round(DURATION / firmware.period)
+        instants = firmware.period * np.arange(steps + 1)
+        command = motion().value(instants)
+        inputs = {"command": command[:-1], "command_rate": np.diff(command) / firmware.period}
         begin = time.perf_counter()
-        found = program.run(**inputs, temperature=np.full(len(instants), 293.15))
-        rate = len(instants) / (time.perf_counter() - begin)
-        wanted = sw.simulate(gear_set.drive, motion(), firmware.period, sample=firmware.period)["output_angle"]
-        return Compared(share(found["output_angle"], wanted[: len(instants)]), "output angle", rate)
+        found = program.run(**inputs, temperature=np.full(steps, 293.15))
+        rate = steps / (time.perf_counter() - begin)
+        straight = sw.scenario.table(instants, command)
+        wanted = sw.simulate(gear_set.drive, straight, firmware.period, sample=firmware.period)["output_angle"]
+        return Compared(share(found["output_angle"], wanted[:steps]), "output angle", rate)
 
     return run
 

@@ -1,4 +1,4 @@
-"""Hosts of others take the files of the first command, and move a gear as `sw.simulate` does: `python -m tests.hosts` in short."""
+"""Hosts take the files of a first command, and move a gear as `sw.simulate` does: `python -m tests.hosts` in short."""
 
 from __future__ import annotations
 
