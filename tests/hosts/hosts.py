@@ -222,8 +222,10 @@ def in_newton(gear_set: sw.GearSet, folder: Path) -> Compared:
     about = json.loads((folder / "drive.json").read_text())
     package = build.loaded(folder)
     plant = gear_set.drive.replace(load=sw.loads.Prescribed(), meter=sw.meter.NoMeter())
-    run = build.reference_run(plant, motion(0.2), motion(0.2), about["step"])
-    angles: Any = SimpleNamespace(value=motion(0.2).value, rate=np.zeros_like)  # as a user who sets no target speed
+    instants = about["step"] * np.arange(round(0.2 / about["step"]) + 1)
+    straight = sw.scenario.table(instants, motion().value(instants))
+    run = build.reference_run(plant, straight, motion(0.2), about["step"])
+    angles: Any = SimpleNamespace(value=straight.value, rate=np.zeros_like)  # as a user who sets no target speed
     found = build.followed(package, run, angles, about)
     begin = time.perf_counter()
     build.followed(package, run, angles, about, count=MANY)

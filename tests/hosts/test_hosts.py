@@ -21,7 +21,7 @@ MAX_SHARES = {
     "FMPy, FMI 3 model exchange": 1e-5,
     "firmware, double": 1e-12,
     "firmware, float": 1e-5,
-    "Newton": 1e-3,
+    "Newton": 1e-4,
     "python-control": 2e-2,
     "BAM": 1e-9,
     "URDF, ROS 2": 1e-9,
