@@ -20,7 +20,7 @@ from strainwave.identification.experiments.motion_log import MotionLog, per_torq
 from strainwave.identification.fitting.fit import problem_of
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.linear_fit import linear_fit, solved
-from strainwave.statistics.residuals import autoregression, chance_of_gain, correlation_length
+from strainwave.statistics.residuals import autoregression, chance_of_gain, correlation_length, whitened
 
 Array = NDArray[np.float64]
 
@@ -149,11 +149,9 @@ def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> lis
     """
     if not pairs:
         return []
-    from scipy import signal
-
     every = np.column_stack([base, *pairs.values()])
     noise = autoregression(left - every @ solved(every, left))
-    series = np.asarray(signal.lfilter(noise, [1.0], np.column_stack([every, left]), axis=0))
+    series = whitened(np.column_stack([every, left]), noise)
     columns, between, target = np.split(series, [base.shape[1], -1], axis=1)
     white = dict(zip(pairs, np.split(between, len(pairs), axis=1), strict=True))
     rest, chosen = (target - columns @ solved(columns, target))[:, 0], list[Wave]()
