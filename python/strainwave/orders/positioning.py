@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import arguments
 from strainwave.messages import listed
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.order_waves import amplitudes_of, order_waves
 
 Array = NDArray[np.float64]
 
@@ -186,12 +187,11 @@ def _orders(angle: Array, deviation: Array, ratio: float | None) -> tuple[tuple[
     orders = [each for each in wanted if each * turns >= MIN_PERIODS and each * apart * MIN_SAMPLES_PER_PERIOD <= 1.0]
     if not orders or len(angle) < 3 * (1 + 2 * len(orders)):
         return (), [f"the positions span {turns:.3g} turns: orders over the angle need one period in at least four positions"]
-    waves = [part for order in orders for part in (np.cos(order * angle), np.sin(order * angle))]
-    columns = np.stack([np.ones_like(angle), *waves], axis=1)
-    amplitudes = solved(columns, deviation)
-    left = deviation - columns @ amplitudes
+    columns = np.column_stack([np.ones_like(angle), order_waves(angle, orders)])
+    coefficients = solved(columns, deviation)
+    left = deviation - columns @ coefficients
     sigma = float(np.sqrt(left @ left / (len(angle) - columns.shape[1]) * 2.0 / len(angle)))
-    sizes = np.hypot(amplitudes[1::2], amplitudes[2::2])
+    sizes, _ = amplitudes_of(coefficients[1:])
     found = tuple(
         (order, float(size), sigma) for order, size in zip(orders, sizes, strict=True) if size > SIGNIFICANCE_SIGMA * sigma
     )
