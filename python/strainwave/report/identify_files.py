@@ -200,7 +200,7 @@ def _of_file(result: FileResult) -> Iterator[str]:
     if result.recognised is not None:
         yield from (f"  since {why}" for why in result.recognised.why)
     if result.refused:
-        yield f"  NOT USED: {result.refused}"
+        yield f"  NOT USED: {with_options(result.refused)}"
         return
     share = share_held_out(result.held_out)
     yield f"  {result.model}{f'; error on data held out: {share} of what varies' if share else ''}"

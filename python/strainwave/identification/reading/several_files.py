@@ -14,6 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import EFFORTS
 from strainwave.identification.reading.channels import CHANNELS
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile
@@ -59,7 +60,10 @@ def _in_one_reading(group: Sequence[Recognised], opened: Mapping[Path, Measureme
     usual, _ = Counter(file.kind for file in group).most_common(1)[0]
     readings = dict[Path, dict[_Reading, Recognised]]()
     for file in group:
-        ways = [file, *(recognise(opened[file.path], each.mapping) for each in file.alternatives)]
+        ways = [
+            file,
+            *(recognise(opened[file.path], file.mapping.updated(FileMapping(**each.given))) for each in file.alternatives),
+        ]
         readings[file.path] = {_reading(each): each for each in ways}
     common = set[_Reading].intersection(*(set(readings[file.path]) for file in group if file.kind == usual))
     if len(common) != 1:
@@ -71,7 +75,7 @@ def _in_one_reading(group: Sequence[Recognised], opened: Mapping[Path, Measureme
     for file in group:
         own = readings[file.path]
         same = own.get(one) or next((each for (_, moved), each in own.items() if moved == motions), file)
-        found[file.path] = replace(same, question="", alternatives=(), remarks=(remark, *same.remarks))
+        found[file.path] = replace(same, question=None, alternatives=(), remarks=(remark, *same.remarks))
     return found
 
 
