@@ -33,6 +33,7 @@ from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import linear_fit
+from strainwave.statistics.order_waves import order_waves
 from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
@@ -148,9 +149,8 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
     torque = transmitted_torque(log, drive)
     angles = recording.values("input_angle", "rad"), recording.values("output_angle", "rad")
     error = np.interp(motion.time, recording.time, angles[0] / ratio - angles[1])
-    waves = [wave(order * motion.angle) for order in law.order for wave in (np.sin, np.cos)]
-    series = [torque, np.sign(motion.speed), motion.speed, np.ones_like(torque), *waves]
-    columns = motion.filtered(np.stack(series)).T
+    others = [torque, np.sign(motion.speed), motion.speed, np.ones_like(torque)]
+    columns = motion.filtered(np.stack([*others, *order_waves(motion.angle, law.order).T])).T
     measured = motion.filtered(error[np.newaxis] - error.mean())[0]
     regression = linear_fit(columns, measured)
     softness, sigma = float(regression.values[0]), float(regression.sigma[0])
