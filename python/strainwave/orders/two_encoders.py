@@ -181,14 +181,7 @@ def transmission_error(
     pair, measured = ratio_of(pair, ratio)
     size = measured.used
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
-    loads = loads_of(pair, size)
-    if 1.0 / abs(size) in [order for order, shaft in chosen if shaft == "output"]:
-        if load is None:  # one wave over the turn of the output, whose gravity is no further column
-            loads = loads[:2]
-            left_out.append("order 1 of the output contains the wind-up by a weight there: one record does not separate them")
-        else:
-            chosen = [each for each in chosen if each != (1.0 / abs(size), "output")]
-            left_out.append("order 1 of the output is part of the wind-up by the load, from which one record does not separate it")
+    chosen, loads, of_weight = _with_one_weight(chosen, loads_of(pair, size), 1.0 / abs(size), load)
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
     found, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
@@ -196,7 +189,8 @@ def transmission_error(
     lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
     frequency, damping = _stage_numbers(found, pair.record, every)
     speeds, vibrates = _speeds_of_amplitudes(found, pair) if chosen else "", found.vibrates and not _at_one_speed(pair)
-    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen, speeds)]
+    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *of_weight]
+    remarks += _stage_remarks(found, pair, every, chosen, speeds)
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
@@ -257,6 +251,19 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             "spline, are separated after a whole one"
         )
     return found, remarks
+
+
+def _with_one_weight(
+    chosen: list[tuple[float, Shaft]], loads: list[Array], once: float, load: str | None
+) -> tuple[list[tuple[float, Shaft]], list[Array], list[str]]:
+    """Return orders and loads with one wave over the turn of the output: an order, or gravity if the load is known; and why."""
+    if (once, "output") not in chosen:
+        return chosen, loads, []
+    if load is None:
+        why = "order 1 of the output contains the wind-up by a weight there: one record does not separate them"
+        return chosen, loads[:2], [why]
+    why = "order 1 of the output is part of the wind-up by the load, from which one record does not separate it"
+    return [each for each in chosen if each != (once, "output")], loads, [why]
 
 
 def _regressed(
