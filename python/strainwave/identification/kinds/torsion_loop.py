@@ -203,6 +203,7 @@ def in_steps(time: Array, angle: Array, torque: Array) -> bool:
     return is_slow and float(np.ptp(angle)) <= MIN_TURNING and _is_spring(angle, torque)
 
 
+@np.errstate(all="ignore")
 def _is_spring(angle: Array, torque: Array) -> bool:
     """True if the torque alternates and follows the angle."""
     alternates = torque.min() < 0.0 < torque.max() and np.ptp(angle) > 0.0

@@ -163,6 +163,7 @@ def _times_as_fast(column: Column, other: Column, time: Column | None) -> float:
     return own / others if own > 0.0 and others > 0.0 else np.nan
 
 
+@np.errstate(all="ignore")
 def _speed(column: Column, time: Column) -> Array:
     """Return a speed, or that of an angle over a thousandth of the record; 0 if its time does not run forward."""
     if column.channel.quantity == "speed":
