@@ -47,9 +47,9 @@ def two_joints(folder: Path) -> str:
 
 
 def one_quantity(folder: Path) -> str:
-    header = "t [s],arm_1_joint,arm_2_joint"
+    header, efforts = "t [s],arm_1_joint,arm_2_joint", "t [s],arm_1_joint_effort [Nm],arm_2_joint_effort [Nm]"
     written(folder / "run_velocity.csv", header, TIME, SPEED, OTHER_SPEED)
-    written(folder / "run_effort.csv", header, TIME, TORQUE, OTHER_TORQUE)
+    written(folder / "run_effort.csv", efforts, TIME, TORQUE, OTHER_TORQUE)
     return written(folder / "run_position.csv", header, TIME, ANGLE, OTHER_ANGLE)
 
 
