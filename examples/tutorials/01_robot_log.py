@@ -55,9 +55,9 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 #   The delay is estimated and corrected.
 # * `the inertia of the motor …`: the log cannot separate the rotor from the load. The inertia below is that of the load,
 #   plus that of the rotor times 80².
-# * `current is counted against the motion …`: in `strainwave` a positive current turns the motor forward, and the output of
-#   this gear turns against its motor. In this robot a positive current turns the joint forward. This is detected and
-#   corrected.
+# * `current is counted in the sense of the output …`: in `strainwave` a positive current turns the motor forward, and the
+#   output of this gear turns against its motor. In this robot a positive current turns the joint forward. This is detected
+#   and corrected.
 # * The numbers: value ± standard deviation. The friction is at the motor's side; multiply it by 80 for the joint.
 #
 # The exit code is 0. It is 3 if a check finds a contradiction, and then there is no `gear.toml`: [five wrong
@@ -144,15 +144,13 @@ truth = {
 print(f"{'':30} {'identified':>10} {'truth':>9}  standard deviations apart")
 for parameter in found.parameters:
     estimate = parameter.estimate
-    if estimate.path not in truth:  # a detent, which stands for the transmission error of the joint
-        continue
     distance = (estimate.value - truth[estimate.path]) / estimate.sigma
     print(f"{estimate.path:30} {estimate.value:10.4g} {truth[estimate.path]:9.4g} {distance:10.1f}")
 
 # %% [markdown]
-# Coulomb friction is 2 % too high, 2.1 standard deviations. **Viscous friction is 5 % too low**, 3.8 standard deviations. The
-# cause is the rate of the log, 100 samples a second: at a reversal the friction changes its sign between two of them. The
-# same joint recorded at 250 Hz gives 2.91e-4 ± 0.10e-4 N·m·s/rad. So **record faster** if you can, or [add a table of
+# **Viscous friction is 5 % too low**, and Coulomb friction 2 % too high. Their standard deviations contain this: another law of
+# friction predicts the log as well, and its numbers lie as far apart. The cause is the rate of the log, 100 samples a second:
+# at a reversal the friction changes its sign between two of them. So **record faster** if you can, or [add a table of
 # friction](05_which_friction.md).
 #
 # ## 7. Now your own log

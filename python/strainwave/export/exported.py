@@ -22,9 +22,12 @@ COMMENTS = {
     ".xml": XML,
     ".urdf": XML,
     ".xacro": XML,
+    ".md": XML,
     ".yaml": "# ",
     ".py": "# ",
     ".mo": "// ",
+    ".h": "// ",
+    ".hpp": "// ",
 }  # beginning of a comment by ending of the name
 NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # beginnings of sources of such numbers
 
@@ -47,7 +50,7 @@ class Exported:
     >>> found = sw.export.joint(sw.GearSet.read("csg-20-100"))
     >>> value, unit = found.numbers["frictionloss"]
     >>> sorted(found.files), round(value, 2), unit
-    (['joint.urdf', 'joint.xml'], 4.61, 'N.m')
+    (['joint.py', 'joint.urdf', 'joint.xml'], 4.61, 'N.m')
     >>> found.left_out[1]
     'torsion: 3.99 mrad at 107 N.m'
     """

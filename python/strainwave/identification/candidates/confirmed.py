@@ -13,9 +13,10 @@ from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
-from strainwave.identification.candidates.motion_model import INPUT
-from strainwave.identification.candidates.plain import held_out_residuals, moving, stretches
+from strainwave.identification.candidates.motion_model import INPUT, slope_of
+from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_residuals, moving, stretches
 from strainwave.identification.candidates.ripple import by_full_band
+from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.held_out import HeldOut
@@ -26,6 +27,8 @@ Array = NDArray[np.float64]
 
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
+OF_ALL_LAWS = (f"{INPUT}coulomb", f"{INPUT}viscous")  # numbers of friction that mean the same in each law
+FAST_SHARE = 0.95  # of the rows: laws of friction are compared by their slope at the speed that they do not exceed
 MAX_REFITS = 6  # further models that are fitted to all but the last stretch if the best one is not confirmed
 
 
@@ -66,7 +69,8 @@ def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
         they are drawn, from the first motion to the last
     """
     log, last = best.log, best.folds[-1].stretch
-    best = replace(best, priors={**best.priors, **by_full_band(best.model, ~last)})
+    (waves,) = by_full_band(best.model, [~last])
+    best = replace(best, priors={**best.priors, **waves})
     found = best.fitted_to(~last[log.motion.rows])
     residual = best.left(found.model, nuisances_of(found))
     left, rows = residual[last], moving(log)
@@ -93,16 +97,20 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
     """Return the standard deviations of the numbers of a fit by how they move without each block of the motion, by path.
 
     The jackknife (Quenouille1956, Tukey1958) over contiguous blocks: it takes no model of the noise, and sees what differs from
-    one part of a record to another. Numbers at a limit have none.
+    one part of a record to another. A law that has no number of its own for low speed need not hold there: how far numbers move
+    without the slow samples is part of their spread. Numbers at a limit have none.
     """
     problem, x = solved_problem(best.fit)
-    rows = np.arange(len(best.log.motion.rows))
+    rows, speed = np.arange(len(best.log.motion.rows)), np.abs(best.log.motion.speed)
     blocks = [(rows >= each[0]) & (rows <= each[-1]) for each in np.array_split(rows, JACKKNIFE_BLOCKS)]
-    without = np.array(list(without_rows(problem, x, blocks, ()))).T
-    numbers = {plain(each.path): values for each, values in zip(problem.plan.unknowns, without, strict=False)}
+    slow = speed[best.log.motion.rows] < MIN_SLIDING_SPEED * np.quantile(speed, FAST_QUANTILE)
+    if best.model.path_of("stribeck_speed") in best.model.free:
+        slow[:] = False
+    values = np.array([x, *without_rows(problem, x, [slow, *blocks], ())]).T
+    numbers = {plain(each.path): own for each, own in zip(problem.plan.unknowns, values, strict=False)}
     return {
-        path: float(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(values)))
-        for path, values in with_sum(numbers, best.model.one_speed).items()
+        path: float(np.hypot(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(own[2:])), own[1] - own[0]))
+        for path, own in with_sum(numbers, best.model.one_speed).items()
     }
 
 
@@ -117,29 +125,34 @@ def with_sum(numbers: Mapping[str, Any], speed: float) -> dict[str, Any]:
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:
     """Return how far numbers lie apart in models that predict as well, by path: the choice of a model is part of their spread.
 
-    Numbers of friction are compared within one law: those of another law have another meaning.
+    Of another law of friction that predicts the pass band better, its Coulomb torque and its slope at fast speeds are compared:
+    its other numbers have another meaning, and a law that predicts worse has more freedom than the record needs.
     """
     values = _numbers(best)
-    found = dict.fromkeys(values, 0.0)
+    apart = dict.fromkeys(values, 0.0)
     for other in others:
         if not other.predicts_as_well_as(best):
             continue
         is_one_law = type(other.model.law) is type(best.model.law)
+        own, error = other.comparable_errors(best)
+        of_laws = OF_ALL_LAWS if own < error else ()
         for path, value in _numbers(other).items():
-            if path in found and (is_one_law or not path.startswith(INPUT)):
+            if path in apart and (is_one_law or not path.startswith(INPUT) or path in of_laws):
                 off = abs(value - values[path])
                 turned = abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi) if "phase" in path else off
-                found[path] = max(found[path], float(turned))
-    return found
+                apart[path] = max(apart[path], float(turned))
+    return apart
 
 
 def _numbers(candidate: MotionCandidate) -> dict[str, float]:
-    """Return the numbers that are free, and the friction at the one speed of a record, by path."""
-    model = candidate.model
+    """Return the numbers that are free, and those of all laws of friction or that at the one speed of a record, by path."""
+    model, law = candidate.model, candidate.model.law
     numbers = dict(zip(map(plain, model.free), candidate.values, strict=True))
     if model.one_speed:
-        numbers[STEADY] = float(model.law.coulomb + model.one_speed * model.law.viscous)
-    return numbers
+        numbers[STEADY] = float(law.coulomb + model.one_speed * law.viscous)
+        return numbers
+    fast = float(np.quantile(np.abs(model.log.motion.speed[model.log.motion.rows]), FAST_SHARE))
+    return {**numbers, OF_ALL_LAWS[0]: float(law.coulomb), OF_ALL_LAWS[1]: slope_of(law, fast)}
 
 
 def other_laws(best: MotionCandidate, others: Sequence[MotionCandidate]) -> list[MotionCandidate]:

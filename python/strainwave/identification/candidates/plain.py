@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.motion import END_SAMPLES
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MotionLog, per_torque, turnover_speed
 from strainwave.statistics.linear_fit import linear_fit, own_share, solved
 
@@ -57,11 +58,13 @@ class Plain(ComparedByFields):
 
 
 def moving(log: MotionLog) -> Rows:
-    """Return the sound samples of the grid from the first motion to the last, shape (m,)."""
+    """Return the sound samples from the first motion to the last, without the ends that filters spoil, shape (m,)."""
     speed = np.abs(log.motion.speed)
     fast = np.flatnonzero(speed > MIN_SPEED * np.quantile(speed, FAST_QUANTILE))
     rows = np.zeros(len(speed), bool)
     rows[fast[0] : fast[-1] + 1] = True
+    spoilt = END_SAMPLES * log.motion.every
+    rows[:spoilt] = rows[-spoilt:] = False
     return rows & log.sound
 
 

@@ -60,7 +60,8 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         yield Check(
             "plain least squares", source, share, limit, "1", share > limit,
             f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
-            "record longer, at several speeds and both ways: the record does not determine more than its mean friction",
+            "record longer, or see whether columns, units and sides are right: what the model has beyond plain least squares "
+            "does not predict this record",
         )  # fmt: skip
 
 

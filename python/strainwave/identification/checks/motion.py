@@ -121,7 +121,7 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
         "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
         f"gravity goes with the sine of the motor's angle over about {ratio / scale:.3g}, the ratio of the gear is "
         f"{ratio:.6g}",
-        "see whether the start set is that of this gear, or give its ratio: --constant ratio=…",
+        "see whether the start set is that of this gear, or give its ratio: --constant ratio=NUMBER",
     )  # fmt: skip
 
 

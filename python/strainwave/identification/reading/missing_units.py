@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +13,15 @@ from strainwave.files.units import convert
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
-from strainwave.messages import as_option, quoted
+from strainwave.identification.reading.times import is_file_time
+from strainwave.messages import quoted
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
 ANGLES = {"rad": 2.0 * np.pi, "deg": 360.0, "rev": 1.0}  # units, and a revolution in each
 SPEEDS = ("rad/s", "deg/s", "rpm")
-EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
+EPOCHS = ((1e18, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
 RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
 MIN_BITS, MAX_BITS = 6, 40  # of an encoder
 MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
@@ -53,7 +56,7 @@ def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
         columns: with the units that are stated or given, and their numbers
 
     Raises:
-        ValueError: a time may be in any unit
+        QuestionError: a time may be in any unit
     """
     found = {column.position: _by_itself(column, columns) for column in columns}
     time = next((column for column in columns if column.channel.quantity == "time"), None)
@@ -120,6 +123,8 @@ def _unit_of_size(size: float) -> str | None:
 def _by_itself(column: Column, columns: Sequence[Column]) -> Assumed:
     """Return the unit of a column that is stated, or that its own numbers determine, or the usual one."""
     values = column.raw[np.isfinite(column.raw)]
+    if column.channel.quantity == "time" and is_file_time(values):
+        return Assumed("us", "as it counts tenths of them since 1601", True, scale=0.1)
     if column.unit is not None:
         return Assumed(column.unit, "stated", True)
     match column.channel.quantity:
@@ -149,11 +154,14 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
         for rate in RATES if counts_rows else ():
             if abs(slope / rate / expected - 1.0) < MAX_OFF_RATE:
                 return Assumed("s", f"as it counts rows at {rate:g} Hz: {then}", scale=1.0 / rate)
-    hint = as_option("unit", "time", "ms")
-    lasts = f" if the record lasted {np.ptp(values):.4g} ms" if len(values) else ""
-    raise ValueError(
-        f"column {quoted(column.name)} has no unit, and its steps do not determine it; give it: {hint}{lasts}; if it "
-        "counts rows, give their rate: --constant rate=500"
+    lasted = float(np.ptp(values)) if len(values) else 0.0
+    ways = [
+        Answer(f"in {unit}: the record lasted {convert(lasted, unit, 's'):.4g} s", {"units": {column.label.name: unit}})
+        for unit in ("ms", "us", "s")
+    ]
+    raise QuestionError(
+        f"column {quoted(column.name)} has no unit, and its steps do not determine it",
+        [*ways, replace(LOG_AT_RATE, label="it counts rows")],
     )
 
 

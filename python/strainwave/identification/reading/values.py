@@ -11,19 +11,31 @@ from numpy.typing import NDArray
 from strainwave.files.labels import ColumnSource
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, counts
+from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.incomplete_units import check_units, with_counts
-from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.recorders import with_registers
 from strainwave.messages import as_option, listed, one_line, quoted
+from strainwave.questions import Answer, QuestionError
 
 Array = NDArray[np.float64]
 
 MIN_WHOLE = 0.5  # of the rows of the slowest channel: with fewer whole rows the channels were sampled at other instants
+OTHER_UNITS: dict[str, tuple[str, str]] = {
+    "time": ("ms", "s"),
+    "angle": ("deg", "rad"),
+    "twist": ("deg", "rad"),
+    "speed": ("rpm", "rad/s"),
+    "torque": ("mN.m", "N.m"),
+    "current": ("mA", "A"),
+    "voltage": ("mV", "V"),
+    "temperature": ("K", "degC"),
+    "vibration": ("mm/s2", "m/s2"),
+}  # usual ones, of which an example differs from the unit that is taken
 MAX_LISTED = 4  # names, if none is known
 
 
@@ -36,7 +48,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         there = (
             listed(names) if len(names) <= MAX_LISTED else f"{listed(names[:MAX_LISTED])} and {len(names) - MAX_LISTED} more"
         )
-        raise ValueError(one_line(f"{table.file}: no column has a name that is known: {there}; {_naming(table)}"))
+        raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, [], mapping.kind))
     sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
     known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)
@@ -46,11 +58,17 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     check_units(own, mapping.constants.get("ratio"))
     try:
         units = units_of(own)
+    except QuestionError:
+        raise
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
     assumed = ", ".join(f"{c.name} in {' '.join(filter(None, units[c.position][:2]))}" for c in own if c.unit is None)
     remarks = [*left_out, *remarks, *of_recorder, *counted]
-    remarks += [f"no unit is stated: {assumed}; otherwise add --unit NAME=UNIT"] if assumed else []
+    if assumed:
+        column = next(c for c in own if c.unit is None)
+        other = next(unit for unit in OTHER_UNITS[column.channel.quantity] if unit != units[column.position].unit)
+        remark = f"no unit is stated: {assumed}; otherwise add its unit, as {as_option('unit', column.label.name, other)}"
+        remarks.append(remark)
     angle = next((c for c in own if c.channel.quantity == "angle" and not c.channel.commanded), None)
     neighbour = Assumed(UNITS["angle"] if angle is None else units[angle.position].unit, sure=True)  # in that of the joint
     found = [_in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known]
@@ -59,16 +77,6 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
-
-
-def _naming(table: OpenTable) -> str:
-    """Return how to name columns of which neither names nor numbers determine anything."""
-    if len([content for content in table.contents if content == "numbers"]) == 1:
-        return "name it if the speed was constant, as with --column current=1 --constant speed='20 1/min'"
-    names = [label.name for label in table.labels]
-    if nameless(table):
-        return "name them, as with --constant rate=HZ --column output_angle=1 --column joint_torque=2"
-    return f"name it, as with {as_option('column', 'speed', names[0])}"
 
 
 def _with_side(column: Column, mapping: FileMapping) -> Column:
@@ -112,10 +120,10 @@ def _in_si(table: OpenTable, column: Column, unit: Assumed) -> Column:
         values[there] = unit.scale * convert(column.raw[there], unit.unit, found.si_unit)
     except ValueError as error:
         what = "command" if column.channel.commanded else column.channel.quantity
-        place = f"{table.file} column {quoted(column.name)}"
-        hint = as_option("unit", column.name, "counts/16384" if counts(unit.unit) else column.channel.unit)
-        other = f"name another column, with {as_option('column', what, 'NAME')}, or " if column.unit else ""
-        raise ValueError(one_line(f"{place} cannot be the {what}: {error}; {other}give its unit, with {hint}")) from None
+        usual = "counts/16384" if counts(unit.unit) else column.channel.unit
+        numbers = {column.label.name: "counts of a revolution"} if counts(unit.unit) else {}
+        ways = [Answer(f"it is in {column.channel.unit}", {"units": {column.label.name: usual}}, numbers)]
+        raise QuestionError(f"column {quoted(column.name)} cannot be the {what}: {error}", ways) from None
     return replace(found, si=values)
 
 

@@ -108,7 +108,7 @@ def not_written(files: Sequence[FileResult]) -> str:
     kept = [part for part in parts if part != "load"]
     return (
         f"without the measured {listed(parts)}: the torque constant is not known, and these numbers are in A "
-        f"(give --constant torque_constant=…){f'; the gear keeps {listed(kept)} of the start set' if kept else ''}"
+        f"(give --constant torque_constant=NUMBER){f'; the gear keeps {listed(kept)} of the start set' if kept else ''}"
     )
 
 
