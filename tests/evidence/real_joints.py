@@ -137,7 +137,8 @@ def trials() -> Iterator[Trial]:
             )  # fmt: skip
     for run in (1, 3):
         for joint in range(1, 8):
-            yield Trial(f"kinova-gen3-split/*_{run}.csv", f"--joint {joint}", _block_columns(joint, 7), alone=False)
+            options = f"--joint {joint} --column joint_torque=tau_{joint}"
+            yield Trial(f"kinova-gen3-split/*_{run}.csv", options, _block_columns(joint, 7), alone=False)
     for joint, ratio in enumerate(KUKA_RATIOS, 1):
         value = "256.857142857" if "/" in ratio else ratio
         options = f"--joint {joint} --column input_torque=rec.act_torque_abs_nm --constant ratio={value}"
