@@ -196,6 +196,9 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         if question.answers:
             raise
         left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns).values())))
+        if unnamed.is_frequency_response(table):
+            why = "it is a frequency response, which is not read: give the record in time from which it was computed"
+            raise QuestionError(f"{why}{left}") from None
         raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, given.kind)) from None
     neighbours = {
         f"angle_of_joint_{column.which}": column
