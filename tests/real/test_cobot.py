@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.candidates.warming import Warming, friction_over_temperature
+from strainwave.identification.reading.mapping import FileMapping
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cobot-temperature"
 COLUMNS = {"Current_J3": "current", "Temperature_J3": "temperature", "Speed_J3": "speed"}
@@ -60,3 +61,12 @@ def test_the_level_is_that_which_is_told_within_its_interval(joint: sw.Recording
 def test_what_counts_as_motion_changes_the_slope_by_less_than_its_interval(joint: sw.Recording, slowest: float) -> None:
     usual, other = friction_over_temperature(joint), friction_over_temperature(joint, slowest=slowest)
     assert abs(other.slope.value - usual.slope.value) < 2.0 * usual.slope.sigma
+
+
+@pytest.mark.slow("identification")
+def test_a_record_of_seconds_apart_is_refused_in_words() -> None:
+    """It was refused with "need at least one array to concatenate"."""
+    (path,) = FOLDER.glob("*.csv")
+    mapping = FileMapping(joint="3", constants={"torque_constant": 0.1})
+    with pytest.raises(ValueError, match="nothing moves at a constant speed: all stretches are at rest"):
+        sw.identify("csg-20-100", [path], mapping=mapping)

@@ -50,3 +50,12 @@ def test_one_speed_beside_other_joints_that_move_is_no_friction() -> None:
     found = real_joints.identified(trial)
     assert not any(each.estimate.path == "steady_friction" for each in found.parameters)
     assert found.failed
+
+
+@pytest.mark.slow("identification")
+def test_the_start_set_is_no_prior_where_the_record_contradicts_it() -> None:
+    """The friction of a small gear pulled that of a heavy robot to a fortieth, and the error to five times as much."""
+    (trial,) = (each for each in real_joints.trials() if each.name == "kuka-kr300/FF_A.mat 2")
+    found = real_joints.outcome(trial)
+    assert found.share < real_joints.MAX_SHARE, real_joints.line(found)
+    assert found.failed == ()

@@ -45,7 +45,8 @@ def confirmed(
     """
     logs, tried = {tuple(each.log.regressors): each.log for each in (best, *others)}.values(), []
     of_plain = [(log, held_out_residuals(log, drive, stretches(log))) for log in logs]
-    plain = min((rms(left[-1]) for log, left in of_plain if not (log.regressors and _is_chance(left, best))), default=np.nan)
+    counted = [left for log, left in of_plain if not (log.regressors and beats_by_chance(left, best.residuals))]
+    plain = min((rms(left[-1]) for left in counted), default=np.nan)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
@@ -55,9 +56,9 @@ def confirmed(
     return min(tried, key=lambda found: found[1].error)
 
 
-def _is_chance(left: Sequence[Array], best: MotionCandidate) -> bool:
-    """True if residuals of plain least squares are smaller than those of a model in the last stretch, but not in all."""
-    return rms(left[-1]) < best.errors[-1] and rms(np.concatenate(left)) > best.error
+def beats_by_chance(left: Sequence[Array], of_model: Sequence[Array]) -> bool:
+    """True if residuals are smaller than those of a model in the last stretch, but not in all together."""
+    return rms(left[-1]) < rms(of_model[-1]) and rms(np.concatenate(left)) > rms(np.concatenate(of_model))
 
 
 def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:

@@ -57,15 +57,20 @@ class Plain(ComparedByFields):
     sense: float
 
 
-def moving(log: MotionLog) -> Rows:
-    """Return the sound samples from the first motion to the last, without the ends that filters spoil, shape (m,)."""
+def from_motion_to_motion(log: MotionLog) -> Rows:
+    """Return the sound samples from the first motion to the last, whatever the band of the log, shape (m,)."""
     speed = np.abs(log.motion.speed)
     fast = np.flatnonzero(speed > MIN_SPEED * np.quantile(speed, FAST_QUANTILE))
     rows = np.zeros(len(speed), bool)
     rows[fast[0] : fast[-1] + 1] = True
-    spoilt = END_SAMPLES * log.motion.every
-    rows[:spoilt] = rows[-spoilt:] = False
     return rows & log.sound
+
+
+def moving(log: MotionLog) -> Rows:
+    """Return the sound samples from the first motion to the last, without the ends that filters spoil, shape (m,)."""
+    rows, spoilt = from_motion_to_motion(log), END_SAMPLES * log.motion.every
+    rows[:spoilt] = rows[-spoilt:] = False
+    return rows
 
 
 def fit_plain(log: MotionLog, drive: Drive) -> Plain:

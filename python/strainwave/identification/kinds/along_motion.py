@@ -42,6 +42,7 @@ from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.determined import friction_at
 from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA
 from strainwave.identification.results.motor_inertia import MOTOR
@@ -81,8 +82,11 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     apart = spread_by_models(best, others)
     judged, estimates = _judged(best, apart, taken, known)
     if judged is not best:
-        refitted, predicted = refit(judged)
-        held_out = replace(refitted, plain=held_out.plain)
+        refitted, by_set = refit(judged)
+        if refitted.error > MAX_SHARE_OF_PLAIN * held_out.error:  # the record contradicts the set: no prior
+            judged, estimates = best, list(_of_motion(best, apart, taken))
+        else:
+            held_out, predicted = replace(refitted, plain=held_out.plain), by_set
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):

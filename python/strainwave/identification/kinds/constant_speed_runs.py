@@ -231,13 +231,15 @@ def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     If the runs determine gravity over the angle of the joint, it is taken out, and is a result, too.
 
     Raises:
-        ValueError: the runs were measured on different sides
+        ValueError: the runs were measured on different sides, or nothing moves
     """
     if not runs:
         return (), known
     if len({run.side for run in runs}) > 1:
         raise ValueError("some were measured at the input, some at the output: give the files of each side by themselves")
-    side, parts = runs[0].side, [stretch for run in runs for stretch in run.stretches]
+    side, parts = runs[0].side, [each for run in runs for each in run.stretches if each.speed != 0.0]
+    if not parts:
+        raise ValueError("nothing moves at a constant speed: all stretches are at rest")
     speeds = np.array([each.speed for each in parts])
     levels = levels_of([each.torque for each in parts], [each.angle for each in parts], speeds)
     speed, remarks = _signed(speeds, levels.torque)

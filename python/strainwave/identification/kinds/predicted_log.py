@@ -14,7 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import bands
-from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain, held_out_rms, moving
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain, from_motion_to_motion, held_out_rms
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
@@ -149,7 +149,7 @@ class _PredictedLog(ComparedByFields):
     @cached_property
     def rows(self) -> Rows:
         """Samples from the first motion to the last, shape (m,)."""
-        return moving(self.log)
+        return from_motion_to_motion(self.log)
 
     @cached_property
     def band(self) -> Motion:

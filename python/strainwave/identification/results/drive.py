@@ -17,7 +17,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
 from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
-from strainwave.identification.candidates.plain import moving
+from strainwave.identification.candidates.plain import from_motion_to_motion
 from strainwave.identification.candidates.torque_place import frictionless
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.fit import Fit
@@ -359,7 +359,7 @@ def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | 
         error, varies, zero, delay, shares = held_out.error, held_out.zero, 0.0, 0.0, dict[str, float]()
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):
             unknown = dict(zip([part.name for part in log.nuisances], nuisances_of(each.fit).tolist(), strict=True))
-            rows = moving(log)
+            rows = from_motion_to_motion(log)
             saved = _saved(drive, whole)
             saved = saved if each is best else saved.replace(load=drive.load, motor=drive.motor)
             if any(estimate.why == BEHIND_GEAR for estimate in each.estimates):
