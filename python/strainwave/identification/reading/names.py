@@ -76,6 +76,8 @@ OTHERS = (
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
     "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
+ACCELERATIONS = {*QUANTITIES["vibration"], "acceleration", "acc", "accel", "beschleunigung"}
+STANDARD_GRAVITY = "gn"  # the unit that accelerometers call g, which is a gram elsewhere
 ERRORS = {"error", "err", "fehler", "deviation", "abweichung"}
 DEVIATIONS = ERRORS | {"position", "positioning", "angle", "angular"}
 FINE_UNITS = ("arcsec", "arcmin", "\u2033", "\u2032")  # in which a deviation is one of the position
@@ -140,6 +142,7 @@ def meaning(label: Label) -> Meaning | None:
         return alone
     name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
     words = words_of(name)
+    unit = STANDARD_GRAVITY if unit in ("g", "G") and ACCELERATIONS & set(words) else unit
     if unit is not None and measures(unit, UNITS["vibration"]):
         return Meaning("vibration", unit=unit)
     if unit in FINE_UNITS and set(words) <= DEVIATIONS and ERRORS & set(words):
