@@ -144,15 +144,13 @@ truth = {
 print(f"{'':30} {'identified':>10} {'truth':>9}  standard deviations apart")
 for parameter in found.parameters:
     estimate = parameter.estimate
-    if estimate.path not in truth:  # a detent, which stands for the transmission error of the joint
-        continue
     distance = (estimate.value - truth[estimate.path]) / estimate.sigma
     print(f"{estimate.path:30} {estimate.value:10.4g} {truth[estimate.path]:9.4g} {distance:10.1f}")
 
 # %% [markdown]
-# Coulomb friction is 2 % too high, 2.1 standard deviations. **Viscous friction is 5 % too low**, 3.8 standard deviations. The
-# cause is the rate of the log, 100 samples a second: at a reversal the friction changes its sign between two of them. The
-# same joint recorded at 250 Hz gives 2.91e-4 ± 0.10e-4 N·m·s/rad. So **record faster** if you can, or [add a table of
+# **Viscous friction is 5 % too low**, and Coulomb friction 2 % too high. Their standard deviations contain this: another law of
+# friction predicts the log as well, and its numbers lie as far apart. The cause is the rate of the log, 100 samples a second:
+# at a reversal the friction changes its sign between two of them. So **record faster** if you can, or [add a table of
 # friction](05_which_friction.md).
 #
 # ## 7. Now your own log

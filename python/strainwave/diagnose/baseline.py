@@ -253,7 +253,8 @@ def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) 
         return elsewhere, ""
     shown = 1.0 if ratio is None else turns
     ends = min(cell.first for cell in off) / shown, max(cell.last for cell in off) / shown
-    ranges = " and ".join(f"{first * turns / shown:.3g} to {last * turns / shown:.3g}" for first, last in covered[:MAX_SHOWN])
+    places = np.round(np.array(covered[:MAX_SHOWN]) * turns / shown, 6) + 0.0  # no rounding of an angle's beginning, no -0
+    ranges = " and ".join(f"{first:.3g} to {last:.3g}" for first, last in places.tolist())
     more = f" and {len(covered) - MAX_SHOWN} more" if len(covered) > MAX_SHOWN else ""
     unknown = (
         "; the ratio is not known, by which places of the output come again: give --gear or --ratio" if ratio is None else ""

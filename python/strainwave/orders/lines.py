@@ -24,6 +24,8 @@ MIN_EVIDENCE_LEAD_SHARE = 0.05  # the same as a share of the evidence [1]: speed
 MIN_PERIODS = 3.0  # periods in the span, below which an order is a trend
 MERGE_PERIODS = 2.0  # periods in the span, by which a weaker line differs at most from a stronger one that it belongs to
 MIN_OVERLAP = 0.5  # squared canonical correlation [1], from which two waves are the same line
+ORDER_STEPS = 2  # of Gauss and Newton, to which an order converges from a peak
+MAX_ORDER_STEP = 0.25  # resolutions
 SWIFT_WEIGHT = 0.5  # weight [1] of a sample that counts as moving
 
 
@@ -155,6 +157,8 @@ def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) ->
     spectra = _spectra(moving, moving.series, lowest, highest, _spectra_floor(moving, left))
     own = [line for place, line in enumerate(kept) if not any(_same(moving, line, other) for other in kept[:place])]
     if own:  # by themselves, as lines close to each other are hardly separated
+        for _ in range(ORDER_STEPS):
+            own = _with_orders(moving, *refitted(moving, own, spectra.floor), spectra.floor)
         own, left = refitted(moving, own, spectra.floor)
     ranked = tuple(sorted(own, key=lambda each: -each.evidence))
     return LineSearch(ranked, len(kept) - len(own), spectra.over_angle[0], spectra.floor, left, spectra.tested)
@@ -162,11 +166,10 @@ def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) ->
 
 def _same(moving: Moving, line: SpectrumLine, stronger: SpectrumLine) -> bool:
     """True if a line only shows that a stronger one varies with speed or load."""
-    if (line.kind == "time") != (stronger.kind == "time") or line.joint != stronger.joint:
-        return False
-    if line.kind == "time":
-        return abs(line.frequency - stronger.frequency) * len(moving.series) < MERGE_PERIODS
-    return abs(line.order - stronger.order) * _shaft(moving, line).revolutions < MERGE_PERIODS
+    if "time" in (line.kind, stronger.kind):
+        over_time = all(each.kind == "time" or "time" in each.rivals for each in (line, stronger))
+        return over_time and abs(line.frequency - stronger.frequency) * len(moving.series) < MERGE_PERIODS
+    return line.joint == stronger.joint and abs(line.order - stronger.order) * _shaft(moving, line).revolutions < MERGE_PERIODS
 
 
 def _shaft(moving: Moving, line: SpectrumLine) -> Shaft:
@@ -314,6 +317,30 @@ def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tup
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(moving.weight > 0.0, left - (flat @ values) / moving.weight, left)
     return done, left
+
+
+def _with_orders(moving: Moving, lines: Sequence[SpectrumLine], left: Array, floor: Floor) -> list[SpectrumLine]:
+    """Return lines with their orders moved by a step of Gauss and Newton: a peak between skirts of its own is not its line.
+
+    Args:
+        moving: the series and the shafts
+        lines: with their amplitudes
+        left: series without them, shape (n,)
+        floor: of it
+    """
+    moved = [line for line in lines if line.kind != "time"]
+    if not moved:
+        return list(lines)
+    slopes = []
+    for line in moved:
+        shaft = _shaft(moving, line)
+        size = np.where(shaft.sense > 0.0, np.nan_to_num(line.wave_forward), np.nan_to_num(line.wave_backward))
+        slopes.append(moving.weight * np.real(1j * shaft.angle * size * np.exp(1j * line.order * shaft.angle)))
+    shapes = np.stack([*slopes, *(wave for line in lines for wave in waves(moving, line))], axis=1)
+    steps = weighed_fit(moving.fitted.left(shapes), left * moving.weight, floor)[0][: len(moved)]
+    reach = [MAX_ORDER_STEP / _shaft(moving, line).revolutions for line in moved]
+    orders = dict(zip(map(id, moved), np.clip(steps, np.negative(reach), reach).tolist(), strict=True))
+    return [replace(line, order=line.order + orders.get(id(line), 0.0)) for line in lines]
 
 
 def weighed_fit(columns: Array, series: Array, floor: Floor) -> tuple[Array, Array]:

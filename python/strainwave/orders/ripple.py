@@ -25,7 +25,7 @@ from strainwave.orders.lines import (
     waves,
     weighed_fit,
 )
-from strainwave.orders.smooth_part import SMOOTH_SHARE, Moving, shaft_of
+from strainwave.orders.smooth_part import Moving, shaft_of
 from strainwave.orders.turning import Evenly
 
 Side = Literal["input", "output"]
@@ -38,6 +38,7 @@ MAX_OUTPUT_ORDER = 40.0  # times the ratio, or 100 if it is not known: pole pair
 MAX_ORDER = 1e5  # that may be asked for: more than the teeth of any gear
 MAX_PHASE_STEP = 0.8  # half turns of a line between two samples at the usual speed
 MIN_SPREAD = 0.1  # relative spread of speed or load [1], from which ripple is separated by it
+MAX_CHANCE_IN_MOTION = 1e-6  # that noise alone makes an order of the angle: removing one that is none costs ripple
 MIN_INPUT_ORDER = 0.5  # slower ripple is not separated from friction and gravity
 MAX_SAMPLES = 2**19  # that are looked at
 MIN_GEAR_PERIODS = 3.0  # periods of the slowest order, that a record needs
@@ -149,10 +150,9 @@ def ripple(
     record, shaft = taken_of(per_input=per_input)
     lowest, top = _range(shaft, side, size, highest)
     _check_sampled(shaft, record, side, size, top, angle)
+    if np.isnan(per_input) and (order := _order_of_the_motion(shaft, top)):
+        record, shaft = taken_of(per_input=0.5 * order)  # order 2 of the input, the main one of a gear
     found = find_lines(shaft, lowest, top, false_alarm)
-    if np.isnan(per_input) and (line := _line_in_the_motion(shaft, found)):
-        record, shaft = taken_of(per_input=0.5 * line.order)  # order 2 of the input, the main one of a gear
-        found = find_lines(shaft, lowest, top, false_alarm)
     revolutions = shaft.own.revolutions
     lines = tuple(_line(each, shaft, found, record, side, size) for each in found.lines)
     blind = side == "output" and size is None
@@ -178,14 +178,14 @@ def ripple(
     )
 
 
-def _line_in_the_motion(shaft: Moving, found: LineSearch) -> SpectrumLine | None:
-    """Return the strongest order of a gear if the speed contains it too, so that friction over speed takes a part of it."""
-    line = next((each for each in found.lines if each.kind in ("order", "either") and each.order >= MIN_LINE_ORDER), None)
-    if line is None:
+def _order_of_the_motion(shaft: Moving, top: float) -> float | None:
+    """Return the strongest order of a gear in the measured angle itself; None if there is none."""
+    quick, weight = shaft.own.quick(shaft.own.angle, MIN_LINE_ORDER)
+    if not weight.any():
         return None
-    shapes = np.stack(waves(shaft, line), axis=1)
-    left = np.linalg.norm(shaft.fitted.left(shapes), axis=0) / np.linalg.norm(shapes, axis=0)
-    return line if left.min() < SMOOTH_SHARE else None
+    swinging = replace(shaft, shafts=(shaft.own,), series=quick, weight=weight / weight.max(), basis=np.ones((len(quick), 1)))
+    lines = find_lines(replace(swinging, own_columns=1), MIN_LINE_ORDER, top, MAX_CHANCE_IN_MOTION).lines
+    return lines[0].order if lines else None
 
 
 def _range(shaft: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:

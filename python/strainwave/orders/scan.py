@@ -30,7 +30,7 @@ LINES_PER_RESOLUTION = 4  # lines of the spectrum for each that is independent
 SPEED_BINS = 128  # bins of the speed, for the information of an order
 FLOOR_LINES = 100  # independent lines whose median is the floor of one
 MEDIAN_VARIANCE = 2.08  # variance of a median of exponential numbers, over that of their mean: 1 / log(2)²
-MIN_OWN_INFORMATION = 1e-3  # share of a line [1], that columns fitted before must leave for its amplitude
+MIN_OWN_INFORMATION = 0.1  # share of a line [1], that columns fitted before must leave for its amplitude
 MAX_SPECTRUM_LINES = 2**23  # of a spectrum
 
 

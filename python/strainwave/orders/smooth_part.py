@@ -27,10 +27,6 @@ MAX_RESIDUAL_SHARE = 0.98  # of the residual's square [1], that remains if a los
 OUTLIER_SIGMA = 8.0  # robust standard deviations of the residual, beyond which a sample counts as a mistake
 MIN_SENSE_SHARE = 0.02  # of the squared weight [1]: a direction with less has no amplitudes of its own
 WAVE_ORDERS = (1.0, 2.0, 4.0)  # per revolution of the input, that a gear makes in the motion as well as in the torque
-MIN_OWN_SHARE = (
-    0.3  # of a column's norm [1], that the waves of the gear must leave of it, so that it belongs to the smooth part
-)
-SMOOTH_SHARE = 0.95  # likewise, from which a column has no ripple of the gear: waves are never quite orthogonal to it
 MIN_WAVE_PERIODS = 3.0  # of a wave in the record
 MIN_GRAVITY_SPAN = 0.5  # rad: sine and cosine of a smaller motion are the trend
 MAX_CONDITION = 1e10  # of squared columns [1], beyond which a direction does not count
@@ -73,6 +69,22 @@ class Shaft:
     def reverses(self) -> bool:
         """True if it turns both ways."""
         return all(np.any(self.sense == sense) for sense in BOTH_SENSES)
+
+    def quick(self, series: Array, lowest: float) -> tuple[Array, Array]:
+        """Return what series contain of an order and higher ones, shape (n,) or (n, k), and the weight of each sample.
+
+        Means over a period of the order at the usual speed are taken off twice: that leaves nothing of a cubic. Samples so near
+        to a reversal or an end that the means contain it do not count; others as the speed.
+        """
+        from scipy.ndimage import maximum_filter1d, uniform_filter1d
+
+        usual = float(np.median(np.abs(self.speed)))
+        period = min(round(tau / (lowest * usual)), len(self.angle)) if usual > 0.0 else len(self.angle)
+        for _ in range(2):
+            series = series - uniform_filter1d(series, period, axis=0)
+        turned = np.diff(self.sense, prepend=-self.sense[0], append=-self.sense[-1]) != 0.0
+        near = maximum_filter1d(turned, 2 * period + 1)
+        return series, np.where(near[1:] | near[:-1], 0.0, np.abs(self.speed))
 
     def senses(self, weight: Array) -> list[float]:
         """Return the directions with enough weight for amplitudes of their own, the forward one first."""
@@ -153,9 +165,9 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
     """Return the shaft with the torque less its smooth part.
 
     The smooth part is fitted by least squares over speed, direction, acceleration and angle. Of other joints it contains
-    gravity over their angles and over the sums with this one, and their inertia. The shaft swings at the orders of its gear, so
-    that speed and acceleration have the same orders as the torque. If these orders are known, they are removed from speed and
-    acceleration first: else friction and inertia would take the ripple for theirs.
+    gravity over their angles and over the sums with this one, and their inertia. The measured angle swings at the orders of the
+    gear, and with it speed and acceleration. If these orders are known, they are removed from the angle first: else friction
+    and inertia would take the ripple for theirs.
 
     Args:
         angle: of the shaft [rad], shape (n,)
@@ -163,7 +175,8 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
         others: angles of other joints that move [rad], by name
         per_input: revolutions of the input per revolution of the shaft; nan if it is not known
     """
-    own = Shaft.of("", angle)
+    own = _without_waves(Shaft.of("", angle), per_input)
+    angle = own.angle
     shafts = (own, *(Shaft.of(name, values) for name, values in (others or {}).items()))
     fast = float(np.quantile(np.abs(own.speed), 0.95)) or 1.0
     friction = _friction(own.speed / fast, own)
@@ -171,8 +184,6 @@ def moving(angle: Array, torque: Array, others: Mapping[str, Array] | None = Non
     coupling = np.concatenate([np.zeros((len(angle), 0)), *(_coupling(own, each) for each in shafts[1:])], axis=1)
     gate = own.speed**2 / (own.speed**2 + (REST_SHARE * fast) ** 2)
     weight = gate * taper(len(angle))
-    waves = _waves(own, per_input)
-    friction, rest, coupling = (_without_ripple(columns, waves, weight) for columns in (friction, rest, coupling))
     rest = np.concatenate([rest, coupling], axis=1)
     smooth, turning = _fitted(torque, friction, rest, weight)
     if own.reverses():  # a share of the load is lost, one way and the other
@@ -249,26 +260,15 @@ def floor_without(columns: Array, series: Array, weight: Array) -> Floor:
     return floor_of(power / float(weight @ weight), len(series))
 
 
-def _waves(own: Shaft, per_input: float) -> Array:
-    """Return sines and cosines of the orders of a gear, in each direction, shape (n, waves)."""
+def _without_waves(own: Shaft, per_input: float) -> Shaft:
+    """Return a shaft without the waves of a gear in its angle."""
     orders = [order * per_input for order in WAVE_ORDERS if order * per_input * own.revolutions >= MIN_WAVE_PERIODS]
-    senses = [own.sense == sense for sense in BOTH_SENSES if np.any(own.sense == sense)]
-    waves = [there * wave(order * own.angle) for order in orders for there in senses for wave in (np.sin, np.cos)]
-    return np.stack(waves, axis=1) if waves else np.zeros((len(own.angle), 0))
-
-
-def _without_ripple(columns: Array, waves: Array, weight: Array) -> Array:
-    """Return the columns less their waves, if these are more than chance, without columns of which little is left."""
-    if not waves.shape[1] or not columns.shape[1]:
-        return columns
-    weighed = columns * weight[:, None]
-    constant = weight[:, None] * (weight @ weighed / max(float(weight @ weight), 1e-300))
-    shares = solved(waves * weight[:, None], weighed - constant)
-    size = np.linalg.norm(weighed - constant, axis=0)
-    left = np.linalg.norm(weighed - constant - weight[:, None] * (waves @ shares), axis=0)
-    is_smooth = (left >= SMOOTH_SHARE * size) | (size <= 1e-9 * np.linalg.norm(weighed, axis=0))
-    cleaned: Array = np.where(is_smooth, columns, columns - waves @ shares)[:, (left >= MIN_OWN_SHARE * size) | is_smooth]
-    return cleaned
+    if not orders:
+        return own
+    waves = np.stack([wave(order * own.angle) for order in orders for wave in (np.sin, np.cos)], axis=1)
+    quick, weight = own.quick(np.column_stack([waves, own.angle]), orders[0])
+    weighed = weight[:, None] * quick
+    return Shaft.of(own.name, own.angle - waves @ solved(weighed[:, :-1], weighed[:, -1]))
 
 
 def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple[Array, Array]:

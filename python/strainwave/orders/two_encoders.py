@@ -35,6 +35,7 @@ MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow o
 MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
 MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
 LOADS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
+CHANGING = "they change with the speed, as by a vibration of the output that the record does not determine"
 MAX_SPEED_RATIO = 1.5  # of a fast to a slow part of the record [1], up to which its amplitudes are those of one speed
 MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
@@ -88,6 +89,9 @@ class TransmissionError(ComparedByFields):
         revolutions: of the input, end to end
         curves: time, input_angle, transmission_error, kinematic_error as found, residual, as compared
         remarks: what to know of these numbers, in words
+        speeds: of the input, for which alone the amplitudes are measured, in words; empty if they are corrected for the output
+            stage, or its vibration does not show
+        vibrates: True if the amplitudes change with these speeds, so that they are not those of the gear alone
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -109,6 +113,8 @@ class TransmissionError(ComparedByFields):
     revolutions: float
     curves: Recording
     remarks: tuple[str, ...]
+    speeds: str = ""
+    vibrates: bool = False
 
     @property
     def law(self) -> kinematic_error.Fourier:
@@ -181,7 +187,8 @@ def transmission_error(
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
     lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
     frequency, damping = _stage_numbers(found, pair.record, every)
-    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen)]
+    speeds, vibrates = _speeds_of_amplitudes(found, pair) if chosen else "", found.vibrates and not _at_one_speed(pair)
+    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen, speeds)]
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
@@ -195,6 +202,8 @@ def transmission_error(
         revolutions=float(np.ptp(pair.input)) / tau,
         curves=_curves(pair, whole - whole.mean(), error, found.residual, every),
         remarks=(*pair.record.remarks, *remarks),
+        speeds=speeds,
+        vibrates=bool(speeds) and vibrates,
     )
 
 
@@ -322,7 +331,16 @@ def _at_one_speed(pair: Pair) -> bool:
     return bool(fast <= MAX_SPEED_RATIO * slow)
 
 
-def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]]) -> list[str]:
+def _speeds_of_amplitudes(found: Regressed, pair: Pair) -> str:
+    """Return the speeds of the input at which alone amplitudes are measured; empty if they are those of the gear."""
+    one = _at_one_speed(pair)
+    if found.stage is not None or not pair.record.timed or not (found.vibrates or one):
+        return ""
+    slow, usual, fast = np.quantile(np.abs(pair.speed), [0.05, 0.5, 0.95]) / pair.record.step * 30.0 / pi
+    return f"{usual:.4g} 1/min of the input" if one else f"{slow:.4g} to {fast:.4g} 1/min of the input"
+
+
+def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]], speeds: str) -> list[str]:
     if found.stage is not None:
         fastest = max((order for order, _ in chosen), default=0.0) * pair.fastest * every
         if fastest < 0.3 * found.stage.frequency:
@@ -333,17 +351,12 @@ def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tu
         ]
     if not pair.record.timed:
         return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
-    if not (chosen and (found.vibrates or _at_one_speed(pair))):
+    if not speeds:
         return []
-    slow, usual, fast = np.quantile(np.abs(pair.speed), [0.05, 0.5, 0.95]) / pair.record.step * 30.0 / pi
-    if _at_one_speed(pair):
-        speeds, why = f"{usual:.4g}", "one speed does not determine how the output vibrates"
-    else:
-        speeds = f"{slow:.4g} to {fast:.4g}"
-        why = "they change with the speed, as by a vibration of the output that the record does not determine"
+    why = "one speed does not determine how the output vibrates" if _at_one_speed(pair) else CHANGING
     return [
-        f"amplitudes are those measured at {speeds} 1/min of the input: {why}, and they are not corrected for it; if speeds "
-        "from slow to fast are in one record, they are"
+        f"amplitudes are those measured at {speeds}: {why}, and they are not corrected for it; if speeds from slow to fast are "
+        "in one record, they are"
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 import sys
 from collections.abc import Callable
@@ -13,7 +14,7 @@ from strainwave.commands import cli
 from strainwave.questions import Answer, QuestionError
 
 from tests.python.command import Result, strainwave
-from tests.support.answers import commands_in, outcomes
+from tests.support.answers import commands_in, outcomes, with_number
 
 TIME = np.arange(0.0, 8.0, 0.005)
 ANGLE = 0.8 * np.sin(2.0 * TIME) + 0.2 * np.sin(5.3 * TIME)
@@ -194,3 +195,27 @@ def test_a_question_that_an_answer_does_not_settle_is_an_error_of_the_program(mo
     monkeypatch.setattr(sys, "argv", ["strainwave", "identify"])
     with pytest.raises(AssertionError, match="asked again after an answer: which side"):
         cli.main()
+
+
+REMARKS: dict[str, Callable[[Path], str]] = {
+    "side": lambda folder: written(folder / "a.csv", "speed [rpm],torque [mN.m]", RPM / 2.0, FRICTION),
+    "unit": lambda folder: written(
+        folder / "a.csv", "t,motor_angle [rad],motor_torque [Nm]", TIME, RATIO * ANGLE, TORQUE / RATIO
+    ),
+    "motor": lambda folder: written(
+        folder / "a.csv", "t [s],motor_angle [rad],current [A]", TIME, RATIO * ANGLE, TORQUE / RATIO
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.slow("commands")
+@pytest.mark.parametrize("name", REMARKS)
+def test_what_a_remark_adds_is_accepted(tmp_path: Path, name: str) -> None:
+    command = ["identify", "csg-20-100", REMARKS[name](tmp_path)]
+    result = strainwave(*command, folder=tmp_path)
+    assert result.returncode in (0, 3), result.stderr
+    added = re.findall(r"--(?:side|unit|constant) (?:'[^']*'|[^\s;,)]+)", result.stdout)
+    assert added, result.stdout
+    for options in dict.fromkeys(added):
+        again = strainwave(*command, *map(with_number, shlex.split(options)), folder=tmp_path)
+        assert again.returncode in (0, 3), f"{options}: {again.stderr}"

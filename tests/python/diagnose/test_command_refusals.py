@@ -111,5 +111,5 @@ def test_angles_that_do_not_move_together_are_a_remark() -> None:
 
 def test_a_speed_without_time_is_refused_with_the_name_of_the_file() -> None:
     made = sw.Recording({"input_speed": np.ones(100), "torque": np.ones(100)}, {"input_speed": "rad/s", "torque": "N.m"})
-    with pytest.raises(ValueError, match=r"log.csv: input_speed gives an angle only over time; .* --rate"):
+    with pytest.raises(ValueError, match=r"log.csv: input_speed gives an angle only over time: .* --constant rate=NUMBER"):
         usable(made, "log.csv")

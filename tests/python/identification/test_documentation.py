@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from strainwave.identification.candidates import ripple
 from strainwave.identification.checks import comparisons, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
@@ -34,7 +35,8 @@ def percent(share: float) -> str:
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
         f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
-        f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small",
+        f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small, "
+        f"in a log more than {sizes.MAX_FACTOR_OF_LOG:g}",
         f"a factor of {np.exp(3.0 * sizes.MIN_SPREAD_OF_STIFFNESS):.1f} for {percent(sizes.MIN_SPREAD_OF_STIFFNESS)}",
         f"{sizes.MIN_ROWS_OF_LOG} rows or more, and the change of speed explains half of what is left",
         "the spring of a loop carries less than a fifth of the torque",
@@ -45,6 +47,9 @@ def percent(share: float) -> str:
         f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction at the input, "
         f"{percent(comparisons.REPEATABILITY['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
+        f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - ripple.MIN_OWN_SHARE**2), 3))} move the other way",
+        f"a probability of {percent(ripple.MAX_CHANCE)} at most",
+        f"uncertain by {percent(ripple.BIAS_IN_FULL_BAND)} at least",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

@@ -279,3 +279,17 @@ def test_a_line_remains_where_the_measured_angle_swings_with_the_gear(seed: int)
     assert [round(line.order) for line in result.lines] == [200]
     assert result.lines[0].forward == pytest.approx(0.03, abs=3.0 * result.lines[0].sigma)
     assert result.lines[0].sigma < 0.001
+
+
+@pytest.mark.parametrize("ratio", [80.0, None])
+def test_viscous_friction_over_an_angle_that_swings_takes_nothing_of_a_line(ratio: float | None) -> None:
+    """The measured speed swings by 1 %: friction of 0.5 A·s/rad over it took some mA of a line of 45."""
+    random = np.random.default_rng(0)
+    time = np.arange(0.0, 35.0, 0.01)
+    q = 2.2 * np.sin(0.18 * time)
+    speed = np.gradient(q, time)
+    angle = q - 71e-6 * np.sin(160.0 * q + 0.3) + random.normal(0.0, 1e-5, len(time))
+    current = 0.3 * np.tanh(speed / 1e-3) + 0.5 * speed + 0.045 * np.cos(160.0 * q) + random.normal(0.0, 0.003, len(time))
+    line = found({"time": time, "output_angle": angle, "torque": current}, ratio=ratio).lines[0]
+    assert line.sigma < 0.0002
+    assert line.forward == pytest.approx(0.045, abs=4.0 * line.sigma)

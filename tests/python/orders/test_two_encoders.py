@@ -180,13 +180,13 @@ def test_a_motor_angle_already_divided_by_the_ratio_is_recognised() -> None:
     assert any("both are counted in joint units" in each for each in given.remarks)
     assert {each.order for each in given.orders if each.significant and each.shaft == "input"} == {2.0, 4.0}
     assert order(given, 2.0).amplitude == pytest.approx(2e-4, rel=0.02)
-    blind = error_of(exported, ratio_option="--constant ratio=…")
+    blind = error_of(exported, ratio_option="--constant ratio=NUMBER")
     assert blind.ratio.in_joint_units
     assert blind.orders == ()
-    assert any("joint units" in each and "--constant ratio=…" in each for each in blind.remarks)
+    assert any("joint units" in each and "--constant ratio=NUMBER" in each for each in blind.remarks)
 
 
-@pytest.mark.parametrize("option", ["--ratio", "--constant ratio=…"])
+@pytest.mark.parametrize("option", ["--ratio", "--constant ratio=NUMBER"])
 def test_advice_names_the_option_of_the_command(option: str) -> None:
     found = error_of(slow(-80.0, swing=2.5), ratio_option=option)
     assert any(f"with {option}" in each for each in found.remarks)
@@ -245,7 +245,7 @@ def test_above_its_resonance_a_ramp_shows_amplitudes_at_its_speeds_alone() -> No
 
 
 @pytest.mark.slow("orders")
-@pytest.mark.parametrize("seed", [102, 104, 201, 225, 302])
+@pytest.mark.parametrize("seed", [7, 102, 104, 201, 225, 302])
 def test_a_vibration_is_fitted_where_the_record_determines_it(seed: int) -> None:
     """102, 104: none, with noise of the input encoder and friction; 201, 225, 302: one, both ways and in a ramp."""
     assert te.outcome(seed).verdict == "right"

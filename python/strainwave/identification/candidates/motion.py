@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, friction, loads
-from strainwave.identification.candidates.confirmed import refit
 from strainwave.identification.candidates.motion_candidate import (
     MAX_ERROR,
     MotionCandidate,
@@ -28,6 +27,7 @@ from strainwave.identification.candidates.motion_model import (
     INPUT,
     MotionModel,
     bristled,
+    slope_of,
     with_curved_viscous_part,
     with_delay,
     with_higher_friction_at_low_speed,
@@ -63,8 +63,6 @@ MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
 MAX_SMALL_PART = 1.0  # of the held-out error: a larger part of the effort is never left out
-MIN_WAVE_SIGMA = 2.0  # standard deviations of a wave over the angle: the whole fit makes a smaller one vanish
-SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
 SPREAD_OF_VISCOUS = 1.0  # relative standard deviation of the viscous friction by the start set's share of it (assumed)
 MIN_SPREAD_OF_SHARE = 0.15  # standard deviation of the share of viscous friction by the start set (assumed)
 
@@ -122,8 +120,14 @@ def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
     rippled, plain = search.rippled(best), _with_parts(search, best)
     if rippled is best:
         return plain
-    first = _with_parts(search, rippled)
-    return first if first.explains_more_than(plain) or first.is_better_than(plain) else plain
+    return _waving(_with_parts(search, rippled), plain)
+
+
+def _waving(waving: MotionCandidate | None, plain: MotionCandidate) -> MotionCandidate:
+    """Return the model with waves if it predicts the full band or the pass band better than one without, and neither worse."""
+    if waving is None or not waving.predicts_as_well_as(plain):
+        return plain
+    return waving if waving.explains_more_than(plain) or waving.is_better_than(plain) else plain
 
 
 def _with_parts(search: _Search, best: MotionCandidate) -> MotionCandidate:
@@ -202,19 +206,8 @@ class _Search:
         return best
 
     def rippled(self, best: MotionCandidate) -> MotionCandidate:
-        """Return the model with the waves over the angle that predict better, in the pass band or in the full band.
-
-        Waves of the full band are estimated from all of the record: a fit without its last stretch must predict it better, too.
-        """
-        found = self.tried(with_ripple(best.model))
-        if found is None or not (found.explains_more_than(best) or found.is_better_than(best)):
-            return best
-        sizes = [each for each in found.fit.estimates if "amplitude[" in each.path or "detent_torque[" in each.path]
-        if any(MIN_WAVE_SIGMA * each.sigma > abs(each.value) for each in sizes):
-            return best
-        if not found.model.of_full_band:
-            return found
-        return found if refit(found)[0].error < refit(best)[0].error else best
+        """Return the model with the waves over the angle that predict better."""
+        return _waving(self.tried(with_ripple(best.model)), best)
 
     def no_worse_than_plain(self, best: MotionCandidate, model: MotionModel) -> MotionCandidate:
         """Return the best model; if plain least squares predicts clearly better, the best of those better at the end."""
@@ -367,8 +360,7 @@ def _with_viscous_share(drive: Drive, law: Any, speed: float) -> Drive:
     """Return the drive whose viscous friction is the share of all friction at a speed [rad/s] that another law has there."""
     own: Any = drive.gear.friction_input
     before = float(law.steady(speed))
-    slope = float(law.steady((1.0 + SLOPE_STEP) * speed) - law.steady((1.0 - SLOPE_STEP) * speed)) / (2.0 * SLOPE_STEP)
-    share = min(max(slope / before, 0.0), 1.0) if before > 0.0 else 0.0
+    share = min(max(slope_of(law, speed) * speed / before, 0.0), 1.0) if before > 0.0 else 0.0
     total = float(own.steady(speed))
     coulomb = (1.0 - share) * total
     shared = own.replace(coulomb=coulomb, breakaway=coulomb, viscous=share * total / speed)

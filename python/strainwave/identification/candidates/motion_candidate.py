@@ -164,7 +164,8 @@ class MotionCandidate(ComparedByFields):
 def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[str, tuple[float, float]]) -> MotionCandidate:
     """Fit a model as nearly as comparisons need, from where it starts."""
     before = {plain(path): prior for path, prior in priors.items()}
-    known = {**{path: before[plain(path)] for path in model.free if plain(path) in before}, **by_full_band(model)}
+    (by_all,) = by_full_band(model, [np.ones(len(model.log.motion.time), bool)])
+    known = {**{path: before[plain(path)] for path in model.free if plain(path) in before}, **by_all}
     asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
     problem = problem_of(asked, model.drive, [model.log], [None])
     x = problem.solve(problem.start(), problem.first_weights(), MAX_RELATIVE_COST, trials=MAX_STEPS)
@@ -172,15 +173,20 @@ def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[s
     ((predicted, _),) = problem.predict(x)
     ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
     unexplained = float(np.std(model.log.measured - predicted) / max(float(np.std(model.log.measured)), 1e-300))
-    return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended.log, held_out)))
+    return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended, held_out)))
 
 
-def _folds(problem: Problem, x: Array, log: MotionLog, held_out: Sequence[Rows]) -> Iterator[Fold]:
+def _folds(problem: Problem, x: Array, ended: MotionModel, held_out: Sequence[Rows]) -> Iterator[Fold]:
     """Yield the model without each stretch; shapes of friction stay as the fit to all has them."""
-    (record,) = problem.records
+    (record,), log = problem.records, ended.log
+    places = {each.path: place for place, each in enumerate(problem.plan.unknowns)}
+    by_fold = by_full_band(ended, [~stretch for stretch in held_out])
     ((predicted, slopes),) = problem.predict(x)
     out = [stretch[log.motion.rows] for stretch in held_out]
-    for stretch, rows, there in zip(held_out, out, without_rows(problem, x, out, SHAPES), strict=True):
+    without = without_rows(problem, x, out, SHAPES)
+    for stretch, rows, there, waves in zip(held_out, out, without, by_fold, strict=True):
+        for path, (value, _) in waves.items():
+            there[places[path]] = value
         model, nuisances = record.model(there), there[record.nuisances]
         in_band = (log.measured - predicted)[0, rows] - slopes[:, 0, rows].T @ (there - x)
         yield Fold(stretch, model, nuisances, in_band, log.residual(model, nuisances))

@@ -16,6 +16,7 @@ from strainwave.identification.experiments.motion_log import MotionLog
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
 WITHIN = f"{INPUT}law."  # where friction stands that varies over the angle
+SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
 
 
@@ -82,6 +83,11 @@ def with_sliding(drive: Drive, law: Any) -> Drive:
     outer: Any = drive.gear.friction_input
     whole = outer.replace(law=law) if isinstance(outer, friction.Cyclic) else law
     return drive.replace(gear=drive.gear.replace(friction_input=whole))
+
+
+def slope_of(law: Any, speed: float) -> float:
+    """Return the change of a law's friction with the speed [N.m.s/rad], at a speed [rad/s]."""
+    return float(law.steady((1.0 + SLOPE_STEP) * speed) - law.steady((1.0 - SLOPE_STEP) * speed)) / (2.0 * SLOPE_STEP * speed)
 
 
 def _within(path: str) -> str:

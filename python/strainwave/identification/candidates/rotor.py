@@ -50,5 +50,4 @@ def with_rotor(best: MotionCandidate, inertia: float) -> MotionCandidate:
     drive = best.fit.parts[0].model
     carried = inertia_of(drive) - inertia * drive.gear.kinematics.ratio**2
     start = drive.replace({MOTOR: inertia, LOAD: max(carried, MIN_INERTIA_SHARE * inertia_of(drive))})
-    begun = replace(best, model=replace(best.model, drive=start))
-    return replace(begun, model=replace(best.model, drive=begun.fit.parts[0].model))
+    return replace(best, model=replace(best.model, drive=start))

@@ -165,11 +165,15 @@ class MotionLog(ComparedByFields):
         return None
 
     @cached_property
+    def share_of_rarer_way(self) -> float:
+        """Share of the samples in the direction of motion that has fewer [1]."""
+        speed = self.motion.speed[self.motion.known]
+        return min(float(np.mean(way * speed > 0.0)) for way in (1.0, -1.0))
+
+    @property
     def both_ways(self) -> bool:
         """True if the shaft moves both ways: only then Coulomb's friction differs from a constant torque."""
-        speed = self.motion.speed[self.motion.known]
-        forward, backward = (float(np.mean(way * speed > 0.0)) for way in (1.0, -1.0))
-        return min(forward, backward) >= MIN_SHARE_OF_A_DIRECTION
+        return self.share_of_rarer_way >= MIN_SHARE_OF_A_DIRECTION
 
     def below(self, frequency: float) -> MotionLog:
         """Return the same, compared far below a vibration of this frequency [Hz]: above, the drive is not rigid.

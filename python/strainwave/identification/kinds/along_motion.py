@@ -13,6 +13,7 @@ from strainwave.identification.candidates.motion import bands, fit_motion, prior
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
 from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
+from strainwave.identification.candidates.ripple import is_one_wave
 from strainwave.identification.candidates.rotor import (
     SHARE_OF_UNKNOWN_ROTOR,
     inertia_at_input,
@@ -23,6 +24,7 @@ from strainwave.identification.checks.logs import (
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
+    speed_of_another_clock,
     torque_constant_by_voltage,
     unit_of_torque,
 )
@@ -38,9 +40,8 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.determined import friction_at
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
+from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA
 from strainwave.identification.results.motor_inertia import MOTOR
@@ -56,13 +57,12 @@ COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
 DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
 DETENT, DEPTH = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
-ONE_WAVE = "the motion goes one way only: a detent and friction over the angle are one wave; record both directions"
+ONE_WAVE = "the motion goes nearly one way: a detent and friction over the angle are one wave; record both directions"
 DEPTH_BY_SET = "it counts from Coulomb friction, whose split from viscous friction is that of the start set"
 OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
-    "--constant motor_inertia=…"
+    "--constant motor_inertia=NUMBER"
 )
-BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -86,7 +86,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
-        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
+        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=NUMBER")
         between, known = between_encoders(taken, judged, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
@@ -101,15 +101,12 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best = judged
     if not in_current and taken.has_friction:
         known, estimates = _with_friction(known, best, estimates, file.path.name)
-    every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
+    every = (*of_model, *speed_of_another_clock(file), *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
-    explained = held_out.relative < MAX_UNEXPLAINED and not held_out.share_of_plain > held_out.max_share_of_plain
     if not in_current and taken.has_friction:
-        checks += friction_of_log(
-            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, explained=explained
-        )
+        checks += friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
     checks += [
         *unit_of_torque(file),
         *speed_against_angle(file),
@@ -117,7 +114,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_given_inertia(taken, name),
         *_torque_constant(taken, name),
     ]
-    checks += checks_of_motion(best, drive, recording, held_out, name)
+    checks += checks_of_motion(best, drive, recording, held_out, name, file.neighbours)
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(
@@ -306,8 +303,8 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             found = replace(found, why=BEHIND_GEAR)
         elif path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
-        elif path.startswith(DETENT) and not best.log.both_ways:
-            found = replace(found, why=ONE_WAVE)
+        elif path.startswith(DETENT) and is_one_wave(best.log):
+            found = replace(found, why=_one_wave(found, best), in_combination=True)
         elif path.startswith(DEPTH) and best.model.one_speed:
             share = prior_of_viscous(best.model.law, best.model.one_speed)[1] * best.model.one_speed / best.model.law.coulomb
             found = replace(found, sigma=float(np.hypot(sigma, share * found.value)), why=DEPTH_BY_SET, in_combination=True)
@@ -323,6 +320,16 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
     for each in _at_one_speed(best, spread, apart) if best.model.one_speed else ():
         found = each.resting_on(taken.relative)
         yield found.in_current() if in_current else found
+
+
+def _one_wave(detent: FileEstimate, best: MotionCandidate) -> str:
+    """Return what a log that goes nearly one way determines of a detent: its sum with friction over the angle."""
+    if detent.is_phase:
+        return ONE_WAVE
+    amplitude = detent.path.replace("detent_torque", "amplitude")
+    law = sliding(best.fit.parts[0].model)
+    both = DeterminedSum((detent.path, amplitude), (1.0, float(law.coulomb)), detent.value, detent.sigma, "N.m")
+    return f"{ONE_WAVE}; {both.with_others}"
 
 
 def _at_one_speed(best: MotionCandidate, spread: Mapping[str, float], apart: Mapping[str, float]) -> Iterator[FileEstimate]:

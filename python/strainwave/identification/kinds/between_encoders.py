@@ -144,7 +144,7 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
         by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
     known = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
     if not known:
-        missing = "is not known: give --constant motor_inertia=…"
+        missing = "is not known: give --constant motor_inertia=NUMBER"
         if taken.motor_known:
             missing = f"is not known well enough compared with that of the load: ± {taken.rotor:.2g} kg·m² at the output"
         raise ValueError(

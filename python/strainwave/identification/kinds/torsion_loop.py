@@ -67,8 +67,10 @@ class Torsion(Kind):
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
         if _exceeds_twist(column, mapping):
-            ways = [LOG_AT_RATE, Answer("a torsion loop all the same", {"kind": "torsion"})]
-            raise QuestionError(f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists", ways)
+            loop = [] if measured(columns, "speed") else [Answer("a torsion loop all the same", {"kind": "torsion"})]
+            raise QuestionError(
+                f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists", [LOG_AT_RATE, *loop]
+            )
         return bool(abs(angle[-1] - angle[0]) <= MIN_TURNING or turning_points(angle) or _is_spring(angle, torque))
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from strainwave.files.entries import Entry
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -13,7 +14,7 @@ from strainwave.identification.reading.sides import pair, sides_of_angles
 from strainwave.identification.results.curves import curves_of_orders
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
-from strainwave.orders.two_encoders import TransmissionError, transmission_error
+from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
 
 
@@ -39,7 +40,7 @@ class TwoEncoders(Kind):
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""
         given = file.constants.get("ratio")
-        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=…")
+        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
         name = file.path.name
         remarks, pictures = (*file.remarks, *found.remarks), (Picture(curves_of_orders(found)),)
         result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), remarks, pictures=pictures)
@@ -54,7 +55,10 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
     by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
     sigmas = {f"{AMPLITUDE}[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
     sigmas |= {f"gear.kinematic_error.phase[{i}]": by_order[order].phase_sigma for i, order in enumerate(law.order)}
-    return known.with_parts({"kinematic_error": law}, sigmas, name)
+    if not found.vibrates:
+        return known.with_parts({"kinematic_error": law}, sigmas, f"{name}, at {found.speeds}" if found.speeds else name)
+    entries = {path: Entry(f"identified in combination: {_why(found)}", uncertainty=sigma) for path, sigma in sigmas.items()}
+    return known.with_sums({"kinematic_error": law}, entries, name)
 
 
 def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
@@ -67,4 +71,11 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
                 each.amplitude,
                 each.amplitude_sigma,
                 "fourier",
+                _why(found),
+                in_combination=found.vibrates,
             )
+
+
+def _why(found: TransmissionError) -> str:
+    """Return why amplitudes are not those of the gear alone; empty if they are."""
+    return f"amplitudes are those measured at {found.speeds}: {CHANGING}" if found.vibrates else ""

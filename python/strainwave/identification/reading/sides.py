@@ -108,7 +108,7 @@ def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tupl
 
 def sides_of_torques(torques: Sequence[Column]) -> list[Answer]:
     """Return the answers to which of some torques is meant, and at which side it is counted."""
-    sides = {"joint_torque": "of the joint", "input_torque": "of the motor"}
+    sides = {"input_torque": "of the motor", "joint_torque": "of the joint"}
     names = {column.name: _stem(column) for column in torques}
     return [
         Answer(f"{name} is the torque {side}", {"columns": {channel: column}})

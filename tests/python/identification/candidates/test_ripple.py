@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave.identification.candidates.motion import fit_motion
 from strainwave.identification.candidates.motion_model import INPUT, MotionModel
-from strainwave.identification.candidates.ripple import with_ripple
+from strainwave.identification.candidates.ripple import by_full_band, is_one_wave, with_ripple
 from strainwave.identification.experiments.motion_log import MotionLog
 
 RATIO, COULOMB, VISCOUS, NOISE = 50.0, 0.084, 4e-4, 2e-3
@@ -60,6 +61,24 @@ def test_a_wave_that_another_one_makes_up_is_left_out() -> None:
     assert found is not None
     law = found.drive.gear.friction_input
     assert [*law.order, *law.detent_order] == [2.0]
+
+
+def test_waves_without_a_stretch_are_those_of_the_rest() -> None:
+    """A detent of twice the size in the last third: what is fitted without it knows nothing of that."""
+    whole = log(0.0, 0.02)
+    last = whole.motion.time > 27.0
+    more = np.where(last, 0.02 * np.sin(2.0 * whole.motion.angle - 0.4), 0.0)
+    found = with_ripple(model(replace(whole, force=whole.force + more)))
+    assert found is not None
+    before, after = by_full_band(found, [~last, last])
+    torque = f"{INPUT}detent_torque[0]"
+    assert before[torque][0] == pytest.approx(0.02, rel=0.03)
+    assert after[torque][0] == pytest.approx(0.04, rel=0.03)
+
+
+def test_nearly_one_way_a_detent_and_friction_over_the_angle_are_one_wave() -> None:
+    assert is_one_wave(log(0.0, 0.02, ahead=0.88))
+    assert not is_one_wave(log(0.0, 0.02))
 
 
 @pytest.mark.slow("identification")

@@ -64,7 +64,7 @@ def test_both_directions_separate_them_and_their_log_gives_the_friction(folder: 
     both = {each.path: each for each in found.files[1].estimates}
     for path, truth in TRUTH.items():
         assert both[path].state == "identified"
-        assert abs(both[path].value - truth) < 4.0 * both[path].sigma < 0.1 * truth
+        assert abs(both[path].value - truth) < 4.0 * both[path].sigma < 0.2 * truth  # another law of friction predicts as well
     assert found.gear_set.gear.friction_input.coulomb == both[COULOMB].value
     assert found.gear_set.sources[COULOMB].source == "identified from both_ways.csv"
 
