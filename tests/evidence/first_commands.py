@@ -151,7 +151,7 @@ def cases() -> list[Case]:
         found.append(Case(f"{identify} --constant ratio=101", path, knows=ur))
     found += [Case(identify, path) for path in sorted((ARMS / "kinova-gen3").glob("*.csv"))]
     found += [Case(identify, path, knows=("joint_torque=block3",)) for path in sorted((ARMS / "icub").glob("*/*.mat"))]
-    found += [Case(identify, ARMS / name) for name in ("direct-drive", "kinova-gen3-split", "tiago")]
+    found += [Case(identify, ARMS / name, knows=("joint_torque",)) for name in ("direct-drive", "kinova-gen3-split", "tiago")]
     found += [Case(f"{identify} --joint all", ARMS / name) for name in ("nnfm", "tiago")]
     found += [Case(identify, path) for path in sorted((ARMS / "nnfm").glob("*.csv"))]
     kuka = {COULOMB: (397.0 / 256.857, 0.12), VISCOUS: (1800.0 / 256.857**2, 0.12)}
