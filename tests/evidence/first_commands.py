@@ -36,6 +36,7 @@ SHARED = Path(__file__).parents[3] / "shared"
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
 TRIALS = Path(os.environ.get("STRAINWAVE_TRIALS", SHARED / "trials"))
 MAX_COMMANDS = 3  # the first, and two that questions suggest
+ROUNDED = 2e-3  # relative difference of friction and gravity, whose truth is stated in two or three digits
 MAX_SIGMA = 3.0  # standard deviations of a number from the truth
 MIN_SHARE_OF_FIRST = 0.8  # of the recordings that are read at the first command
 NO_COMMAND = "no command is suggested"
@@ -93,7 +94,7 @@ class Outcome:
     message: str = ""
 
 
-def about(coulomb: float, viscous: float | None = None, gravity: float | None = None, off: float = 0.0) -> Truth:
+def about(coulomb: float, viscous: float | None = None, gravity: float | None = None, off: float = ROUNDED) -> Truth:
     """Return the truth of friction at the input and of gravity, each with a relative difference that counts as right."""
     known = {COULOMB: coulomb, VISCOUS: viscous, GRAVITY: gravity}
     return {path: (value, off) for path, value in known.items() if value is not None}
@@ -150,7 +151,7 @@ def cases() -> list[Case]:
         found.append(Case(f"{identify} --constant ratio=101", path, knows=ur))
     found += [Case(identify, path) for path in sorted((ARMS / "kinova-gen3").glob("*.csv"))]
     found += [Case(identify, path, knows=("joint_torque=block3",)) for path in sorted((ARMS / "icub").glob("*/*.mat"))]
-    found += [Case(identify, ARMS / name) for name in ("direct-drive", "kinova-gen3-split", "tiago")]
+    found += [Case(identify, ARMS / name, knows=("joint_torque",)) for name in ("direct-drive", "kinova-gen3-split", "tiago")]
     found += [Case(f"{identify} --joint all", ARMS / name) for name in ("nnfm", "tiago")]
     found += [Case(identify, path) for path in sorted((ARMS / "nnfm").glob("*.csv"))]
     kuka = {COULOMB: (397.0 / 256.857, 0.12), VISCOUS: (1800.0 / 256.857**2, 0.12)}

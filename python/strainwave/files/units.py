@@ -41,6 +41,7 @@ _DERIVED_UNITS: dict[str, tuple[Fraction | int, Powers]] = {
     "g": (Fraction("1e-3"), {"kg": 1}),
     "N": (1, {"kg": 1, "m": 1, "s": -2}),
     "kgf": (Fraction("9.80665"), {"N": 1}),
+    "gn": (Fraction("9.80665"), {"m": 1, "s": -2}),  # standard gravity, in which accelerometers count
     "J": (1, {"N": 1, "m": 1}),
     "W": (1, {"J": 1, "s": -1}),
     "V": (1, {"W": 1, "A": -1}),

@@ -35,6 +35,7 @@ RATING_SPREAD = float(np.log(2.0))  # of the logarithm of a torque beyond the la
 SHARE_OF_TORQUES = (
     0.8  # of the efforts of robots, that are torques; of those beside a torque constant, that are currents (assumed)
 )
+SHARE_OF_ROBOTS = 0.95  # of the torques with a word of robots, that are those of joints (assumed)
 SHARE_OF_SIDE = 0.8  # of the torques whose name contains no side, that are counted where the motion was measured (assumed)
 # Of the columns without a unit, in N.m or A and not in thousandths of it: small motors have torques in mN.m (assumed).
 SHARE_OF_USUAL_UNIT = {"current": 0.9, "input_torque": 0.6, "joint_torque": 0.95}
@@ -199,7 +200,8 @@ def _readings(file: Recognised, known: GearSoFar, given: FileMapping) -> list[_E
         has_side = has_side or any(each.robot for each in meanings) or np.abs(file.recording["speed"]).max() > MIN_MOTOR_SPEED
     is_open = not has_side and ratio > MIN_RATIO and (is_table or quantity == "torque")
     own: Side = file.side or "input" if is_table else SIDES.get(channel, "input")
-    sides: dict[Side, float] = {own: SHARE_OF_SIDE, "input" if own == "output" else "output": 1.0 - SHARE_OF_SIDE}
+    of_own = SHARE_OF_ROBOTS if own == "output" and any(each.robot for each in meanings) else SHARE_OF_SIDE
+    sides: dict[Side, float] = {own: of_own, "input" if own == "output" else "output": 1.0 - of_own}
     torques = {("joint_torque" if side == "output" else "input_torque", side): share for side, share in sides.items()}
     shares = {("current", side): share for side, share in sides.items()} if quantity == "current" else torques
     shares = shares if is_open else {next(iter(shares)): 1.0}

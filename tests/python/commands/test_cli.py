@@ -333,7 +333,7 @@ def test_a_model_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Pat
 def test_a_failed_check_is_printed_first_and_no_gear_is_written_until_it_is_accepted(tmp_path: Path) -> None:
     speeds = np.geomspace(1.0, 300.0, 12) / 80.0
     rows = "".join(f"{speed},{80.0 * 0.05 + 6400.0 * 3e-4 * speed}\n" for speed in speeds)
-    (tmp_path / "joint.csv").write_text(f"Speed [rad/s],Torque [N.m]\n{rows}")
+    (tmp_path / "joint.csv").write_text(f"Motor speed [rad/s],Motor torque [N.m]\n{rows}")
     words = ["identify", "hfuc-20-80", "joint.csv", "--out", "mine"]
     failed = strainwave(*words, folder=tmp_path)
     assert failed.returncode == 3

@@ -123,7 +123,7 @@ def test_a_torque_that_may_be_of_the_other_side_is_asked_about(tmp_path: Path) -
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
     rows[:, 3] /= RATIO
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
-    with pytest.raises(ValueError, match=r"tau may be a torque of the motor in N\.m, a torque of the joint in") as asked:
+    with pytest.raises(ValueError, match=r"tau may be a torque of the joint in N\.m, a torque of the motor in") as asked:
         identify("csg-20-100", [path])
     found = with_answer(path, answer_with(asked.value, "a torque of the motor in N.m"))
     assert not found.failed

@@ -61,3 +61,11 @@ def test_at_one_speed_no_run_up_is_stated(tmp_path: Path) -> None:
     assert found_in(tmp_path, rows[:2000]).run_up is None
     with pytest.raises(ValueError, match="vibration determines no parameter of a gear: strainwave orders FILE"):
         identify("csg-20-100", [tmp_path / "run.csv"])
+
+
+def test_an_accelerometer_may_count_in_g(tmp_path: Path) -> None:
+    rows = vibration(27.0, 0.04, 2.0, 4)[:2000]
+    np.savetxt(tmp_path / "g.csv", rows, "%.8g", ",", header="time [s],motor speed [rpm],acc_z [g]", comments="")
+    read = recognise(tmp_path / "g.csv")
+    assert read.kind == "vibration"
+    assert read.recording["vibration"] == pytest.approx(9.80665 * rows[:, 2], rel=1e-6)

@@ -76,6 +76,8 @@ OTHERS = (
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
     "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
+ACCELERATIONS = {*QUANTITIES["vibration"], "acceleration", "acc", "accel", "beschleunigung"}
+STANDARD_GRAVITY = "gn"  # the unit that accelerometers call g, which is a gram elsewhere
 ERRORS = {"error", "err", "fehler", "deviation", "abweichung", "te"}
 OF_TRANSMISSION = {"te", "transmission", "kinematic"}
 DEVIATIONS = ERRORS | OF_TRANSMISSION | {"position", "positioning", "angle", "angular"}
@@ -141,6 +143,7 @@ def meaning(label: Label) -> Meaning | None:
         return alone
     name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
     words = words_of(name)
+    unit = STANDARD_GRAVITY if unit in ("g", "G") and ACCELERATIONS & set(words) else unit
     if unit is not None and measures(unit, UNITS["vibration"]):
         return Meaning("vibration", unit=unit)
     is_fine = unit in FINE_UNITS or (unit is not None and measures(unit, "rad") and OF_TRANSMISSION & set(words))
