@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 import strainwave as sw
 
@@ -54,6 +55,23 @@ def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs(
     ):
         done = subprocess.run([sys.executable, "-c", code.format(module, heavy)], capture_output=True, text=True, check=True)
         assert done.stdout.strip() == "set()", module
+
+
+@pytest.mark.slow("physics")
+def test_a_log_is_identified_without_packages_that_take_long_to_import(tmp_path: Path) -> None:
+    time = np.arange(0.0, 10.0, 0.005)
+    angle, speed = 10.0 * np.sin(2.0 * time), 20.0 * np.cos(2.0 * time)
+    current = 0.5 * np.sign(speed) + 0.01 * speed + 0.02 * np.random.default_rng(0).normal(size=len(time))
+    table = np.column_stack([time, angle, current])
+    header = "time [s],input_angle [rad],current [A]"
+    np.savetxt(tmp_path / "log.csv", table, delimiter=",", header=header, comments="")
+    words = ["strainwave", "identify", "csg-20-100", "log.csv", "--constant", "torque_constant=0.1"]
+    command = [sys.executable, "-X", "importtime", "-m", *words]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "input.coulomb" in done.stdout
+    modules = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "scipy.linalg" in modules
+    assert not {"scipy.signal", "scipy.stats", "scipy.integrate", "strainwave.rig"} & modules
 
 
 def test_papers_import_public_modules_alone() -> None:

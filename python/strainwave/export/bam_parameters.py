@@ -58,7 +58,9 @@ def bam(
     elements = GearElements.of_set(gear_set, max_torque)
     constant = None if gear_set.motor is None else torque_constant(gear_set.motor)
     if constant is None:
-        raise ValueError(f"{gear_set.name} has no motor with a torque constant, which BAM needs; add a [motor] to the file")
+        raise ValueError(
+            f"{gear_set.name} has no motor with a torque constant, which BAM needs; add a [motor] to the file, or give --motor"
+        )
     ratio, law, shaft = abs(elements.ratio), gear_set.gear.friction_input, elements.at_input
     numbers: dict[str, tuple[float, str]] = {
         "kt": (constant * ratio, "N.m/A"),

@@ -181,14 +181,16 @@ def transmission_error(
     pair, measured = ratio_of(pair, ratio)
     size = measured.used
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
+    chosen, loads, of_weight = _with_one_weight(chosen, loads_of(pair, size), 1.0 / abs(size), load)
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
-    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
+    found, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
     lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
     frequency, damping = _stage_numbers(found, pair.record, every)
     speeds, vibrates = _speeds_of_amplitudes(found, pair) if chosen else "", found.vibrates and not _at_one_speed(pair)
-    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *_stage_remarks(found, pair, every, chosen, speeds)]
+    remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *of_weight]
+    remarks += _stage_remarks(found, pair, every, chosen, speeds)
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
@@ -233,6 +235,8 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
             f"turn, and it turns {turns_in:.2g} revolutions"
         )
+    if found and turns_out < MIN_ORDER_PERIODS:
+        remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} of its turns, and it turns {turns_out:.3g} times")
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS if ratio.of_strain_wave else ():
@@ -247,6 +251,19 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             "spline, are separated after a whole one"
         )
     return found, remarks
+
+
+def _with_one_weight(
+    chosen: list[tuple[float, Shaft]], loads: list[Array], once: float, load: str | None
+) -> tuple[list[tuple[float, Shaft]], list[Array], list[str]]:
+    """Return orders and loads with one wave over the turn of the output: an order, or gravity if the load is known; and why."""
+    if (once, "output") not in chosen:
+        return chosen, loads, []
+    if load is None:
+        why = "order 1 of the output contains the wind-up by a weight there: one record does not separate them"
+        return chosen, loads[:2], [why]
+    why = "order 1 of the output is part of the wind-up by the load, from which one record does not separate it"
+    return [each for each in chosen if each != (once, "output")], loads, [why]
 
 
 def _regressed(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -46,9 +47,9 @@ def two_joints(folder: Path) -> str:
 
 
 def one_quantity(folder: Path) -> str:
-    header = "t [s],arm_1_joint,arm_2_joint"
+    header, efforts = "t [s],arm_1_joint,arm_2_joint", "t [s],arm_1_joint_effort [Nm],arm_2_joint_effort [Nm]"
     written(folder / "run_velocity.csv", header, TIME, SPEED, OTHER_SPEED)
-    written(folder / "run_effort.csv", header, TIME, TORQUE, OTHER_TORQUE)
+    written(folder / "run_effort.csv", efforts, TIME, TORQUE, OTHER_TORQUE)
     return written(folder / "run_position.csv", header, TIME, ANGLE, OTHER_ANGLE)
 
 
@@ -195,6 +196,19 @@ def test_a_question_that_an_answer_does_not_settle_is_an_error_of_the_program(mo
     monkeypatch.setattr(sys, "argv", ["strainwave", "identify"])
     with pytest.raises(AssertionError, match="asked again after an answer: which side"):
         cli.main()
+
+
+@pytest.mark.slow("commands")
+def test_numbers_of_joints_in_one_column_are_converted_by_the_printed_command(tmp_path: Path) -> None:
+    channels = {"q": (ANGLE, OTHER_ANGLE), "dq": (SPEED, OTHER_SPEED), "tau": (TORQUE, OTHER_TORQUE)}
+    names = [f"{name}_run.txt" for name in channels]
+    for name, columns in zip(names, channels.values(), strict=True):
+        np.savetxt(tmp_path / name, np.stack(columns, axis=1).ravel(), fmt="%.7g")
+    result = strainwave("identify", "csg-20-100", *names, folder=tmp_path)
+    (code,) = re.findall(r'python -c "(.*)"', result.stderr)
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
+    command = ["identify", "csg-20-100", *(f"rows-{name}" for name in names), "--constant", "rate=200"]
+    assert all(result.returncode in (0, 3) for _, result in outcomes(command, tmp_path))
 
 
 REMARKS: dict[str, Callable[[Path], str]] = {

@@ -249,3 +249,17 @@ def test_above_its_resonance_a_ramp_shows_amplitudes_at_its_speeds_alone() -> No
 def test_a_vibration_is_fitted_where_the_record_determines_it(seed: int) -> None:
     """102, 104: none, with noise of the input encoder and friction; 201, 225, 302: one, both ways and in a ramp."""
     assert te.outcome(seed).verdict == "right"
+
+
+@pytest.mark.parametrize("turns", [3.0, 5.3])
+def test_once_per_turn_of_the_output_is_one_order_with_the_wind_up_by_a_weight(turns: float) -> None:
+    """Which a separate column of gravity would take from it."""
+    theta = np.arange(0.0, tau * 80.0 * turns, 0.2)
+    noise = np.random.default_rng(4).normal(0.0, 1e-6, len(theta))
+    output = theta / 80.0 + 9e-5 * np.sin(2.0 * theta) + 1.1e-4 * np.sin(theta / 80.0 + 0.5) + noise
+    found = error_of({"time": 0.01 * np.arange(len(theta)), "input_angle": theta, "output_angle": output})
+    (of_output,) = [each for each in found.orders if each.shaft == "output" and each.significant]
+    assert of_output.order == pytest.approx(1.0 / 80.0)
+    assert of_output.amplitude == pytest.approx(1.1e-4, abs=4.0 * of_output.amplitude_sigma)
+    assert of_output.amplitude_sigma < 1e-6
+    assert any("order 1 of the output contains the wind-up by a weight" in each for each in found.remarks)

@@ -176,10 +176,10 @@ def difference_to_simulation(drive: Drive, files: dict[str, str | bytes], about:
 
 
 def reference_run(drive: Drive, command: Scenario, joint: Scenario, step: float) -> Run:
-    """Return the run of a drive under a command while its output shaft moves as a joint."""
+    """Return the run of a drive under a command while its output shaft moves as a joint, from rest at the angle 0."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return simulate(drive, command, step, inputs={"output_angle": joint})
+        return simulate(drive, command, step, inputs={"output_angle": joint}, start=drive.rest())
 
 
 def loaded(folder: Path) -> Any:

@@ -196,6 +196,9 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         if question.answers:
             raise
         left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns).values())))
+        if unnamed.is_frequency_response(table):
+            why = "it is a frequency response, which is not read: give the record in time from which it was computed"
+            raise QuestionError(f"{why}{left}") from None
         raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, given.kind)) from None
     neighbours = {
         f"angle_of_joint_{column.which}": column
@@ -282,8 +285,7 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
     Raises:
         QuestionError: no one named it; names the options
     """
-    for part in source.parts or (source,):
-        _check_not_interleaved(part)
+    _check_not_interleaved(source.parts or (source,))
     if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
         together = Answer("the files of the recording together", files=tuple(map(str, others)))
         raise QuestionError("it has one quantity of a recording", [together])
@@ -293,22 +295,28 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
         raise layout.question(is_timed=is_timed)
 
 
-def _check_not_interleaved(source: MeasurementFile) -> None:
-    """Refuse one column without a name in which the numbers of several joints follow each other.
+def _check_not_interleaved(parts: Sequence[MeasurementFile]) -> None:
+    """Refuse files of one column without a name in which the numbers of several joints follow each other.
 
     Raises:
-        QuestionError: it is such a file; states how to convert it
+        QuestionError: there are such files; states how to convert them
     """
-    if len(source.raw.labels) != 1 or not nameless(source.raw):
-        return
-    numbers, _ = source.raw.measured([ColumnSource(0, "numbers", "numbers", "1")])
-    if joints := interleaved(numbers["numbers"]):
-        name = source.path.name
+    joints = {part.path.name: count for part in parts if (count := _joints_in_one_column(part))}
+    if joints:
+        count = max(joints.values())
+        rows = f"np.savetxt('rows-' + name, np.loadtxt(name).reshape(-1, {count}))"
         raise QuestionError(
-            f"{name} has one column in which the numbers of {joints} joints follow each other; write a row for each sample, "
-            f"as with python -c \"import numpy as np; np.savetxt('rows-{name}', np.loadtxt('{name}').reshape(-1, {joints}))\", "
-            "and take the files with rows"
+            f"the numbers of {count} joints follow each other in one column; write a row for each sample, as with "
+            f'python -c "import numpy as np; [{rows} for name in {list(joints)}]", and take the files with rows'
         )
+
+
+def _joints_in_one_column(part: MeasurementFile) -> int:
+    """Return the number of joints whose numbers follow each other in a file of one column without a name; 0 if of one."""
+    if len(part.raw.labels) != 1 or not nameless(part.raw):
+        return 0
+    numbers, _ = part.raw.measured([ColumnSource(0, "numbers", "numbers", "1")])
+    return interleaved(numbers["numbers"])
 
 
 def _with_single_numbers(table: OpenTable, given: FileMapping) -> tuple[FileMapping, list[str]]:

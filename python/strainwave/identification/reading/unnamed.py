@@ -11,6 +11,7 @@ from strainwave.files.labels import ColumnSource
 from strainwave.files.table_format import OpenTable
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.layout import rises_evenly
+from strainwave.identification.reading.names import words_of
 from strainwave.messages import MAX_TEXT, one_line
 from strainwave.questions import LOG_AT_RATE, Answer
 
@@ -23,6 +24,7 @@ EFFORTS = {"joint_torque": "the torque of the joint", "current": "the current of
 MOTIONS = {"output_angle": "the angle of the joint", "input_angle": "the angle of the motor", "speed": "a speed"}
 OF_ONE_SIDE = ("friction", "torsion")  # kinds whose torque has no side in its name
 PAIRS = (("output_angle", "joint_torque"), ("speed", "torque"))  # of channels that are a measurement together
+FREQUENCIES, RESPONSES = {"frequency", "freq", "frequenz"}, {"magnitude", "mag", "gain", "amplitude", "phase", "betrag"}
 SPEED = {"constants": {"speed": 10.0}}, {"speed": "the constant speed [rad/s]"}
 
 
@@ -70,6 +72,12 @@ def answers(table: OpenTable, known: Sequence[Column], kind: str | None) -> list
     if "time" in quantities:
         return pairs
     return [Answer(f"{pairs[0].label}", {**pairs[0].given, **LOG_AT_RATE.given}, LOG_AT_RATE.numbers), *pairs[1:]]
+
+
+def is_frequency_response(table: OpenTable) -> bool:
+    """True if a column is a frequency and another one a magnitude, a gain or a phase."""
+    words = {word for label in table.labels for word in words_of(label.name)}
+    return bool(words & FREQUENCIES and words & RESPONSES)
 
 
 def motions(names: Sequence[str]) -> list[Answer]:

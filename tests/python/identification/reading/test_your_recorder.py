@@ -185,5 +185,5 @@ def test_numbers_of_joints_in_one_column_are_refused_with_what_to_do(tmp_path: P
     joints = np.stack([np.sin(TIME + 0.5 * place) + place for place in range(7)], axis=1)
     np.savetxt(tmp_path / "q.txt", joints.ravel())
     np.savetxt(tmp_path / "tau.txt", 3.0 * joints.ravel())
-    with pytest.raises(ValueError, match=r"numbers of 7 joints follow each other; .*reshape\(-1, 7\)"):
+    with pytest.raises(ValueError, match=r"numbers of 7 joints follow each other in one column; .*reshape\(-1, 7\)"):
         read(tmp_path, FileMapping())
