@@ -249,8 +249,11 @@ def _is_limit(each: Parameter) -> bool:
 
 
 def _of_lists(found: sw.Identified) -> Iterator[str]:
-    """Yield the estimates that are rounding, and those that are listed as identified and are a limit of 0."""
-    for each in (estimate for file in found.files for estimate in file.estimates):
+    """Yield the estimates that are rounding, and those that are listed as identified and are a limit of 0.
+
+    One that is not identified, and that the set has no prior of, stays where its fit started: it is not written.
+    """
+    for each in (estimate for file in found.files for estimate in file.estimates if estimate.state != "not identified"):
         if 0.0 < abs(each.value) < MIN_NUMBER and not each.is_phase:
             yield f"{each.path} = {each.value:.3g} ± {each.sigma:.2g} is rounding"
     for each in (parameter.estimate for parameter in found.parameters):
