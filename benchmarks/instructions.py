@@ -13,11 +13,9 @@ Needs the packages qemu-system-arm, gcc-arm-none-eabi and libnewlib-arm-none-eab
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 import tempfile
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,17 +28,10 @@ from numpy.typing import NDArray
 from peers import strainwave_drive
 from report import Column, print_table, save
 from rich.console import Console
-from strainwave.export.firmware import FLAGS
+from strainwave.export.firmware import microcontroller
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
-QEMU, GCC = "qemu-system-arm", "arm-none-eabi-"
-PROGRAMS = (QEMU, *(GCC + name for name in ("gcc", "g++", "size")))
-CLOCK = ("-icount", "shift=0")  # 1 ns with each instruction
-TIMER_TICK = 40  # ns, of the system timer of both machines
-DRIVER = Path(__file__).with_suffix(".c")
-MEMORY = ("--section-start=.vectors=0", "-Ttext=0x400", "-Tdata=0x20000000", "-Tbss=0x20001000", "-e", "steps")
-REPEATED_STEPS = 1000  # of the longest step, as in the driver
 SAMPLE_PERIOD = 1e-3  # s, of the controllers
 MOTION_STEPS = 400  # sampling instants of the simulated motion
 RANDOM_STEPS = 100
@@ -61,31 +52,6 @@ COLUMNS = (
 )
 STATES = "both shafts slip", "one sticks", "one stops, breaks away or turns round"
 STATE_COLUMNS = (Column("drive", words=True), *(Column(f"M4F, {state}") for state in STATES))
-
-
-@dataclass(frozen=True)
-class Processor:
-    """A microcontroller: options of GCC, and a machine of QEMU with it."""
-
-    options: tuple[str, ...]
-    machine: str
-
-
-M4F = Processor(("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"), "mps2-an386")
-M7 = Processor(("-mcpu=cortex-m7", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv5-d16"), "mps2-an500")
-
-
-@dataclass(frozen=True)
-class Counts:
-    """Instructions of steps, and bytes of stack below that of their caller.
-
-    Attributes:
-        largest: of steps in which a shaft sticks, both slip, one stops, breaks away or turns round; 0 without such steps
-    """
-
-    mean: float
-    largest: tuple[int, int, int]
-    stack: int
 
 
 @dataclass(frozen=True)
@@ -277,18 +243,14 @@ def measured(case: Case) -> Step:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         firmware = sw.export.firmware(case.model, folder, part=case.part, name="part", period=case.period)
-        case.inputs(firmware).astype("<f4").tofile(folder / "inputs")
-        sides = {side: f"{side}_slip_direction" for side in ("input", "output")}
-        naming = [
-            f"-D{side.upper()}_DIRECTION={f'state.{name}' if name in firmware.state else '1'}" for side, name in sides.items()
-        ]
-        on_m7 = counted(M7, folder, naming)
-        on_m4f = counted(M4F, folder, naming)
+        inputs = case.inputs(firmware)
+        on_m7 = microcontroller.counted(microcontroller.M7, folder, firmware, inputs)
+        on_m4f = microcontroller.counted(microcontroller.M4F, folder, firmware, inputs)
         state = 4 * len(firmware.state)
         return Step(
             case.name,
             state,
-            code_size(folder),
+            microcontroller.code_size(folder),
             on_m4f.stack,
             on_m4f.mean,
             max(on_m4f.largest),
@@ -297,50 +259,9 @@ def measured(case: Case) -> Step:
         )
 
 
-def counted(processor: Processor, folder: Path, naming: Sequence[str]) -> Counts:
-    """Compile firmware and driver for a processor, run them, and return what they counted."""
-    linking = ["-nostartfiles", *(f"-Wl,{option}" for option in MEMORY)]
-    files = ("-semihosting-config", "enable=on,target=native")
-    for command in (
-        [f"{GCC}g++", *processor.options, *FLAGS.split(), "-nostdinc++", "-c", "part.cpp"],
-        [
-            f"{GCC}gcc",
-            *processor.options,
-            "-O1",
-            *linking,
-            "-I.",
-            "-DNAME=part",
-            *naming,
-            "-include",
-            "part.h",
-            str(DRIVER),
-            "part.o",
-            "-lm",
-            "-o",
-            "steps",
-        ],
-        [QEMU, "-M", processor.machine, "-kernel", "steps", "-display", "none", *CLOCK, *files],
-    ):
-        subprocess.run(command, cwd=folder, check=True)
-    numbers = np.fromfile(folder / "counts", "<u4").astype(int)
-    steps, depth, empty = numbers[:3]
-    found, repeated, idle = numbers[3:12].reshape(3, 3)
-    exact = np.where(
-        found > 0, np.rint(TIMER_TICK * (repeated - idle) / REPEATED_STEPS).astype(int) + 1, 0
-    )  # 1: the function that is idle
-    mean = TIMER_TICK * (float(np.mean(numbers[12 : 12 + steps])) - empty / REPEATED_STEPS) + 1.0
-    return Counts(mean, tuple(exact.tolist()), int(depth))
-
-
-def code_size(folder: Path) -> int:
-    """Return the bytes of code and constants of the firmware."""
-    printed = subprocess.run([f"{GCC}size", "part.o"], cwd=folder, check=True, capture_output=True, text=True).stdout
-    return int(printed.splitlines()[1].split()[0])
-
-
 def run(console: Console) -> None:
     """Count the steps of all parts."""
-    if missing := [program for program in PROGRAMS if shutil.which(program) is None]:
+    if missing := microcontroller.missing_programs():
         console.print(f"instructions: left out, as {', '.join(missing)} is not installed")
         return
     found = list[Step]()

@@ -55,9 +55,9 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 #   The delay is estimated and corrected.
 # * `the inertia of the motor …`: the log cannot separate the rotor from the load. The inertia below is that of the load,
 #   plus that of the rotor times 80².
-# * `current is counted against the motion …`: in `strainwave` a positive current turns the motor forward, and the output of
-#   this gear turns against its motor. In this robot a positive current turns the joint forward. This is detected and
-#   corrected.
+# * `current is counted in the sense of the output …`: in `strainwave` a positive current turns the motor forward, and the
+#   output of this gear turns against its motor. In this robot a positive current turns the joint forward. This is detected
+#   and corrected.
 # * The numbers: value ± standard deviation. The friction is at the motor's side; multiply it by 80 for the joint.
 #
 # The exit code is 0. It is 3 if a check finds a contradiction, and then there is no `gear.toml`: [five wrong

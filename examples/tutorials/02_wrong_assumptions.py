@@ -123,8 +123,8 @@ _ = panels[1].set(xlabel="time [s]")
 # ## And a wrong sign?
 #
 # A wrong sign is repaired, not refused. In `robot_log.csv` a positive current turns the joint forward. `strainwave` counts it
-# at the motor, and the output of this gear turns against its motor. The remark of `identify` is `current is counted against
-# the motion: its sign is turned round`.
+# at the motor, and the output of this gear turns against its motor. The remark of `identify` is `current is counted in the
+# sense of the output, which turns against the input: its sign is turned round`.
 #
 # ## In short
 #

@@ -124,7 +124,7 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     if not names_columns:
         message = re.sub(r", or give it with --unit .*? \(in Python units=\{.*?\}\)", "", message)
     text = re.sub(r", or pick columns with columns=\{\.\.\.\}", "", message)
-    text = re.sub(r" \(in Python \w+=\{.*?\}\)", "", text)
+    text = re.sub(r" \(in Python (\w+=\{.*?\}|FileMapping\(.*?\))\)", "", text)
     text = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", text)
     text = re.sub(r"^rtol = ", "--tolerance ", text)
     options = r"^(speed_limit|lowest_speed|torque_limit|rated_torque|load(?= is needed))\b"

@@ -30,7 +30,7 @@ NAMES = """
 """
 # Packages that look at the platform when they are imported.
 OTHERS = """
-    asyncio jinja2 matplotlib.font_manager packaging.requirements PIL.Image pint pyarrow.parquet pydantic rich.console
+    asyncio jinja2 matplotlib.font_manager packaging.requirements PIL.Image pyarrow.parquet pydantic rich.console
     scipy.signal typer
 """
 

@@ -16,7 +16,7 @@ from tests.support.rooms import layers
 
 PACKAGE = Path(sw.__file__).parent
 LAYERS = layers()  # of the map for contributors
-TOP = {"__main__", "demo"}
+TOP = {"__main__"}
 
 
 @cache
@@ -36,7 +36,7 @@ def test_each_layer_imports_from_those_below_alone() -> None:
     for layer, below in LAYERS.items():
         for path in sorted((PACKAGE / layer).rglob("*.py")):
             parts = {name.split(".")[0] for name in imported(path)} & known
-            above = parts - below - ({"demo"} if layer == "commands" else set())  # a verb, and a script of its own
+            above = parts - below
             assert above == set(), f"{path.relative_to(PACKAGE)} imports {above}"
 
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import os
-import re
-import shlex
 from pathlib import Path
 
 import pytest
-from strainwave.commands.file_options import FileOptions
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, identify, read_measurements
 from strainwave.identification.rank import rank
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import measurement_files
-from strainwave.messages import with_options
+from strainwave.questions import QuestionError
+
+from tests.support.answers import mapping_of
 
 SHARED = Path(__file__).parents[3] / "shared"
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
@@ -25,24 +24,12 @@ needs_arms = pytest.mark.skipif(not ARMS.is_dir(), reason=f"measured data not fo
 needs_trials = pytest.mark.skipif(not TRIALS.is_dir(), reason=f"trials not found: {TRIALS} (set STRAINWAVE_TRIALS)")
 
 
-def identified(path: Path, options: str = "") -> Identified:
-    """The gear of a file; if it asks, with the options of the question, the first ones of several ways."""
-    given: dict[str, list[str]] = {}
-    words = shlex.split(options)
-    for name, value in zip(words[::2], words[1::2], strict=True):
-        given.setdefault(name, []).append(value)
-    files = measurement_files([path])
-    joint = given.get("--joint", [None])[0]
-    options_of = ("--column", "--unit", "--constant")
-    said = FileOptions(None, *(given.get(name) for name in options_of), joint=joint).mapping_of(files.files)
+def identified(path: Path, given: FileMapping | None = None) -> Identified:
+    """The gear of a file; if it asks, with the usual answer."""
     try:
-        return identify("csg-20-100", files, mapping=said)
-    except ValueError as question:
-        asked = re.sub(r", or --column.*", "", with_options(str(question)).partition("; ")[2])
-        answers = " ".join(re.findall(r"--(?:unit|column) (?:'[^']*'|[^\s,)]+)", asked))
-        if not answers or answers in options:
-            raise
-        return identified(path, f"{options} {answers}")
+        return identify("csg-20-100", [path], mapping=given)
+    except QuestionError as question:
+        return identified(path, (given or FileMapping()).updated(mapping_of(question.answers[0])))
 
 
 def values(found: Identified) -> dict[str, float]:
@@ -74,7 +61,7 @@ def test_revolutions_at_the_output_are_decided_by_what_each_reading_leaves() -> 
 def test_friction_of_a_robot_with_its_motor_in_joint_units() -> None:
     """Published for axis 1: 375 to 420 N.m and 1700 to 1900 N.m.s/rad at the joint; a single stroke tells it to some 8 %."""
     ratio = 1798.0 / 7.0
-    found = identified(ARMS / "kuka-kr300" / "FF_A.mat", f"--joint 1 --constant ratio={ratio}")
+    found = identified(ARMS / "kuka-kr300" / "FF_A.mat", FileMapping(joint="1", constants={"ratio": ratio}))
     assert values(found)["gear.friction_input.coulomb"] * ratio == pytest.approx(397.0, rel=0.12)
     assert values(found)["gear.friction_input.viscous"] * ratio**2 == pytest.approx(1800.0, rel=0.12)
     assert found.files[0].held_out is not None

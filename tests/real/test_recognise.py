@@ -90,7 +90,7 @@ def test_loops_of_printed_gears() -> None:
 @needs_data
 def test_the_joints_of_a_robot_arm() -> None:
     (path,) = (DATA / "cobot-temperature").glob("*.csv")
-    with pytest.raises(ValueError, match=r"it has 6 joints \(0, 1, 2, 3, 4, 5\), as Current_J0, .*; choose with --joint 0"):
+    with pytest.raises(ValueError, match=r"it has 6 joints \(0, 1, 2, 3, 4, 5\), as Current_J0, .* --joint 0 "):
         recognise(path)
     found = recognise(path, FileMapping(joint="3"))
     assert found.columns == {

@@ -36,6 +36,7 @@ from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
 from strainwave.messages import one_line, with_options
+from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError
 
 VERBS = (
     identify,
@@ -61,6 +62,8 @@ VERBS = (
     docs,
 )
 WITH_COLUMNS = {"identify", "predict", "rank", "orders", "diagnose"}  # verbs with the options --column and --unit
+WITH_ALL_JOINTS = {"identify", "diagnose"}
+ANSWERS_OF_RIG = {"--column", "--unit", "--side"}
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 
@@ -99,14 +102,36 @@ def _names_columns(words: list[str]) -> bool:
 
 
 def main() -> None:
-    """Run the command; input that cannot be used ends in one line and exit code 2, with nothing written."""
-    output = StringIO()
+    """Run the command; input that cannot be used ends in one line and exit code 2, with nothing written.
+
+    If a file leaves a question open, it is printed with a command for each answer. In a terminal a person may choose one at
+    once, and the command runs again with it.
+    """
+    asked = list[str]()
+    while True:
+        code, question = _run()
+        if question is None:
+            sys.exit(code)
+        if question.question in asked:
+            raise AssertionError(f"asked again after an answer: {question.question}")
+        asked.append(question.question)
+        if not (answer := _answer(question)):
+            sys.exit(code)
+        sys.argv += answer
+
+
+def _run() -> tuple[int, QuestionError | None]:
+    """Run the command once and print its output. Return the exit code, and the question that a file leaves open."""
+    output, question = StringIO(), None
     try:
         with redirect_stdout(output), warnings.catch_warnings():
             warnings.showwarning = _warn
             code = app(sys.argv[1:] or ["--help"], standalone_mode=False)
     except MISUSED as error:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
+        code = exit_codes.INPUT_REFUSED
+    except QuestionError as error:
+        question = QuestionError(error.question, [each for each in error.answers if _is_accepted(each)])
         code = exit_codes.INPUT_REFUSED
     except (OverflowError, ZeroDivisionError) as error:
         _print(f"strainwave: a number is too large or too small to compute with: {one_line(str(error))}\n", sys.stderr)
@@ -117,7 +142,36 @@ def main() -> None:
         code = exit_codes.INPUT_REFUSED
     finally:
         _print(output.getvalue(), sys.stdout)
-    sys.exit(code)
+    return code, question
+
+
+def _is_accepted(answer: Answer) -> bool:
+    """True if the verb has the options of an answer."""
+    options = {word for word in answer.options if word.startswith("--")}
+    if sys.argv[1:2] == ["rig"]:
+        return options <= ANSWERS_OF_RIG and not answer.files
+    return answer.given.get("joint") != ALL_JOINTS or bool(WITH_ALL_JOINTS & set(sys.argv[1:2]))
+
+
+def _answer(question: QuestionError) -> list[str]:
+    """Print a question. Return the words that answer it, if a person at a terminal chooses some; else none."""
+    first, *lines = question.lines(["strainwave", *sys.argv[1:]])
+    _print("".join(f"{line}\n" for line in [f"strainwave: {first}", *lines]), sys.stderr)
+    if not question.answers or not _is_terminal():
+        return []
+    try:
+        chosen = input(f"answer, 1 to {len(question.answers)}, or Enter to end: ").strip()
+        if chosen not in map(str, range(1, len(question.answers) + 1)):
+            return []
+        words = question.answers[int(chosen) - 1].options
+        return [word.replace(NUMBER, input(f"{NUMBER} in {word}: ").strip()) if NUMBER in word else word for word in words]
+    except EOFError:
+        return []
+
+
+def _is_terminal() -> bool:
+    """True if a person reads the output and can type."""
+    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr))
 
 
 def _misuse(error: Any) -> str:

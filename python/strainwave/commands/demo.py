@@ -1,4 +1,4 @@
-"""The command `strainwave demo`: two gears from published measurements."""
+"""The command `strainwave demo`: a joint from its log, and two gears from published measurements."""
 
 from __future__ import annotations
 
@@ -9,27 +9,30 @@ import typer
 
 from strainwave.commands.progress import progress
 
-EXPECTED = (
-    "This failed check is part of the demonstration: the friction table of document P contradicts the friction in its other "
-    "tables (errata E-P6 and E-P7). Of your own measurements identify would write no gear."
-)
+NEXT = """
+Your own log: name its gear, or one of its size and ratio (strainwave gears lists them), and the torque constant of the motor.
+  strainwave identify hfuc-20-80 YOUR-LOG.csv --constant torque_constant=0.0755
+What changed since:
+  strainwave predict {gear} YOUR-LOG.csv --constant torque_constant=0.0755
+Its numbers for URDF, MuJoCo and others:
+  strainwave export joint {gear} --max-torque 40
+The tutorials, which begin with this log:
+  strainwave docs
+"""
 
 
 def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
-    """Identify two gears from published measurements, and write a gear file and a report of each."""
-    from strainwave.demo import PUBLISHED, position_drive, torsion_rig
+    """Identify a joint from its log and two gears from published measurements, with a gear file and a report of each."""
+    from strainwave.demo import DEMONSTRATIONS
     from strainwave.files.writing import write_folder
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
     with progress() as turn:
-        for name, identify in (("torsion-rig", torsion_rig), ("position-drive", position_drive)):
+        for name, shown in DEMONSTRATIONS.items():
             turn(name.replace("-", " "))
-            found = identify()
-            published = PUBLISHED.glob(f"{'torsional' if name == 'torsion-rig' else 'position'}*")
-            provenance = Provenance.of_this_command(published)
-            write_folder(out / name, identify_files(found, provenance, accepted=True))
-            print("\n".join(identify_summary(found)))
-            if found.failed and name == "position-drive":
-                print(EXPECTED)
-            print(f"wrote {out / name / 'gear.toml'} and {out / name / 'report.html'}")
+            found, folder = shown.identified(), out / name
+            write_folder(folder, identify_files(found, Provenance.of_this_command(list(shown.files)), accepted=True))
+            print("\n".join([shown.heading, "", *identify_summary(found), *[shown.remark] * bool(shown.remark)]))
+            print(f"wrote {folder / 'gear.toml'} and {folder / 'report.html'}\n")
+    print(NEXT.strip().format(gear=out / "robot-joint" / "gear.toml"))

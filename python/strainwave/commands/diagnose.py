@@ -14,6 +14,7 @@ from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import numeric, with_groups
 from strainwave.commands.progress import progress
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM
+from strainwave.questions import ALL_JOINTS, QuestionError
 
 if TYPE_CHECKING:
     from strainwave.diagnose.diagnosis import Diagnosis, Question
@@ -124,7 +125,6 @@ def diagnose(
     if not paths:
         raise ValueError("no recording is given: name one or more files, or add --plan for what a recording would show")
     from strainwave.files.writing import write_folder
-    from strainwave.identification.joints import ALL
     from strainwave.identification.reading.source import distinct_names, measurement_files
     from strainwave.report.diagnose import diagnose_files, diagnose_summary
     from strainwave.report.provenance import Provenance
@@ -141,7 +141,7 @@ def diagnose(
     mapping = given.mapping_of(opened)
     read = [*paths_in(files), *paths_in(healthy)]
     with progress() as turn:
-        joints = _joints(files, mapping) if given.joint == ALL else (given.joint,)
+        joints = _joints(files, mapping) if given.joint == ALL_JOINTS else (given.joint,)
         found = [_of_joint(joint, files, healthy, names, mapping, question, rate, turn) for joint in joints]
         turn("report")
         written = diagnose_files(found, Provenance.of_this_command(read), by_name)
@@ -283,14 +283,12 @@ def _check_apart(files: Sequence[MeasurementFile], healthy: Sequence[Measurement
         )
 
 
-def _joints(files: MeasurementFiles, mapping: Callable[[Path], FileMapping]) -> tuple[str, ...]:
-    """Return the joints that move in any recording."""
+def _joints(files: MeasurementFiles, mapping: Callable[[Path], FileMapping]) -> tuple[str | None, ...]:
+    """Return the joints that move in any recording; None for recordings of one joint without a name."""
     from strainwave.identification.reading.recognise import joints_of
 
     found = [joint for file in files.files for joint in joints_of(file, replace(mapping(file.path), joint=None))]
-    if not found:
-        raise ValueError("no file contains several joints; leave out --joint, or name one")
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(found)) or (None,)
 
 
 def _of_joint(
@@ -307,18 +305,23 @@ def _of_joint(
     from strainwave.diagnose.diagnosis import diagnosed
     from strainwave.messages import one_line, without_name
 
-    runs, refused = [], dict[str, str]()
+    runs, refused, questions = [], dict[str, str](), list[QuestionError]()
     for file in files.files:
         turn(name := names[file.path])
         try:
             runs.append(_run_of(file, name, joint, mapping, question, rate))
         except ValueError as error:
             refused[name] = without_name(one_line(str(error)), name, file.path.name)
+            questions += [error] if isinstance(error, QuestionError) and error.answers else []
+    if questions and not runs:
+        raise questions[0]
     baseline = []
     for file in healthy.files:
         turn(name := names[file.path])
         try:
             baseline.append(_run_of(file, name, joint, mapping, question, rate))
+        except QuestionError:
+            raise
         except ValueError as error:
             raise ValueError(f"baseline {name}: {without_name(one_line(str(error)), name, file.path.name)}") from None
     turn(f"joint {joint}" if joint else "diagnosis")

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args,
 import typer
 from typer.core import TyperGroup
 
-from strainwave.commands.options import numeric, whole
+from strainwave.commands.drive_parts import DriveParts
+from strainwave.commands.options import numeric, whole, with_groups
 
 if TYPE_CHECKING:
     from strainwave.export.exported import Exported, Form
@@ -87,15 +88,18 @@ def verb_of(form: Form) -> Any:
     model, *others = signature(form.write, eval_str=True).parameters.values()
     first = model.replace(name=form.model, annotation=MODELS[form.model])
     options = [option for each in others for option in option_of(each, meanings)]
+    own = {each.name for each in options}
+    parts = [each for each in signature(DriveParts, eval_str=True).parameters.values() if each.name not in own]
     out = Parameter("out", Parameter.KEYWORD_ONLY, default=Path("out", form.folder or form.verb), annotation=Out)
 
     def verb(**values: Any) -> None:
-        gear, folder = GearSet.read(values.pop(form.model)), values.pop("out")
+        given = {each.name: values.pop(each.name) for each in parts}
+        gear, folder = DriveParts(**given).on(GearSet.read(values.pop(form.model)), form.model == "drive"), values.pop("out")
         for name in CONVERSIONS.keys() & values:
             values[name] = CONVERSIONS[name].argument(values[name])
         _write(form.write(gear, **values), folder)
 
-    parameters = [first, *options, out]
+    parameters = [first, *options, *(each.replace(kind=Parameter.KEYWORD_ONLY) for each in parts), out]
     verb.__signature__ = signature(verb).replace(parameters=parameters)  # type: ignore[attr-defined]
     verb.__annotations__ = {each.name: each.annotation for each in parameters}
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -105,15 +109,21 @@ def verb_of(form: Form) -> Any:
 
 def option_of(parameter: Parameter, meanings: dict[str, str]) -> Iterator[Parameter]:
     """Yield the option of an argument; none if its value is none that a command line can have."""
-    annotation = str if get_origin(parameter.annotation) is Literal else parameter.annotation
-    kinds = {*(get_args(annotation) or (annotation,))}
+    kinds = _kinds(parameter.annotation)
     if parameter.name in CONVERSIONS:
         yield parameter.replace(annotation=CONVERSIONS[parameter.name].annotation)
     elif scalars := kinds & {str, float, int, bool}:
         option = _option(parameter, scalars, meanings[parameter.name])
-        (scalar,) = scalars if len(scalars) == 1 else (annotation,)
+        (scalar,) = scalars if len(scalars) == 1 else (parameter.annotation,)
         typed = scalar | None if NoneType in kinds else scalar
         yield parameter.replace(annotation=Annotated[typed, option], kind=Parameter.KEYWORD_ONLY)
+
+
+def _kinds(annotation: Any) -> set[Any]:
+    """Return the types that an annotation allows; words that it lists are texts."""
+    if get_origin(annotation) is Literal:
+        return {str}
+    return {kind for each in get_args(annotation) for kind in _kinds(each)} or {annotation}
 
 
 def _option(parameter: Parameter, kinds: set[Any], meaning: str) -> Any:
@@ -141,14 +151,19 @@ def _sentence(words: str) -> str:
 
 
 @export.command("firmware")
+@with_groups
 def firmware(
     drive: Annotated[str, typer.Argument(help="A drive, by name or as a file; for a law of the gear, a gear alone will do.")],
+    parts: DriveParts,
     part: Annotated[
         str,
         typer.Option(help="control, drive, or a law of the gear, as gear.friction_input."),
     ] = "control",
     scalar: Annotated[str, typer.Option(help="Type of all numbers: float or double.")] = "float",
     period: Annotated[float | None, numeric("Time between steps of a drive or a friction in s; 0.2 ms or shorter.")] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Print size and instructions of a step on a Cortex-M4F, by GCC and QEMU.")
+    ] = False,
     name: Annotated[
         str | None, typer.Option(help="Of the files, and prefix of all names in C; else the end of the part.")
     ] = None,
@@ -158,13 +173,17 @@ def firmware(
     from strainwave.export.firmware import firmware as exported
     from strainwave.files.gear_set import GearSet
 
-    found = GearSet.read(drive)
+    found = parts.on(GearSet.read(drive), not part.startswith("gear."))
     written = exported(found, out, part=part, name=name, scalar=scalar, period=period)  # type: ignore[arg-type] # checked there
     for kind in ("inputs", "outputs"):
         print(f"{kind}: {', '.join(getattr(written, kind))}")
     print(f"size of the state: {len(written.state)}")
     every = f", to be called every {written.period:g} s" if written.period else ""
-    files = (written.header, written.declarations, written.source)
+    files = (written.header, written.declarations, written.source, written.example)
+    if report:
+        from strainwave.export.firmware.microcontroller import report as lines
+
+        print(*lines(found, part, written.scalar, period), sep="\n")
     print(f"wrote {', '.join(each.name for each in files)} to {out}{every}")
 
 

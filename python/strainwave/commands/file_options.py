@@ -11,6 +11,7 @@ import typer
 
 from strainwave.identification.kinds import KINDS
 from strainwave.messages import listed, pairs, quoted, unquoted
+from strainwave.questions import NUMBER
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
@@ -61,6 +62,8 @@ class FileOptions:
 
         side: Any = self.side
         channels = {*CHANNELS, *ALIASES}
+        if open_words := [word for word in (*(self.unit or ()), *(self.constant or ())) if NUMBER in word]:
+            raise ValueError(f"{quoted(open_words[0])}: write the number in place of {NUMBER}")
         columns = pairs("--column", self.column, channels)
         names = {name for file in files for name in file.names} if columns or self.unit else set[str]()
         for channel, column in columns.items() if names else ():

@@ -12,6 +12,7 @@ from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear, paths_in
 from strainwave.commands.options import with_groups
 from strainwave.commands.progress import progress
+from strainwave.questions import ALL_JOINTS
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
@@ -33,11 +34,10 @@ def identify(
     fitted by itself, with the reasons for its type. Of files that agree about a parameter the mean is taken. If a consistency
     check fails, it is printed first, no gear is written, and the exit code is 3.
     """
-    from strainwave.identification.joints import ALL
     from strainwave.identification.reading.source import measurement_files
 
     opened = measurement_files(paths)
-    fit = _every_joint if given.joint == ALL else _one_gear
+    fit = _every_joint if given.joint == ALL_JOINTS else _one_gear
     if fit(gear, opened, given.mapping_of(opened.files), accept, name, out) and not accept:
         print("a gear with a failed check is not written: settle it, or --accept writes it")
         raise typer.Exit(exit_codes.RESULT_CONTRADICTED)

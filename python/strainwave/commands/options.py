@@ -69,3 +69,21 @@ def whole_option(value: str | int) -> int:
     if not is_whole(value):
         raise typer.BadParameter(f"{quoted(value)} is no whole number; write digits, at most 18")
     return int(value)
+
+
+def changed_number(option: str, text: str) -> tuple[str, float | str]:
+    """Return the path and the value of a number that an option changes.
+
+    >>> changed_number("--set", "load.inertia=0.6")
+    ('load.inertia', 0.6)
+    """
+    path, equals, value = text.partition("=")
+    if not (path and equals and value):
+        raise ValueError(f"{option} {text}: write it as {option} load.inertia=0.6")
+    if is_whole(value):
+        return path, int(value)
+    try:
+        float(value)  # nan and other digits than ASCII are no words of a model either
+    except ValueError:
+        return path, value
+    return path, number_in(value)

@@ -39,6 +39,7 @@ def orders(
     from strainwave.identification.reading.source import MeasurementFile
     from strainwave.messages import one_line
     from strainwave.orders.ripple import MAX_ORDER
+    from strainwave.questions import QuestionError
     from strainwave.report.orders import orders_files, orders_summary
     from strainwave.report.provenance import Provenance
 
@@ -58,6 +59,8 @@ def orders(
             turn(run.path.name)
             try:
                 found.append(_of_file(run, given, ratio, rate, highest))
+            except QuestionError:
+                raise
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
         turn("report")
@@ -80,8 +83,8 @@ def _of_file(
     ratio = read.constants.get("ratio") if ratio is None else ratio
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
     if read.kind == "positioning":
-        steps = positioning_of(read, ratio)
-        return OrdersFound(file.path.name, None, None, (*read.remarks, *positioning_words(steps), *steps.remarks))
+        steps = positioning_of(read)
+        return OrdersFound(file.path.name, None, None, (*read.remarks, *positioning_words(steps, ratio), *steps.remarks))
     side: Any = mapping.side
     found = orders_found(read.recording, file.path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

@@ -29,7 +29,7 @@ def rank(
     fails, it is printed first, and the exit code is 3.
     """
     from strainwave.files.gear_set import GearSet
-    from strainwave.identification.identify import checks_of, read_measurements
+    from strainwave.identification.identify import checks_of, raise_question, read_measurements
     from strainwave.identification.kinds import KINDS
     from strainwave.identification.rank import rank as ranked
     from strainwave.identification.rank import table_of
@@ -43,6 +43,7 @@ def rank(
         for path, file in read.items():
             turn(path.name)
             if isinstance(file, FileResult):
+                raise_question([file])
                 raise ValueError(f"{path.name}: {file.refused}")
             lines += [f"{path.name}: {KINDS[file.kind].title}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
             failed += failed_lines(check for check in checks_of(start, file) if check.failed)

@@ -200,8 +200,9 @@ def analyse(
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.messages import pairs
+    from strainwave.report.results_json import results_json
     from strainwave.report.rig import rig_report, summary
-    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
+    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
     from strainwave.rig.loop import COLUMNS
     from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.commands.options import numeric
+from strainwave.commands.options import changed_number, numeric
 from strainwave.messages import one_line
-from strainwave.number_texts import is_whole, number_in
 
 if TYPE_CHECKING:
     from strainwave import Drive
@@ -47,7 +46,7 @@ def simulate(
     for option, path, endings in (("--out", out, (".parquet", ".csv")), ("--plot", plot, (".svg", ".png", ".pdf"))):
         _check_target(option, path, endings, scenario)
     gear_set = GearSet.read(drive)
-    whole = gear_set.drive.replace(dict(_change(each) for each in changed or []))
+    whole = gear_set.drive.replace(dict(changed_number("--set", each) for each in changed or []))
     given = ScenarioFile.read(scenario, whole)
     wanted = list(chosen(whole, record) if record else outputs(whole))
     rated = [name for name in ("torque", "input_speed") if name not in wanted]
@@ -72,20 +71,6 @@ def _check_target(option: str, path: Path | None, endings: tuple[str, ...], sour
         raise ValueError(f"{option} {path} cannot be written: it is a folder")
     if path.resolve() == source.resolve():
         raise ValueError(f"{option} {path} is the file of the scenario; give another name")
-
-
-def _change(given: str) -> tuple[str, float | str]:
-    """The path and the value of --set."""
-    path, equals, value = given.partition("=")
-    if not (path and equals and value):
-        raise ValueError(f"--set {given}: write it as --set load.inertia=0.6")
-    if is_whole(value):
-        return path, int(value)
-    try:
-        float(value)  # nan and other digits than ASCII are no words of a model either
-    except ValueError:
-        return path, value
-    return path, number_in(value)
 
 
 def _run(given: ScenarioFile, drive: Drive, dt: float | None, tolerance: float | None, options: dict[str, Any]) -> Run:

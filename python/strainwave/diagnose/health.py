@@ -13,6 +13,7 @@ from strainwave import arguments
 from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL
 from strainwave.files.gear_set import GearSet
+from strainwave.statistics.student import student
 
 Array = NDArray[np.float64]
 
@@ -153,8 +154,6 @@ def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float)
     >>> round(found.remaining), found.low < found.remaining < found.high
     (454, True)
     """
-    from scipy.stats import t as student
-
     x, y = np.asarray(hours, float), np.asarray(indicators, float)
     threshold = arguments.number("threshold", threshold, low=0.0)
     if len(x) != len(y):
@@ -171,7 +170,7 @@ def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float)
     level = float(y.mean())
     freedom = len(x) - 2
     variance = float(((y - level - slope * (x - middle)) ** 2).sum()) / freedom
-    reach = float(student.isf(0.5 * (1.0 - CONFIDENCE_LEVEL), freedom))
+    reach = student(CONFIDENCE_LEVEL, freedom)
     last = float(x.max())
     crossing = middle + (threshold - level) / slope if slope > 0.0 else inf
     low, high = _fieller(slope, threshold - level, reach**2 * variance, len(x), spread)

@@ -19,6 +19,7 @@ from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL, false_alarm_of
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
+from strainwave.statistics.student import student
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -112,9 +113,7 @@ class MisalignmentEstimate:
     @property
     def interval_factor(self) -> float:
         """Half width of an interval of 95 % over a standard deviation."""
-        from scipy.stats import t
-
-        return float(t.ppf(0.5 + 0.5 * CONFIDENCE_LEVEL, self.degrees))
+        return student(CONFIDENCE_LEVEL, self.degrees)
 
     @property
     def half_widths(self) -> tuple[float, float]:

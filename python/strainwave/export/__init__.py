@@ -6,7 +6,7 @@
 >>> with TemporaryDirectory() as folder:
 ...     written = sw.export.firmware(sw.Drive(control=sw.control.Sampled(law=sw.control.PID())), folder)
 ...     sorted(path.name for path in Path(folder).iterdir())
-['controller.cpp', 'controller.h', 'controller.hpp']
+['controller.cpp', 'controller.h', 'controller.hpp', 'controller_main.c']
 """
 
 from strainwave.export.bam_parameters import BAM, bam, read_bam

@@ -43,6 +43,7 @@ RUN_FREQUENCY = 0.5  # Hz
 RUN_SPEED = 100.0  # rad/s of the input at most
 RUN_TORQUE_SHARE = 0.3  # of the largest torque, that the run reaches
 RUN_SAMPLE = 2e-3  # s
+ROUNDING = 1e-9  # of the largest torque: a part of friction that makes less is rounding
 MIN_SLOPE_SHARE = 1e-9  # of the stiffness: a smaller slope is rounding
 
 
@@ -378,8 +379,10 @@ def _friction_of(law: Any, fast: float, turns: float) -> ShaftFriction:
     speed, where = (each.ravel() for each in np.meshgrid(forward, angle, indexing="ij"))
     both = [np.asarray(law.steady(sense * speed, where, 0.0, ROOM_TEMPERATURE)) * sense for sense in (1.0, -1.0)]
     mean = np.mean(both, axis=0).reshape(len(forward), len(angle)).mean(axis=1)
-    (dry, viscous), _ = nnls(np.stack([np.ones_like(forward), forward], axis=1), mean)
-    return ShaftFriction(float(dry), float(viscous))
+    columns = np.stack([np.ones_like(forward), forward], axis=1)
+    shares = nnls(columns, mean)[0]
+    dry, viscous = np.where(shares * columns[-1] > ROUNDING * np.abs(mean).max(), shares, 0.0).tolist()
+    return ShaftFriction(dry, viscous)
 
 
 def _angles(turns: float) -> Array:

@@ -13,13 +13,13 @@ from functools import partial
 from importlib import resources
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Literal, get_args
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads
+from strainwave.export.command_mode import Command, command_mode
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import ShaftFriction, max_torque_of
@@ -34,8 +34,6 @@ from strainwave.messages import one_line
 from strainwave.simulation.signals import load_input
 
 Array = NDArray[np.float64]
-Command = Literal["held", "followed"]
-COMMAND_MODES: tuple[Command, ...] = get_args(Command)
 MIN_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
 DEFAULT_TIMESTEP = 5e-4  # s, of a model that has the gear and an inertia only
 MAX_RUN_SECONDS = 300.0  # of the compared run in MuJoCo
@@ -65,7 +63,7 @@ def mujoco_plugin(
     keep: str | None = None,
     load_inertia: float | None = None,
     max_torque: float | None = None,
-    command: Command = "held",
+    command: Command | None = None,
     step: float | None = None,
     name: str = "gear",
 ) -> Exported:
@@ -82,7 +80,8 @@ def mujoco_plugin(
         load_inertia: of the model with an inertia alone [kg.m²]; by default that of the load
         max_torque: at the output [N.m], up to which the stiffness limits the timestep; by default the peak torque of the
             ratings, or 0 without one
-        command: "held" within a timestep, as a staircase, or "followed": it goes on at the rate of the last timestep
+        command: "held" within a timestep, as a staircase, or "followed": it goes on at the rate of the last timestep; by
+            default followed if it is an angle or a speed
         step: largest internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the library, of the plugin after "strainwave.", and prefix of the actuator
 
@@ -103,15 +102,15 @@ def mujoco_plugin(
     model, drive = drive, drive_of(drive)
     if (into is None) != (joint is None):
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
-    arguments.one_of("command", command, COMMAND_MODES)
+    mode = command_mode(drive, command)
     checked_name(name, "MuJoCo", hyphens=True)
     largest = max_torque_of(model, max_torque) or 0.0
     include, version = installed_mujoco()
     step = internal_step(drive, step)
     coupled = CoupledDrive.of(drive, largest)
     inertia = _inertia(drive, load_inertia, into is None)
-    alone = _alone(coupled, inertia, command, name)
-    text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, command, name, kept(keep))
+    alone = _alone(coupled, inertia, mode, name)
+    text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, mode, name, kept(keep))
     suffix = SUFFIXES[sys.platform]
     content = compiled(coupled.sources(f"strainwave.{name}", step, "mujoco_plugin.cpp"), include)
     numbers = {
@@ -129,7 +128,7 @@ def mujoco_plugin(
         numbers,
         tuple(lost),
         tuple(_left_out(drive)),
-        (*remarks, *_remarks(name + suffix, version, content)),
+        (*remarks, *_remarks(name + suffix, version, mode, content)),
     )
 
 
@@ -244,8 +243,9 @@ def _left_out(drive: Drive) -> Iterator[str]:
     yield "the temperature around the drive, which is constant"
 
 
-def _remarks(file: str, version: str, content: bytes) -> Iterator[str]:
+def _remarks(file: str, version: str, mode: Command, content: bytes) -> Iterator[str]:
     yield "the error is of first order in the timestep: halve it and compare"
+    yield f"the command is {mode} from timestep to timestep"
     yield f'load it before the model: mujoco.mj_loadPluginLibrary("{file}")'
     yield f"{file} is for MuJoCo {version} alone, {len(content) / 1e3:.0f} kB; export it again after an update of MuJoCo"
 

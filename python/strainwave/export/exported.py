@@ -22,9 +22,12 @@ COMMENTS = {
     ".xml": XML,
     ".urdf": XML,
     ".xacro": XML,
+    ".md": XML,
     ".yaml": "# ",
     ".py": "# ",
     ".mo": "// ",
+    ".h": "// ",
+    ".hpp": "// ",
 }  # beginning of a comment by ending of the name
 NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # beginnings of sources of such numbers
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
+from strainwave.export.command_mode import Command, command_mode
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 from strainwave.export.coupled.comparison import COMPARED_SAMPLES
 from strainwave.export.elements import max_torque_of
@@ -38,6 +39,7 @@ def modelica(
     drive: Drive | GearSet,
     *,
     max_torque: float | None = None,
+    command: Command | None = None,
     period: float | None = None,
     step: float | None = None,
     name: str = "StrainWaveDrive",
@@ -51,6 +53,8 @@ def modelica(
     Args:
         drive: a drive, or a gear set with one. What is connected to the flange takes the place of its load
         max_torque: at the output [N.m], up to which the stiffness limits the period; by default the peak torque of the ratings
+        command: "held" from period to period, as a staircase, or "followed": it goes on at the rate of the last period; by
+            default followed if it is an angle or a speed
         period: default of the parameter of this name [s]; by default 0.5 ms, or shorter where the drive needs that
         step: largest internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the package and the library
@@ -82,11 +86,12 @@ def modelica(
     else:
         period = min(DEFAULT_PERIOD, MAX_STABLE_SHARE * coupled.max_timestep(inertia) if inertia else DEFAULT_PERIOD)
     prefix = name.lower()
-    sources = coupled.sources(name, step, "functions.cpp", prefix)
+    mode = command_mode(drive, command)
+    sources = coupled.sources(name, step, "functions.cpp", prefix, mode == "followed")
     content = shared_library(sources, "functions.cpp")
     files: dict[str, str | bytes] = {
         f"{name}/package.mo": _package(drive, coupled, name, prefix, period),
-        f"{name}/Resources/Include/{prefix}.h": _header(drive, coupled.hold, prefix),
+        f"{name}/Resources/Include/{prefix}.h": _header(drive, coupled.hold, prefix, mode),
         f"{name}/Resources/Library/{folder}/lib{prefix}{SUFFIXES[sys.platform]}": content,
         **{f"{name}/Resources/Source/{path}": text for path, text in sources.items()},
     }
@@ -109,7 +114,7 @@ def modelica(
         numbers,
         tuple(losses(drive, inertia or EXAMPLE_INERTIA, step, period, "period", moved)),
         tuple(_left_out()),
-        tuple(_remarks(name, coupled, inertia)),
+        tuple(_remarks(name, coupled, inertia, mode)),
     )
 
 
@@ -164,7 +169,8 @@ def _left_out() -> Iterator[str]:
     yield "parameters of the drive: they are constants of the library"
 
 
-def _remarks(name: str, coupled: CoupledDrive, inertia: float) -> Iterator[str]:
+def _remarks(name: str, coupled: CoupledDrive, inertia: float, mode: Command) -> Iterator[str]:
+    yield f"the command is {mode} from period to period"
     yield "not run in a Modelica tool; the functions in C were compared, and rumoca flattens the package"
     if inertia:
         yield f"before an inertia of {inertia:.4g} kg.m2 set periods of {0.5 * coupled.max_timestep(inertia):.2g} s or less"
@@ -172,7 +178,7 @@ def _remarks(name: str, coupled: CoupledDrive, inertia: float) -> Iterator[str]:
     yield f"Resources/Source compiles for other systems: {command}"
 
 
-def _header(drive: Drive, hold: float, prefix: str) -> str:
+def _header(drive: Drive, hold: float, prefix: str, mode: Command) -> str:
     return f"""/* A drive with strain wave gear, by strainwave: {in_words(drive)}. */
 #ifndef {prefix.upper()}_H
 #define {prefix.upper()}_H
@@ -187,8 +193,8 @@ void {prefix}_close(void *drive);
 /* Steps the drive from the time of the last call to this one, along the motion of its output between both. Gives the
    torque [N.m] that drives the output now, and its rate [N.m/s] until the next call, which is expected after the period
    [s]: the rate if the output kept its speed. Both are not a number, with a line on stderr, if the drive fails. The first
-   call begins at rest. Commands go on at their rate until the next call. The caller adds dry friction of {hold!r} N.m at
-   the output. */
+   call begins at rest. A command goes on at its rate until the next call; if the rate is 0 it is {mode}. The caller adds dry
+   friction of {hold!r} N.m at the output. */
 void {prefix}_torque(void *drive, double time, double angle, double speed, double command, double command_rate, double period,
                      double *torque, double *torque_rate);
 

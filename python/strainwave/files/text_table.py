@@ -57,6 +57,10 @@ NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A",
 _MAX_CONTENT_ROWS = 1000  # rows that determine the content of a column
 MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells are texts before they are numbers
 
+_BEYOND_ASCII = re.compile(rb"[\x80-\xff]")
+# Of names and units in spreadsheets of Western Europe, which save text in Windows-1252.
+_LETTERS_OF_WINDOWS = {letter.encode("cp1252") for letter in "°²³·µ´äöüÄÖÜßéèêëàâáíîïóôúùûçñåÅæøÉ"}
+
 
 def open_text(path: str | Path) -> CsvTable | ArrayTable:
     """Open a text table that has a column for each channel, a row for each, or the name of each in front of its number."""
@@ -135,13 +139,17 @@ def _csv_table(file: str, data: bytes) -> CsvTable:
 
 
 def _checked_text(file: str, data: bytes) -> bytes:
-    """The text, with `\\n` at the end of each line, whatever ended it."""
+    """The text in UTF-8, with `\\n` at the end of each line, whatever ended it."""
     try:
-        if not data.isascii():
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            data = data.decode("utf-16").encode()
+        elif not data.isascii():
             data.decode()
     except UnicodeDecodeError as error:
-        line = 1 + len(re.findall(rb"\r\n?|\n", data[: error.start]))
-        raise ValueError(f"{file} line {line} is not UTF-8: byte {error.start} is 0x{data[error.start]:02x}") from None
+        if not set(_BEYOND_ASCII.findall(data)) <= _LETTERS_OF_WINDOWS:
+            line = 1 + len(re.findall(rb"\r\n?|\n", data[: error.start]))
+            raise ValueError(f"{file} line {line} is not UTF-8: byte {error.start} is 0x{data[error.start]:02x}") from None
+        data = data.decode("cp1252").encode()
     if b"\0" in data:
         raise ValueError(f"{file} holds a zero byte at {data.index(0)}, which no text does; save it as UTF-8, not as UTF-16")
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data

@@ -1,17 +1,18 @@
-"""Units of measurement at the boundary: the only place where pint is used.
+"""Units of measurement at the boundary.
 
 Inside the package everything is SI; files, plots and people may use other units. Units are spelled as in Modelica and
 FMI: `N.m`, `rad/s`, `N.m.s/rad`, `kg.m2`, `1`. An angle is a dimension of its own here, so that a rotation is never
-taken for a plain number, nor a frequency [Hz] for an angular speed [rad/s].
+taken for a plain number, nor a frequency [Hz] for an angular speed [rad/s]. Sizes are fractions: a conversion rounds once.
 """
 
 from __future__ import annotations
 
 import math
 import re
-import tokenize
+from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,52 +20,36 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.messages import quoted, shortened
 
-if TYPE_CHECKING:
-    import pint
-
 Values = TypeVar("Values", float, NDArray[np.float64])
+Powers = dict[str, int]  # of symbols, none of them zero
 
-# A closed list: among pint's own thousand units nearly every short word means something ("[t]" would be tonnes).
-_DEFINITIONS = (
-    "micro- = 1e-6 = u-",
-    "milli- = 1e-3 = m-",
-    "centi- = 1e-2 = c-",
-    "kilo- = 1e3 = k-",
-    "second = [time] = s",
-    "meter = [length] = m",
-    "kilogram = [mass] = kg",
-    "ampere = [current] = A",
-    "kelvin = [temperature] = K",
-    "radian = [angle] = rad",
-    "minute = 60 second = min",
-    "hour = 3600 second = h",
-    "nanosecond = 1e-9 second = ns",  # of time stamps; no other unit has this prefix, as nm is meant for N.m
-    "hertz = 1 / second = Hz",
-    f"degree = {math.pi / 180!r} radian = deg",
-    f"arcminute = {math.pi / 10_800!r} radian = arcmin",
-    f"arcsecond = {math.pi / 648_000!r} radian = arcsec",
-    f"revolution = {math.tau!r} radian = rev",
-    "revolution_per_minute = revolution / minute = rpm",
-    "gram = 1e-3 kilogram = g",
-    "newton = kilogram * meter / second ** 2 = N",
-    "kilogram_force = 9.80665 newton = kgf",
-    "joule = newton * meter = J",
-    "watt = joule / second = W",
-    "volt = watt / ampere = V",
-    "ohm = volt / ampere = Ohm",
-    "henry = volt * second / ampere = H",
-    "weber = volt * second = Wb",
-    "degree_Celsius = kelvin; offset: 273.15 = degC",
-    "pixel = [pixel] = px",  # of an image
-)
+_PREFIXES = {"u": Fraction("1e-6"), "m": Fraction("1e-3"), "c": Fraction("1e-2"), "k": Fraction(1000)}
+_BASE_UNITS = ("s", "m", "kg", "A", "K", "rad", "px")  # px: pixels of an image
+_PI = Fraction(math.pi)
 
-# Standard spellings that most recordings and models have. pint, whose import takes half a second, is not needed for them.
-STANDARD = frozenset(
-    {"1", "1/(N.m)", "1/(N.m.rad)", "1/K", "1/m", "1/rad", "1/s", "A", "A.s/rad", "A/rad", "H", "Hz", "J", "J/K", "K", "K/W"}
-    | {"N.m", "N.m.s/rad", "N.m/A", "N.m/rad", "N.m/rad2", "N.m/rad3", "N.m/s", "N.s/m", "N/m", "Ohm", "V", "V.s/rad"}
-    | {"V/(A.s)", "V/(N.m)", "V/(rad.s)", "V/A", "V/rad", "W", "W/K", "kg", "kg.m2", "kg/m3", "m", "m/s", "m/s2", "m2", "rad"}
-    | {"rad/s", "rad/s2", "s", "s/rad"}
-)
+# Size of each further unit in others. The list is closed: else nearly every short word means something ("[t]" tonnes).
+_DERIVED_UNITS: dict[str, tuple[Fraction | int, Powers]] = {
+    "min": (60, {"s": 1}),
+    "h": (3600, {"s": 1}),
+    "ns": (Fraction("1e-9"), {"s": 1}),  # of time stamps; no other unit has this prefix, as nm is meant for N.m
+    "Hz": (1, {"s": -1}),
+    "deg": (_PI / 180, {"rad": 1}),
+    "arcmin": (_PI / 10_800, {"rad": 1}),
+    "arcsec": (_PI / 648_000, {"rad": 1}),
+    "rev": (2 * _PI, {"rad": 1}),
+    "rpm": (1, {"rev": 1, "min": -1}),
+    "g": (Fraction("1e-3"), {"kg": 1}),
+    "N": (1, {"kg": 1, "m": 1, "s": -2}),
+    "kgf": (Fraction("9.80665"), {"N": 1}),
+    "J": (1, {"N": 1, "m": 1}),
+    "W": (1, {"J": 1, "s": -1}),
+    "V": (1, {"W": 1, "A": -1}),
+    "Ohm": (1, {"V": 1, "A": -1}),
+    "H": (1, {"V": 1, "s": 1, "A": -1}),
+    "Wb": (1, {"V": 1, "s": 1}),
+    "degC": (1, {"K": 1}),
+}
+_ZERO_OF_CELSIUS = Fraction("273.15")  # K
 
 _MAX_UNIT_CHARACTERS = 100  # a bound for the work that a text from outside can cause
 
@@ -130,22 +115,22 @@ def convert(values: Values, unit: str, to: str) -> Values:
     """
     if np.isnan(arguments.numbers("values", values)).any():
         raise ValueError("values must be numbers, and nan is none")
-    if isinstance(unit, str) and unit == to and unit in STANDARD:
-        return values
-    import pint
-
     if any(isinstance(each, str) and (_COUNTED.fullmatch(each) or _SHARE.fullmatch(each)) for each in (unit, to)):
         return _convert_scaled(values, unit, to)
     source, target = _parse(unit), _parse(to)
     if source == target:
         return values
+    source, target = _turning(source, target), _turning(target, source)
+    if source.dimension != target.dimension:
+        raise ValueError(f"cannot convert {quoted(unit)} to {quoted(to)}{_reason(source, target)}")
     try:
-        with np.errstate(over="ignore"):
-            converted: Values = _registry().convert(values, _turning(source, target), _turning(target, source))
-    except pint.DimensionalityError:
-        raise ValueError(f"cannot convert {quoted(unit)} to {quoted(to)}{_reason(source, target)}") from None
+        factor = float(source.size / target.size)
     except OverflowError:
         raise ValueError(f"the ratio of {quoted(unit)} to {quoted(to)} is too large a number") from None
+    with np.errstate(over="ignore"):
+        converted: Values = values * factor
+        if source.zero != target.zero:
+            converted = converted + float((source.zero - target.zero) / target.size)
     _check_finite(values, converted, unit, to)
     return converted
 
@@ -179,15 +164,15 @@ def is_share(unit: str) -> bool:
     return _text(unit).strip().casefold() in _SHARES
 
 
-def _turning(unit: pint.Unit, other: pint.Unit) -> pint.Unit:
+def _turning(unit: _Unit, other: _Unit) -> _Unit:
     """The unit itself, but revolutions per minute where 1/min stands for an angular speed."""
-    is_speed = unit == _parse("1/min") and other.dimensionality == _parse("rad/s").dimensionality
+    is_speed = unit.powers == {"min": -1} and other.dimension == {"rad": 1, "s": -1}
     return _parse("rev/min") if is_speed else unit
 
 
-def _reason(source: pint.Unit, target: pint.Unit) -> str:
+def _reason(source: _Unit, target: _Unit) -> str:
     """Return the reason why a frequency is no angular speed; empty for other units."""
-    if [unit.dimensionality for unit in (source, target)] == [_parse(unit).dimensionality for unit in ("1/s", "rad/s")]:
+    if (source.dimension, target.dimension) == ({"s": -1}, {"rad": 1, "s": -1}):
         return ": it may count revolutions or radians; write rev/s or rad/s"
     return ""
 
@@ -222,13 +207,8 @@ def base_exponents(unit: str) -> tuple[float, dict[str, int]]:
     Raises:
         ValueError: the unit is not known
     """
-    from pint.util import to_units_container
-
     parsed = _parse(unit)
-    _, base = _registry().get_base_units(parsed)
-    powers = cast("dict[str, int]", to_units_container(base))
-    exponents = {_registry().get_symbol(name): int(power) for name, power in powers.items()}
-    return float(_registry().convert(1.0, parsed, base)), dict(sorted(exponents.items()))
+    return float(parsed.size), dict(sorted(parsed.dimension.items()))
 
 
 def counts(unit: str) -> bool:
@@ -262,15 +242,13 @@ def check(unit: str) -> str:
     >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)"), check("inc/4096"), check("‰ of 0.4 Nm")
     ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad', 'counts/4096', 'permille of 0.4 N.m')
     """
-    if isinstance(unit, str) and unit in STANDARD:
-        return unit
     if isinstance(unit, str) and (counted := _COUNTED.fullmatch(unit)):
         return f"counts/{counted[1]}{counted[2] or ''}"
     if isinstance(unit, str) and (share := _SHARE.fullmatch(unit)):
         if not float(share[2]) > 0.0:
             raise ValueError(f"unit {quoted(unit)}: the rated value must be larger than 0")
         return f"{'%' if _SHARES[share[1]] == 1e-2 else 'permille'} of {share[2]} {check(share[3])}"
-    standard = _spelling(_parse(unit))
+    standard = _spelling(_parse(unit).powers)
     if len(standard) > _MAX_UNIT_CHARACTERS:
         raise ValueError(f"unit {quoted(unit)} has more than {_MAX_UNIT_CHARACTERS} characters in standard spelling")
     return standard
@@ -285,32 +263,16 @@ def ratio_of_units(unit: str, by: str) -> str:
     return check(f"({unit})/({by})")
 
 
-@lru_cache(maxsize=1024)
-def _spelling(unit: pint.Unit) -> str:
-    from pint.util import to_units_container
-
-    powers = cast("dict[str, int]", to_units_container(unit))
-    factors = sorted(powers.items(), key=lambda factor: _without_prefix(factor[0]))
-    above = [_factor(name, power) for name, power in factors if power > 0]
-    below = [_factor(name, -power) for name, power in factors if power < 0]
+def _spelling(powers: Powers) -> str:
+    factors = sorted(powers.items(), key=lambda factor: (_split(factor[0])[1], factor[0]))
+    above = [_factor(symbol, power) for symbol, power in factors if power > 0]
+    below = [_factor(symbol, -power) for symbol, power in factors if power < 0]
     denominator = below[0] if len(below) == 1 else f"({'.'.join(below)})"
     return (".".join(above) or "1") + (f"/{denominator}" if below else "")
 
 
-def _without_prefix(name: str) -> str:
-    (_, stem, _), *_ = _registry().parse_unit_name(name)
-    return _registry().get_symbol(stem)
-
-
-def _factor(name: str, power: int) -> str:
-    return _registry().get_symbol(name) + ("" if power == 1 else str(power))
-
-
-@cache
-def _registry() -> pint.UnitRegistry[Any]:
-    import pint
-
-    return pint.UnitRegistry(_DEFINITIONS)
+def _factor(symbol: str, power: int) -> str:
+    return symbol + ("" if power == 1 else str(power))
 
 
 def _text(unit: str) -> str:
@@ -319,26 +281,41 @@ def _text(unit: str) -> str:
     return unit
 
 
-def _parse(unit: str) -> pint.Unit:
+@dataclass(frozen=True)
+class _Unit:
+    """A product of powers of symbols, as it is written.
+
+    Attributes:
+        powers: of its symbols, with their prefixes
+        size: in SI base units
+        dimension: powers of SI base units
+        zero: value of its zero in SI base units
+    """
+
+    powers: Powers
+    size: Fraction
+    dimension: Powers
+    zero: Fraction = Fraction(0)
+
+
+def _parse(unit: str) -> _Unit:
     if len(_text(unit)) > _MAX_UNIT_CHARACTERS:
         raise ValueError(f"unit {quoted(unit)} has {len(unit)} characters; at most {_MAX_UNIT_CHARACTERS} are allowed")
     return _parsed(unit)
 
 
 @lru_cache(maxsize=1024)
-def _parsed(unit: str) -> pint.Unit:
-    import pint
-
-    registry = _registry()
+def _parsed(unit: str) -> _Unit:
     try:
-        parsed = registry.parse_units(_expression(unit), as_delta=False)
-        scale = registry.convert(1.0, parsed, registry.get_base_units(parsed)[1])  # refuses degC in a product
-    except (pint.PintError, tokenize.TokenError, ValueError, TypeError, AssertionError):
+        parsed = _measured(_powers(unit))
+    except ValueError:
         if _COUNTED.fullmatch(f"{unit.strip()}/1"):
             raise ValueError(f"unit {quoted(unit)} needs the counts of one revolution; write it like counts/16384") from None
         if is_share(unit):
             raise ValueError(f"unit {quoted(unit)} needs the rated value; write it like permille of 0.4 N.m") from None
         raise ValueError(f"unit {quoted(unit)} is not known; write it like N.m, rad/s, deg") from None
+    try:
+        scale = float(parsed.size)
     except OverflowError:
         scale = math.inf
     if not 0.0 < scale < math.inf:
@@ -346,8 +323,47 @@ def _parsed(unit: str) -> pint.Unit:
     return parsed
 
 
-def _expression(unit: str) -> str:
-    """The unit as pint reads it: `N·m s/rad^2` becomes `N*m*s/rad**2`."""
+def _measured(powers: Powers) -> _Unit:
+    """Return a unit with its size and its dimension."""
+    if powers == {"degC": 1}:
+        return _Unit(powers, Fraction(1), {"K": 1}, _ZERO_OF_CELSIUS)
+    if any(symbol.endswith("degC") for symbol in powers):
+        raise ValueError("the zero of a product is not determined")
+    size, dimension = Fraction(1), Powers()
+    for symbol, power in powers.items():
+        prefix, stem = _split(symbol)
+        own_size, own_dimension = _of_symbol(stem)
+        size *= (own_size * _PREFIXES.get(prefix, 1)) ** power
+        dimension = _times(dimension, own_dimension, power)
+    return _Unit(powers, size, dimension)
+
+
+@cache
+def _of_symbol(symbol: str) -> tuple[Fraction, Powers]:
+    """Return the size of a symbol without a prefix, and its dimension."""
+    if symbol in _BASE_UNITS:
+        return Fraction(1), {symbol: 1}
+    times, powers = _DERIVED_UNITS[symbol]
+    defined = _measured(powers)
+    return times * defined.size, defined.dimension
+
+
+def _split(symbol: str) -> tuple[str, str]:
+    """Return the prefix of a symbol, which may be empty, and the rest."""
+    for prefix, stem in (("", symbol), (symbol[:1], symbol[1:])):
+        if (stem in _BASE_UNITS or stem in _DERIVED_UNITS) and (not prefix or prefix in _PREFIXES):
+            return prefix, stem
+    raise ValueError(f"{symbol} is not a symbol")
+
+
+def _times(powers: Powers, others: Powers, exponent: int) -> Powers:
+    """Return the product of powers with others to an exponent."""
+    product = {symbol: powers.get(symbol, 0) + exponent * others.get(symbol, 0) for symbol in powers | others}
+    return {symbol: power for symbol, power in product.items() if power}
+
+
+def _powers(unit: str) -> Powers:
+    """Return the powers of the symbols of a unit: of `N·m s/rad^2`, N 1, m 1, s 1, rad -2."""
     text = unit.replace("**", "^").translate(_CHARACTERS)
     if not text.isprintable():
         raise ValueError("not one line of text")
@@ -355,25 +371,44 @@ def _expression(unit: str) -> str:
     text = re.sub(r" *([./()]) *", r"\1", text.strip())
     text = "1" if text == "-" else re.sub(r" +|\.|(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
     text = _REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", _PER_SECOND.get(text, text)))
-    _check_grammar(text)
-    return re.sub(r"([A-Za-z]+)(-?[1-9])?", _power, text)
-
-
-def _check_grammar(text: str) -> None:
     if not re.fullmatch(r"(?:[A-Za-z]++(?:-?[1-9])?+|\b1\b|[*/()])++", text):  # possessive, so that it takes linear time
         raise ValueError("not a product of powers")
-    groups = re.findall(r"\(([^()]*)\)", text)
-    if any(re.search(r"/.*[*/]", part) for part in (*groups, re.sub(r"\([^()]*\)", "", text))):
+    tokens = re.findall(r"[A-Za-z]+(?:-?[1-9])?|[1*/()]", text)[::-1]
+    powers = _ratio(tokens)
+    if tokens:
         raise ValueError("ambiguous: a/b*c")
+    return powers
 
 
-def _power(match: re.Match[str]) -> str:
-    *leading, last = [_symbol(word) for word in _WORDS.get(match[1], match[1]).split("*")]
-    return "*".join([*leading, f"{last}**({match[2] or 1})"])
+def _ratio(tokens: list[str]) -> Powers:
+    """Take a product from the end of tokens, and what it may be divided by; return the powers of its symbols."""
+    powers = _taken(tokens)
+    while tokens and tokens[-1] == "*":
+        tokens.pop()
+        powers = _times(powers, _taken(tokens), 1)
+    if tokens and tokens[-1] == "/":
+        tokens.pop()
+        powers = _times(powers, _taken(tokens), -1)
+    return powers
 
 
-def _symbol(word: str) -> str:
-    """A symbol spelled exactly; pint itself would take "Ns" for a plural of newton."""
-    if _registry().get_symbol(word) != word:
-        raise ValueError(f"{word} is not a symbol")
-    return word
+def _taken(tokens: list[str]) -> Powers:
+    """Take a symbol, a 1 or what stands between brackets from the end of tokens; return the powers of its symbols."""
+    token = tokens.pop() if tokens else ""
+    if token == "(":
+        inside = _ratio(tokens)
+        if not tokens or tokens.pop() != ")":
+            raise ValueError("a bracket is not closed")
+        return inside
+    if token == "1":
+        return {}
+    if not token or token in "*/)":
+        raise ValueError("a symbol is missing")
+    word = token.rstrip("-123456789")
+    *leading, last = _WORDS.get(word, word).split("*")
+    powers = {last: int(token[len(word) :] or 1)}
+    for symbol in leading:
+        powers = _times(powers, {symbol: 1}, 1)
+    for symbol in powers:
+        _split(symbol)
+    return powers

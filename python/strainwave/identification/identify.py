@@ -40,6 +40,7 @@ from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.questions import QuestionError
 from strainwave.simulation.threads import one_thread_of_algebra
 
 if TYPE_CHECKING:
@@ -167,6 +168,7 @@ def identify(
     determined_by = {compared_path(path, fits.known.gear_set.gear): file for path, file in fits.known.determined_by.items()}
     parameters = combine(results, accept=accept, determined_by=determined_by)
     if not any(each.estimates or each.failed for each in results):
+        raise_question(results)
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
     checks = _checks(start, results, parameters)
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
@@ -299,7 +301,7 @@ class _Fits:
         try:
             result, after = kind.fit(file, before)
         except (ValueError, FloatingPointError) as error:
-            result, after = FileResult(file.path.name, file, refused=without_name(str(error), file.path)), before
+            result, after = not_used(file.path, error, file), before
         self.results[file.path] = result
         if str(file.path) not in self.copies and (self.accept or not result.failed):
             self.known = with_kinematics(after, self.known.gear_set)
@@ -348,7 +350,10 @@ def read_measurements(
     sources = {file.path: file for file in opened.files}
     in_one_reading = consistent(_only_read(read), sources)
     start = with_ratio_of_all(start, in_one_reading)
-    read |= {each.path: _decided(each, sources[each.path], GearSoFar(start, start)) for each in in_one_reading}
+    for each in in_one_reading:
+        source = sources[each.path]
+        given = _mapping_of(mapping, each.path, source.kind) or FileMapping()
+        read[each.path] = _decided(each, source, GearSoFar(start, start), given)
     for link in opened.links:
         read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
     return read, start
@@ -366,19 +371,30 @@ def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognise
     except (ValueError, OSError) as error:
         if file.recording is not None:
             raise
-        return FileResult(path.name, refused=without_name(str(error), path))
+        return not_used(path, error)
 
 
 def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised]:
     return [each for each in files.values() if isinstance(each, Recognised)]
 
 
-def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised | FileResult:
+def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised | FileResult:
     """Return a file as it is read, or its question if neither its names nor a fit determine how."""
-    file = decided(file, source, with_ratio(known, file))
-    if not file.question:
-        return file
-    return FileResult(file.path.name, file, refused=without_name(file.question, file.path))
+    file = decided(file, source, with_ratio(known, file), given)
+    return file if file.question is None else not_used(file.path, file.question, file)
+
+
+def not_used(path: Path, error: Exception, file: Recognised | None = None) -> FileResult:
+    """Return the result of a file that is not used, with the reason, or the question that it leaves open."""
+    question = error if isinstance(error, QuestionError) and error.answers else None
+    return FileResult(path.name, file, refused=without_name(str(error), path), question=question)
+
+
+def raise_question(files: Sequence[FileResult]) -> None:
+    """Raise the first question that a file leaves open, with the name of the file."""
+    for each in files:
+        if each.question is not None:
+            raise each.question if each.name in each.question.question else each.question.of(each.name)
 
 
 def without_name(message: str, path: Path) -> str:

@@ -12,8 +12,8 @@ from strainwave.identification.identify import Identified, check_arguments, iden
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.questions import QuestionError
 
-ALL = "all"  # in place of the name of a joint
 ONE = "1"  # name of the joint of files that name none
 NAMES_NO_JOINT = "its columns name no joint, and those of other files do"
 MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids have 50
@@ -78,7 +78,7 @@ def identify_joints(
         raise ValueError(f"no file can be used: {'; '.join(f'{name}: {each}' for name, each in left_out.items())}")
     if len(by_joint) > MAX_JOINTS:
         raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
-    found, refused = dict[str, Identified](), dict[str, str]()
+    found, refused, question = dict[str, Identified](), dict[str, str](), None
     for joint, own in by_joint.items():
         progress(f"joint {joint}")
         of_joint = None if name is None else f"{name}, joint {joint}"
@@ -88,6 +88,9 @@ def identify_joints(
             )
         except ValueError as error:
             refused[joint] = str(error)
+            question = question or (error if isinstance(error, QuestionError) and error.answers else None)
+    if question is not None and not found:
+        raise question
     if not found:
         raise ValueError("; ".join(f"joint {joint}: {why}" for joint, why in refused.items()))
     return Joints(found, refused, left_out)

@@ -8,10 +8,11 @@ from pathlib import Path
 from strainwave import Drive
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.identify import Mapped, check_arguments, read_measurements, without_name
+from strainwave.identification.identify import Mapped, check_arguments, raise_question, read_measurements, without_name
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import Measurement, MeasurementFiles, measurement_files
+from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
 from strainwave.identification.results.ratio import with_ratio
@@ -54,14 +55,16 @@ def predict(
     check_arguments(files, mapping)
     gear_set = _gear_set(gear)
     read, gear_set = read_measurements(measurement_files(files), mapping, gear_set)
-    found = []
+    found, results = [], list[FileResult]()
     for file in read.values():
         progress(file.path.name if isinstance(file, Recognised) else file.name)
         if isinstance(file, Recognised):
             found.append(_predicted(file, gear_set))
         else:
             found.append(Prediction(file.name, gear_set.name, refused=file.refused))
+            results.append(file)
     if all(each.refused for each in found):
+        raise_question(results)
         raise ValueError(f"no file can be predicted: {'; '.join(f'{each.name}: {each.refused}' for each in found)}")
     return tuple(found)
 

@@ -14,15 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.identification.candidates.plain import fit_plain, sliding_squares
-from strainwave.identification.checks.sizes import REST_SPEED, input_speed
+from strainwave.identification.checks.sizes import input_speed
+from strainwave.identification.effort_readings import with_effort
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
-from strainwave.identification.reading.names import words_of
-from strainwave.identification.reading.recognise import Alternative, Recognised, recognise
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.sides import GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED
-from strainwave.messages import as_option, listed, one_line
+from strainwave.messages import listed
+from strainwave.questions import Answer, QuestionError
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
@@ -33,12 +35,6 @@ MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction driv
 UNITS_OPEN = "no unit is stated, and another one than the usual explains more"
 UNITS_EQUAL = "no unit is stated, and several explain it equally well"
 TORQUES = ("joint_torque", "input_torque")
-EFFORTS = {"effort", "efforts", "eff"}  # words of robots for a torque or a current
-USUAL_TORQUE_CONSTANT = 0.1  # N.m/A, of motors of robots' joints (assumed)
-CONSTANT_SPREAD = float(np.log(2.0))  # standard deviation of its logarithm (assumed)
-FRICTION_SPREAD = float(np.log(3.0))  # of the logarithm of the friction of gears of about one size (assumed)
-SHARE_OF_TORQUES = 0.8  # of the recorded efforts, that are torques (assumed)
-MIN_ODDS = 10.0  # for a torque, above which the usual reading is taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,14 +43,14 @@ class _Reading:
 
     Attributes:
         file: read so
-        options: to read it so, on the command line
+        answer: by which it is read so
         squares: sum of squares of what plain least squares leaves, over the variance of the effort, of each block of the motion
         samples: of sliding, of each block
         contradiction: why no gear moves so; empty if one may
     """
 
     file: Recognised
-    options: str
+    answer: Answer
     squares: Array
     samples: Array
     contradiction: str
@@ -70,43 +66,17 @@ class _Reading:
         return sigmas_of_gain(gains) > MIN_READING_GAIN_SIGMA and self.error < share * other.error
 
 
-def decided(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
-    """Return a log in the reading of motion and effort that leaves least open; with its question, if several remain."""
-    read = _with_motion(file, source, known)
-    return read if read.question else _with_effort(read, known)
+def decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised:
+    """Return a log in the reading of motion and effort that leaves least open; with its question, if several remain.
 
-
-def _with_effort(file: Recognised, known: GearSoFar) -> Recognised:
-    """Return a log; with its question, if its effort without a unit may be a current.
-
-    Robots record currents of motors under this name as well as torques. Both readings have the same fit. The size of the
-    friction separates them: by Bayes' rule with the spread of friction between gears, that of torque constants between motors,
-    and the share of robots that record a torque.
+    Args:
+        file: as it is usually read
+        source: to read it again
+        known: the gear before the file is fitted
+        given: what a person states of it
     """
-    name = "joint_torque"
-    column = file.columns.get(name, "")
-    if file.kind != "log" or name not in file.units_assumed or not EFFORTS & set(words_of(column)):
-        return file
-    gear = known.gear_set.gear
-    ratio, law = abs(gear.kinematics.ratio), gear.friction_input
-    try:
-        log = log_of(replace(file, neighbours={}).at_ratio(ratio), known)
-    except (ValueError, FloatingPointError):
-        return file
-    plain, speed = fit_plain(log.log, log.drive), float(np.median(np.abs(log.log.motion.speed[log.log.sound])))
-    friction, usual = plain.coulomb + plain.viscous * speed, float(law.steady(max(speed, REST_SPEED)))
-    if not friction > 0.0 or not usual > 0.0:
-        return file
-    as_current = friction * ratio * USUAL_TORQUE_CONSTANT
-    evidence = log_density(np.log(friction / usual), FRICTION_SPREAD) + np.log(SHARE_OF_TORQUES / (1.0 - SHARE_OF_TORQUES))
-    evidence -= log_density(np.log(as_current / usual), float(np.hypot(FRICTION_SPREAD, CONSTANT_SPREAD)))
-    if evidence > np.log(MIN_ODDS):
-        return file
-    as_torque = f"{as_option('unit', column, 'N.m')} (friction {friction:.2g} N·m at {speed:.3g} rad/s of the input)"
-    constant = f"{as_option('column', 'current', column)} --constant torque_constant=…"
-    other = f"{constant} (with the usual {USUAL_TORQUE_CONSTANT:g} N·m/A of the motor {as_current:.2g} N·m)"
-    question = f"{column} has no unit, and may be a torque in N·m or the current of the motor in A; the start set has friction"
-    return replace(file, question=one_line(f"{question} of {usual:.2g} N·m: select one by {as_torque} or {other}"))
+    read = _with_motion(file, source, known)
+    return read if read.question else with_effort(read, source, known, given)
 
 
 def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
@@ -123,7 +93,7 @@ def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) ->
     """
     if file.kind != "log" or not file.alternatives:
         return file
-    tried = [_tried(file, _options_of(file), known), *(_tried_again(source, each, known) for each in file.alternatives)]
+    tried = [_tried(file, _answer_of(file), known), *(_tried_again(file, source, each, known) for each in file.alternatives)]
     readings = [each for each in tried if each is not None]
     sensible = [each for each in readings if not each.contradiction] or readings
     if not sensible:
@@ -134,7 +104,7 @@ def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) ->
     others = [each for each in readings if each is not best]
     if file.question:
         is_decided = best.error < MAX_UNEXPLAINED and len(remaining) == 1
-        return _taken(best, others, file) if is_decided else replace(file, question=_asked(file.question, remaining))
+        return _taken(best, others, file) if is_decided else replace(file, question=_asked(file.question.question, remaining))
     is_open = usual in remaining and len(remaining) > 1
     if best.error >= MAX_UNEXPLAINED or (is_open and file.is_of_robot):
         return file
@@ -146,34 +116,29 @@ def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) ->
     return replace(file, question=_asked(UNITS_OPEN, [*rivals, *remaining]))
 
 
-def log_density(distance: float, spread: float) -> float:
-    """Return the logarithm of the normal density, but for a constant."""
-    return float(-0.5 * (distance / spread) ** 2 - np.log(spread))
-
-
 def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> Recognised:
     """Return the file in the best reading, with a remark of what each leaves."""
     why = tuple(each for each in best.file.why if not (file.question and GIVEN in each))
-    return replace(best.file, question="", alternatives=(), why=why, remarks=(_report(best, others), *best.file.remarks))
+    return replace(best.file, question=None, alternatives=(), why=why, remarks=(_report(best, others), *best.file.remarks))
 
 
-def _tried_again(source: MeasurementFile, other: Alternative, known: GearSoFar) -> _Reading | None:
+def _tried_again(file: Recognised, source: MeasurementFile, other: Answer, known: GearSoFar) -> _Reading | None:
     """Return another reading with what it leaves; None if the file cannot be read so, or is no log then."""
     try:
-        file = recognise(source, other.mapping)
+        read = recognise(source, file.mapping.updated(FileMapping(**other.given)))
     except ValueError:
         return None
-    return _tried(file, other.options, known) if file.kind == "log" else None
+    return _tried(read, other, known) if read.kind == "log" else None
 
 
-def _tried(file: Recognised, options: str, known: GearSoFar) -> _Reading | None:
+def _tried(file: Recognised, answer: Answer, known: GearSoFar) -> _Reading | None:
     """Return a reading with what it leaves; None if it is no log that can be fitted."""
     try:
         log = log_of(replace(file, neighbours={}).at_ratio(known.gear_set.gear.kinematics.ratio), known)
         squares, samples = sliding_squares(log.log, log.drive)
     except (ValueError, FloatingPointError):
         return None
-    return _Reading(file, options, squares, samples, _doubt(log))
+    return _Reading(file, answer, squares, samples, _doubt(log))
 
 
 def _doubt(log: PreparedLog) -> str:
@@ -193,21 +158,18 @@ def _report(best: _Reading, others: Sequence[_Reading]) -> str:
     return "; ".join([f"{least} on data held out", *(f"{_described(each)}: {_left(each)}" for each in others)])
 
 
-def _asked(question: str, remaining: Sequence[_Reading]) -> str:
-    """Return a question with what each reading that remains leaves, and the options for each."""
-    if len(remaining) < 2:
-        return question
-    ways = " or ".join(f"{each.options} ({_described(each)}: {_percent(each)})" for each in remaining)
-    head, _, _ = question.partition("; give it")
-    return one_line(f"{head}: the fit does not decide between readings; select one by {ways}")
+def _asked(question: str, remaining: Sequence[_Reading]) -> QuestionError:
+    """Return a question with the readings that remain as its answers, and what each leaves."""
+    ways = [replace(each.answer, label=_described(each), gives=f"{_percent(each)} unexplained") for each in remaining]
+    return QuestionError(f"{question}; the fit does not decide", ways)
 
 
-def _options_of(file: Recognised) -> str:
-    """Return the options with which a file is read as it was."""
+def _answer_of(file: Recognised) -> Answer:
+    """Return the answer with which a file is read as it was."""
     known = {**{column: file.units[name] for name, column in file.columns.items() if name in file.units}, **file.units}
-    units = {name: known[name] for each in file.alternatives for name in each.mapping.units if name in known}
-    side = [f"--side {file.side}"] if file.side is not None else []
-    return " ".join([*side, *(f"--unit {name}={unit}" for name, unit in units.items())])
+    units = {name: known[name] for each in file.alternatives for name in each.given.get("units", ()) if name in known}
+    side = {} if file.side is None else {"side": file.side}
+    return Answer("as it is usually read", {**side, **({"units": units} if units else {})})
 
 
 def _described(reading: _Reading) -> str:

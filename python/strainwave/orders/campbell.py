@@ -15,6 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.orders.turning import evenly
+from strainwave.statistics.spectrum import segment_power
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -111,8 +112,6 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
     >>> round(float(order), 1), round(float(diagram.amplitude[fast, strongest]))
     (2.0, 3)
     """
-    from scipy.signal import spectrogram
-
     check_recording("recording", recording)
     record = evenly(recording, [column, speed])
     if not record.timed:
@@ -135,12 +134,10 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
         raise ValueError(f"{column} does not change: its spectrum is zero")
     if not np.ptp(turning) > 0.0:
         raise ValueError(f"{speed} does not change: a Campbell diagram needs a run-up or a run-down")
-    frequency, _, power = spectrogram(
-        values, 1.0 / interval, window="hann", nperseg=samples, noverlap=repeated, detrend="constant", scaling="spectrum"
-    )
+    frequency, power = segment_power(values, samples, repeated)
     starts = (samples - repeated) * np.arange(count)
     sums = np.concatenate(([0.0], np.cumsum(turning)))
     means = (sums[starts + samples] - sums[starts]) / samples
     order = np.argsort(means, kind="stable")
-    amplitude = np.sqrt(2.0 * power.T[order])
-    return Campbell(means[order], frequency, amplitude, column, recording.unit(column), speed, record.remarks)
+    amplitude = np.sqrt(2.0 * power[order])
+    return Campbell(means[order], frequency / interval, amplitude, column, recording.unit(column), speed, record.remarks)

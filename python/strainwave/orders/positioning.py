@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
-from strainwave.messages import listed
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
 
@@ -23,11 +23,12 @@ APPROACHES_OF_STANDARD = 5  # of each target in each direction
 FAR_SHARE = 0.5  # of the longest way since a reversal: beyond it a first estimate takes the lost motion for passed
 MAX_ROUNDS = 5  # of the estimate: each leaves out the rows that lie within the lost motion of the one before
 MAX_OFF_TARGET = 0.25  # steps, between approaches of one target
-OUTPUT_ORDERS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-INPUT_ORDERS = (1.0, 2.0, 4.0)
-MIN_PERIODS = 0.95  # of an order in the range: steps over a whole turn may end one before it
+MAX_ORDER = 1000  # periods per turn of the axis that are looked for
+MIN_TURNS = 0.95  # that the positions span: steps over a whole turn may end one before it
 MIN_SAMPLES_PER_PERIOD = 4.0  # of the highest order
-SIGNIFICANCE_SIGMA = 3.0
+MAX_CHANCE = 1e-3  # probability with which noise alone makes a line as large at any of the orders
+MAX_LINES = 20
+BINS = 8 * MAX_ORDER  # of a turn, in which deviations are summed for their spectrum
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Positioning:
     remarks: tuple[str, ...] = ()
 
 
-def positioning(commanded: ArrayLike, measured: ArrayLike, *, ratio: float | None = None) -> Positioning:
+def positioning(commanded: ArrayLike, measured: ArrayLike) -> Positioning:
     """Return lost motion, accuracy and repeatability of an axis that was moved in steps.
 
     Rows behind a reversal count once the command has passed the lost motion. The lost motion is the mean difference of both
@@ -74,7 +75,6 @@ def positioning(commanded: ArrayLike, measured: ArrayLike, *, ratio: float | Non
     Args:
         commanded: angles in the order of the moves [rad], shape (n,)
         measured: angles reached [rad], shape (n,)
-        ratio: of the gear, if orders of the input are looked for
 
     Raises:
         ValueError: there are few rows, the command does not change, or lengths differ
@@ -111,11 +111,11 @@ def positioning(commanded: ArrayLike, measured: ArrayLike, *, ratio: float | Non
     whole = len(both) >= MIN_TARGETS
     few = min((counts[each] for each in counts), default=0)
     remarks = [] if whole else ["too few targets were approached from both sides: lost motion is not determined"]
-    if few < APPROACHES_OF_STANDARD:
+    if whole and few < APPROACHES_OF_STANDARD:
         remarks.append(
             f"each target was approached {few} times or more in each direction; ISO 230-2 asks for {APPROACHES_OF_STANDARD}"
         )
-    orders, why = _orders(wanted[kept], deviation[kept] - 0.5 * np.nan_to_num(lost) * -sense[kept], ratio)
+    orders, why = _orders(wanted[kept], deviation[kept] - 0.5 * np.nan_to_num(lost) * -sense[kept])
     values, has = list(means.values()), bool(repeated)
     upper = max((mean + 2.0 * spreads[each] for each, mean in means.items()), default=nan)
     lower = min((mean - 2.0 * spreads[each] for each, mean in means.items()), default=nan)
@@ -178,21 +178,32 @@ def _pooled(spreads: _Approaches, counts: dict[tuple[int, int], int]) -> float:
     return float(np.sqrt(sum((counts[each] - 1) * spread**2 for each, spread in spreads.items()) / degrees)) if degrees else nan
 
 
-def _orders(angle: Array, deviation: Array, ratio: float | None) -> tuple[tuple[tuple[float, float, float], ...], list[str]]:
-    """Return the orders of deviations over the angle of the axis that stand out, and why there are none."""
+def _orders(angle: Array, deviation: Array) -> tuple[tuple[tuple[float, float, float], ...], list[str]]:
+    """Return the orders of deviations over the angle of the axis that stand out, and why there are none.
+
+    The largest line of the spectrum of what is left is fitted beside those before, while noise alone makes none as large.
+    """
     turns = float(np.ptp(angle)) / tau if len(angle) else 0.0
-    wanted = [*OUTPUT_ORDERS, *(abs(ratio) * each for each in INPUT_ORDERS if ratio)]
-    apart = turns / max(len(np.unique(np.round(angle, 9))), 1)
-    orders = [each for each in wanted if each * turns >= MIN_PERIODS and each * apart * MIN_SAMPLES_PER_PERIOD <= 1.0]
-    if not orders or len(angle) < 3 * (1 + 2 * len(orders)):
-        return (), [f"the positions span {turns:.3g} turns: orders over the angle need one period in at least four positions"]
-    waves = [part for order in orders for part in (np.cos(order * angle), np.sin(order * angle))]
-    columns = np.stack([np.ones_like(angle), *waves], axis=1)
-    amplitudes = solved(columns, deviation)
-    left = deviation - columns @ amplitudes
+    positions = len(np.unique(np.round(angle, 9)))
+    highest = min(int(positions / (MIN_SAMPLES_PER_PERIOD * turns)), MAX_ORDER) if turns >= MIN_TURNS else 0
+    if not highest:
+        return (), [
+            f"{positions} positions span {turns:.3g} turns: orders over the angle need a turn in four positions or more"
+        ]
+    possible = np.arange(1, highest + 1)
+    place = np.floor(angle / tau * BINS).astype(np.int64) % BINS
+    orders, columns, left = list[int](), np.ones((len(angle), 1)), deviation - deviation.mean()
+    while len(orders) < MAX_LINES and len(angle) > 3 * (columns.shape[1] + 2):
+        power = np.abs(np.fft.rfft(np.bincount(place, left, BINS)))[possible]
+        order = int(possible[np.argmax(power)])
+        more = np.column_stack([columns, np.cos(order * angle), np.sin(order * angle)])
+        rest = deviation - more @ solved(more, deviation)
+        chance = chance_of_gain(float(left @ left), float(rest @ rest), 2, len(angle) - more.shape[1])
+        if order in orders or chance * len(possible) > MAX_CHANCE:
+            break
+        orders, columns, left = [*orders, order], more, rest
+    amplitudes = solved(columns, deviation)[1:]
     sigma = float(np.sqrt(left @ left / (len(angle) - columns.shape[1]) * 2.0 / len(angle)))
-    sizes = np.hypot(amplitudes[1::2], amplitudes[2::2])
-    found = tuple(
-        (order, float(size), sigma) for order, size in zip(orders, sizes, strict=True) if size > SIGNIFICANCE_SIGMA * sigma
-    )
-    return found, [] if found else [f"no order over the angle stands out; looked for: {listed(f'{each:g}' for each in orders)}"]
+    lines = zip(orders, np.hypot(amplitudes[::2], amplitudes[1::2]).tolist(), strict=True)
+    found = tuple(sorted((float(order), size, sigma) for order, size in lines))
+    return found, [] if found else [f"no order over the angle stands out of the noise, of those up to {highest} per turn"]

@@ -59,17 +59,17 @@ class Spectrum:
 
         The floor is itself estimated, from few lines: tails of F instead of chi-squared.
         """
-        from scipy.stats import f
+        from scipy.special import betainc
 
-        single = f.sf(np.asarray(evidence) / self.parts, 2 * self.parts, 2.0 * self.floors)
+        single = betainc(self.floors, self.parts, self.floors / (self.floors + np.asarray(evidence)))
         bounded: Array = np.minimum(1.0, tested * single)
         return bounded
 
     def evidence_of(self, false_alarm: float, tested: float) -> float:
         """Return the evidence that noise alone gives anywhere in so many lines with this probability."""
-        from scipy.stats import f
+        from scipy.special import betaincinv
 
-        return self.parts * float(f.isf(false_alarm / tested, 2 * self.parts, 2.0 * self.floors))
+        return self.floors * (1.0 / float(betaincinv(self.floors, self.parts, false_alarm / tested)) - 1.0)
 
 
 def order_spectrum_of(
@@ -155,14 +155,14 @@ def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float, 
 def _levelled(spectrum: Spectrum) -> Spectrum:
     """Return a spectrum with the expected median around each line: noise over an angle may differ from that over time."""
     from scipy.ndimage import median_filter
-    from scipy.stats import chi2
+    from scipy.special import gammaincinv
 
     independent = len(spectrum.evidence) / LINES_PER_RESOLUTION
     around = min(FLOOR_LINES, max(1.0, independent))
     width = max(3, int(around * LINES_PER_RESOLUTION)) | 1
     thinned = max(1, width // 201)
     median = median_filter(spectrum.evidence[::thinned], (width // thinned) | 1, mode="reflect")
-    level = np.repeat(median, thinned)[: len(spectrum.evidence)] / (0.5 * float(chi2.ppf(0.5, 2 * spectrum.parts)))
+    level = np.repeat(median, thinned)[: len(spectrum.evidence)] / float(gammaincinv(spectrum.parts, 0.5))
     level = np.maximum(level, 1.0)  # what the smooth part took out is no lower floor
     return Spectrum(
         spectrum.place,

@@ -202,11 +202,8 @@ def unwrapped(name: str, angle: Array) -> Array:
 
 def smooth_speed(angle: Array, reach: int) -> Array:
     """Return the slope of a line through 2 reach + 1 samples [rad per sample], shape (n,)."""
-    from scipy.signal import savgol_filter
-
-    length = 2 * reach + 1
-    speed: Array = savgol_filter(angle, length, 1, deriv=1, mode="interp")
-    return speed
+    weights = np.arange(reach, -reach - 1.0, -1.0)
+    return np.pad(np.convolve(angle, weights, "valid") / (weights @ weights), reach, mode="edge")
 
 
 def direction(speed: Array) -> Array:

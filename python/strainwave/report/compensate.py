@@ -16,7 +16,7 @@ from strainwave.files import gear_file
 from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 from strainwave.simulation.run import simulate
 from strainwave.tuning.candidates import EFFECTS
 from strainwave.tuning.compensate import Compensated

@@ -16,7 +16,7 @@ from strainwave.report.orders import line_numbers
 from strainwave.report.orders_figures import spectrum_figure
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 from strainwave.typeset import interval, number, quantity, uncertain, uncertain_quantity
 
 MAX_LINE_LETTERS = 110  # on a terminal

@@ -11,7 +11,7 @@ from strainwave.diagnose.detection_limit import DetectionLimit
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 from strainwave.typeset import number, quantity
 
 MAX_LINE_LETTERS = 110  # on a terminal

@@ -11,7 +11,7 @@ import numpy as np
 from strainwave import typeset
 from strainwave.export.exported import Exported
 from strainwave.files.recording import Recording
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 from strainwave.tuning.loss import ExportLoss
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"

@@ -22,7 +22,7 @@ from strainwave.report.errors import share_held_out
 from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 
 COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
@@ -200,7 +200,7 @@ def _of_file(result: FileResult) -> Iterator[str]:
     if result.recognised is not None:
         yield from (f"  since {why}" for why in result.recognised.why)
     if result.refused:
-        yield f"  NOT USED: {result.refused}"
+        yield f"  NOT USED: {with_options(result.refused)}"
         return
     share = share_held_out(result.held_out)
     yield f"  {result.model}{f'; error on data held out: {share} of what varies' if share else ''}"

@@ -23,7 +23,7 @@ from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
 from strainwave.report import orders_figures as plots
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 
 MAX_LINE_LETTERS = 110  # on a terminal

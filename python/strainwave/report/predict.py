@@ -18,7 +18,7 @@ from strainwave.report.identify_files import first_remarks
 from strainwave.report.orders import line_numbers, line_words
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
+from strainwave.report.results_json import results_json
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 

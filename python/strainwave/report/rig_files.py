@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import csv
-import json
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Iterator, Sequence
 from importlib import metadata
 from io import BytesIO, StringIO
-from math import degrees, isfinite
+from math import degrees
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
-
-import numpy as np
 
 from strainwave.files.recording import Recording
 from strainwave.identification.kinds.torsion_loop import in_steps
@@ -172,29 +168,3 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
         "corrections": loop.corrections,
         "remarks": analysis.remarks,
     }
-
-
-def results_json(found: Mapping[str, Any]) -> str:
-    """Return every number found, as JSON: in SI units unless a unit is given; null for no number."""
-    return json.dumps(plain(found), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def plain(value: Any) -> Any:
-    """Return a value of dataclasses, arrays and numbers in the types that JSON has.
-
-    >>> plain({"a": np.array([1.0, np.nan]), "b": (True, Path("x"))})
-    {'a': [1.0, None], 'b': [True, 'x']}
-    """
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Mapping):
-        return {str(key): plain(each) for key, each in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple | set | frozenset):
-        return [plain(each) for each in value]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, float):
-        return value if isfinite(value) else None
-    return value if value is None or isinstance(value, bool | int | str) else str(value)

@@ -66,6 +66,18 @@ def andrews_lags(series: Array) -> int:
     return min(int(1.1447 * np.cbrt(strength * len(series))), len(series) // 4)
 
 
+def whitened(series: Array, coefficients: Array) -> Array:
+    """Return series less what an autoregression predicts from the samples before, shape (n, k).
+
+    >>> whitened(np.array([[1.0], [0.5], [0.25]]), np.array([1.0, -0.5])).ravel().tolist()
+    [1.0, 0.0, 0.0]
+    """
+    white = series.copy()
+    for lag, coefficient in enumerate(coefficients[1:], 1):
+        white[lag:] += coefficient * series[:-lag]
+    return white
+
+
 def correlation_length(residual: Array) -> float:
     """Return the integrated autocorrelation time in samples, over Sokal's window; 1 if an autoregression finds white noise.
 

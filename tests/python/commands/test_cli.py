@@ -86,8 +86,8 @@ def test_what_a_file_holds_reaches_no_terminal_as_it_is(tmp_path: Path, hostile:
         hostile_name.write_text(text)
         result = strainwave("identify", "hfuc-25-100", hostile_name.name, folder=tmp_path)
         assert result.returncode == 2
-        assert result.stderr.removesuffix("\n").isprintable()
-        assert len(result.stderr) < 700
+        assert all(line.isprintable() for line in result.stderr.splitlines())
+        assert len(result.stderr) < 2000
     refused(tmp_path, ["models", hostile], "there is no model")
 
 

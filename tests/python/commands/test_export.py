@@ -6,12 +6,14 @@ import json
 from inspect import signature
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
+from zipfile import ZipFile
 
 import pytest
 import strainwave as sw
 import typer
 from strainwave.commands.export import export
-from strainwave.export import FORMS
+from strainwave.export import FIRMWARE, FORMS
 from strainwave.export.exported import Form
 
 from tests.python.command import refused, strainwave
@@ -41,7 +43,8 @@ def test_each_argument_of_an_export_is_an_option_with_its_default(form: Form) ->
     options = {option.name: option for option in verb.params}
     _, *others = signature(form.write).parameters.values()
     arguments = {each.name: each for each in others if each.name not in NO_OPTIONS.get(form.verb, ())}
-    assert options.keys() - arguments.keys() == {form.model, "out"}
+    own = {form.model, "out", "motor", "load", "control", *(["report"] if form is FIRMWARE else [])}
+    assert options.keys() - arguments.keys() == own - arguments.keys()
     assert arguments.keys() <= options.keys()
     for name, each in arguments.items():
         assert options[name].help
@@ -60,13 +63,24 @@ def test_every_export_is_a_verb(tmp_path: Path) -> None:
 
 def test_a_controller_becomes_firmware(tmp_path: Path) -> None:
     done = strainwave("export", "firmware", "robot-joint", "--name", "joint", "--out", "firmware", folder=tmp_path)
-    assert "wrote joint.hpp, joint.h, joint.cpp to firmware, to be called every 0.00025 s" in done.stdout
+    assert "wrote joint.hpp, joint.h, joint.cpp, joint_main.c to firmware, to be called every 0.00025 s" in done.stdout
     assert (tmp_path / "firmware" / "joint.cpp").exists()
 
 
 def test_a_law_of_a_gear_becomes_firmware(tmp_path: Path) -> None:
     done = strainwave("export", "firmware", "csg-20-100", "--part", "gear.stiffness", "--out", "firmware", folder=tmp_path)
-    assert "wrote stiffness.hpp, stiffness.h, stiffness.cpp to firmware\n" in done.stdout
+    assert "wrote stiffness.hpp, stiffness.h, stiffness.cpp, stiffness_main.c to firmware\n" in done.stdout
+
+
+def test_a_gear_alone_gets_motor_load_and_control(tmp_path: Path) -> None:
+    words = ("--motor", "DC,resistance=0.5", "--load", "Inertia,inertia=0.3", "--control", "position-drive")
+    strainwave("export", "fmu", "csg-20-100", *words, "--platform", "source", "--out", "block", folder=tmp_path)
+    with ZipFile(tmp_path / "block" / "CSG-20-100.fmu") as block:
+        description = ElementTree.fromstring(block.read("modelDescription.xml"))
+    starts = {each.attrib["name"]: each[0].get("start") for each in description.iter("ScalarVariable")}
+    assert (starts["motor.resistance"], starts["load.inertia"]) == ("0.5", "0.3")
+    assert "control.proportional" in starts
+    assert starts["gear.stiffness.k1"] == repr(float(sw.load("csg-20-100").stiffness.k1))
 
 
 def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
@@ -82,7 +96,11 @@ def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
         (("mjcf", "csg-20-100"), "--load-inertia"),
         (("mjcf", "csg-20-100", "--into", "."), "cannot be read"),
         (("bam", "csg-20-100"), "add a [motor] to the file"),
-        (("firmware", "csg-20-100"), "has no [motor] and no [load]"),
+        (("firmware", "csg-20-100"), "give --motor and --load, as --motor robot-joint --load Inertia"),
+        (("fmu", "csg-20-100", "--load", "Inertia"), "has no [motor]"),
+        (("joint", "csg-20-100", "--motor", "DCC"), "--motor DCC is no model (AccelerationSource, BrushlessDC"),
+        (("joint", "csg-20-100", "--motor", "DC,resistence=2"), "has no parameter 'resistence'"),
+        (("joint", "csg-20-100", "--motor", "csg-20-80"), "--motor csg-20-80: that set has no [motor]"),
         (("firmware", "tilt-actuator"), "must be sampled"),
         (("firmware", "tilt-actuator", "--part", "motor"), "must be one of control, drive, gear.friction_input"),
         (("from-bam", "nothing.json", "--ratio", "100"), "nothing.json cannot be read"),

@@ -172,7 +172,9 @@ def test_columns_of_a_loop_may_have_other_names_and_no_units(tmp_path: Path) -> 
     loop = Recording.read(LOOP)
     rows = zip(loop.values("input_angle", "deg").tolist(), loop.values("input_torque", "N.m").tolist(), strict=True)
     (tmp_path / "mine.csv").write_text("turn,load\n" + "".join(f"{turn},{load}\n" for turn, load in rows))
-    refused(tmp_path, ("rig", "analyse", "mine.csv"), "choose one, as with --column torque=NAME")
+    asked = strainwave("rig", "analyse", "mine.csv", folder=tmp_path)
+    assert (asked.returncode, asked.stdout) == (2, "")
+    assert "strainwave rig analyse mine.csv --column torque=load" in asked.stderr
     named = ("--column", "input_angle=turn", "--column", "input_torque=load")
     refused(tmp_path, ("rig", "analyse", "mine.csv", *named), "--unit")
     refused(tmp_path, ("rig", "analyse", "mine.csv", "--column", "colour=turn"), "colour is no column of these measurements")

@@ -39,7 +39,7 @@ def folder():
 def exported(name):
     """A drive with an inertia as its load; its plugin is registered for all tests."""
     gear_set = sw.GearSet.read(name)
-    found = sw.export.mujoco_plugin(gear_set, command="followed", name=name)
+    found = sw.export.mujoco_plugin(gear_set, name=name)
     library = folder() / f"{name}.so"
     library.write_bytes(found.files[f"{name}.so"])
     mujoco.mj_loadPluginLibrary(str(library))

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from collections.abc import Iterable, Iterator, Sequence
+from datetime import UTC, datetime, timedelta
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +14,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
-from strainwave.export.firmware import FLAGS
+from strainwave.export.firmware import FLAGS, microcontroller
 from strainwave.native.static_type import Scalar, parameters
 from strainwave.simulation.controller import Observation
 
@@ -249,6 +252,45 @@ def test_a_microcontroller_computes_in_single_precision_throughout(tmp_path: Pat
     sw.export.firmware(DRIVES["model"], tmp_path)
     compile_strictly(zig(), tmp_path, "controller.cpp", *FLAGS.split(), *CORTEX, "-Wdouble-promotion")
     assert undefined(tmp_path) <= LIBM | {"memcpy", "memset"}
+
+
+def test_every_file_states_the_gear_its_file_and_the_day(tmp_path: Path) -> None:
+    joint = sw.GearSet.read("robot-joint")
+    written = sw.export.firmware(joint, tmp_path / "firmware")
+    joint.save(tmp_path / "gear.toml")
+    digest = sha256((tmp_path / "gear.toml").read_bytes()).hexdigest()
+    days = {f"{datetime.now(UTC) - timedelta(minutes=back):%Y-%m-%d}" for back in (0, 5)}
+    for path in (written.header, written.declarations, written.source, written.example):
+        first, second, *_ = path.read_text().splitlines()
+        assert first.removeprefix("// Written on ")[:10] in days
+        assert first.endswith("of Robot joint")
+        assert second.endswith(f" {digest}")
+    sw.export.firmware(DRIVES["model"], tmp_path / "other")
+    assert (tmp_path / "other" / "controller.h").read_text().splitlines()[0].endswith("of a drive made in Python")
+
+
+@pytest.mark.parametrize("part", ["control", "gear.friction_input"])
+def test_the_example_is_in_c_and_calls_the_step_in_the_interrupt(part: str, tmp_path: Path) -> None:
+    written = sw.export.firmware(DRIVES["model"], tmp_path, name="joint", part=part)
+    compile_strictly(compiler("gcc"), tmp_path, written.example.name, "-std=c99")
+    assert undefined(tmp_path) == {"joint_start", "joint_step"}
+
+
+@pytest.mark.slow("export")
+def test_a_report_counts_bytes_and_instructions() -> None:
+    if missing := microcontroller.missing_programs():
+        pytest.skip(f"{', '.join(missing)} is not installed")
+    lines = list(microcontroller.report(sw.GearSet.read("csg-20-100"), "gear.stiffness", "float", None))
+    sizes, counts = ([int(each) for each in re.findall(r"\b\d+\b", line)] for line in lines[:2])
+    assert sizes[1] == 8  # two floats
+    assert 100 < sizes[0] < 1000
+    assert 30 < counts[0] <= counts[1] < 300
+
+
+def test_a_report_without_its_programs_names_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(microcontroller.shutil, "which", lambda program: None)
+    (line,) = microcontroller.report(DRIVES["model"], "control", "float", None)
+    assert "not measured, as qemu-system-arm, arm-none-eabi-gcc" in line
 
 
 def test_the_header_is_in_c(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Modelica packages of drives: their functions in C, called as a Modelica tool calls them, and their text."""
 
+import ctypes
 import subprocess
 from functools import cache
 
@@ -54,6 +55,23 @@ def test_error_falls_with_the_period():
     assert coarse.size > 0.05
     assert coarse.rms_share < 2e-4
     assert fine.largest < 0.6 * coarse.largest  # of first order
+
+
+@pytest.mark.slow("export")
+def test_a_command_without_rate_goes_on_at_that_of_the_last_period(tmp_path):
+    path = tmp_path / "drive.so"
+    path.write_bytes(library_of(exported()))
+    open_, step = (getattr(ctypes.CDLL(str(path)), f"strainwavedrive_{each}") for each in ("open", "torque"))
+    open_.restype, step.restype = ctypes.c_void_p, None
+    step.argtypes = ctypes.c_void_p, *[ctypes.c_double] * 6, *[ctypes.POINTER(ctypes.c_double)] * 2
+    torques, period = [], 1e-3
+    for rate in (0.0, 0.5):
+        drive, torque, torque_rate = open_(), ctypes.c_double(), ctypes.c_double()
+        for k in range(50):  # the first period has no last one
+            step(drive, k * period, 0.0, 0.0, 0.5 * max(k - 1, 0) * period, rate * (k > 1), period, torque, torque_rate)
+        torques.append(torque.value)
+    assert abs(torques[0]) > 0.1
+    assert torques[0] == pytest.approx(torques[1], rel=1e-2)
 
 
 @pytest.mark.slow("export")

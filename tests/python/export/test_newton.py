@@ -88,6 +88,19 @@ def test_thousands_of_gears_move_as_one(package):
     np.testing.assert_array_equal(outputs[package.OUTPUTS.index("load_torque")], torque)
 
 
+def test_a_target_without_rate_moves_in_a_line(package):
+    """The motion is one with rates that are constant between calls."""
+    torques = []
+    for rate in (0.0, 0.05):
+        joints = Joints(package, 1)
+        for k in range(20):
+            joints.control.joint_target_qd.fill_(rate)
+            torque = joints.step(0.0, 0.0, 0.05 * k * STEP)
+        torques.append(float(torque[0]))
+    assert abs(torques[0]) > 1e-3
+    assert torques[0] == pytest.approx(torques[1], rel=1e-4)
+
+
 def test_each_gear_has_its_own_numbers(package):
     joints = Joints(package, 3)
     damping = package.PARAMETERS["gear.damping"]["value"]

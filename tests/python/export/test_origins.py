@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
+from typing import cast
 from xml.etree import ElementTree
+from zipfile import ZipFile
 
 import pytest
 import strainwave as sw
@@ -25,6 +28,8 @@ LINE = f"{DAMPING} = {JOINT.gear.damping:.6g} ± 1e-06 N.m.s/rad, identified fro
         (sw.export.ros2(IDENTIFIED, name="elbow"), ["elbow.xacro", "elbow_controllers.yaml", "drive_node.py"]),
         (sw.export.fmu(IDENTIFIED, platforms=(), name="block"), [ORIGINS_FILE]),
         (sw.export.slot(IDENTIFIED, "coulomb-viscous"), [ORIGINS_FILE]),
+        (sw.export.bam(IDENTIFIED), [ORIGINS_FILE]),
+        (sw.export.newton(IDENTIFIED, gpu=False, compare=False), ["__init__.py", "drive.hpp", "README.md"]),
     ],
     ids=lambda each: each.kind if isinstance(each, Exported) else "",
 )
@@ -36,10 +41,27 @@ def test_files_state_what_was_identified_and_are_read_as_without(found: Exported
         assert "gear.input_inertia = " in text
         if name.endswith((".xml", ".urdf", ".xacro")):
             ElementTree.fromstring(text)
+        elif name == "drive.hpp":
+            assert text.startswith("// numbers of Robot joint\n// identified")
         elif name.endswith(".yaml"):
             assert isinstance(yaml.safe_load(text), dict)
         elif name.endswith(".py"):
             compile(text, name, "exec")
+
+
+def test_an_fmu_states_in_its_documentation_what_was_identified() -> None:
+    with ZipFile(BytesIO(cast(bytes, sw.export.fmu(IDENTIFIED, platforms=(), name="block").files["block.fmu"]))) as block:
+        page = block.read("documentation/index.html").decode()
+    assert LINE in page
+    assert "gear.input_inertia = " in page
+
+
+@pytest.mark.slow("export")
+def test_compiled_exports_state_what_was_identified() -> None:
+    plugin = sw.export.mujoco_plugin(IDENTIFIED).files
+    package = sw.export.modelica(IDENTIFIED, name="Joint").files
+    for text in (plugin["gear.xml"], package["Joint/package.mo"], package["Joint/Resources/Include/joint.h"]):
+        assert LINE in str(text)
 
 
 def test_firmware_and_gear_files_state_what_was_identified(tmp_path: Path) -> None:

@@ -360,8 +360,8 @@ def test_columns_and_units_that_are_not_there_are_refused(
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"torque [N.m]\n1\n2\xb0\n", " line 3 is not UTF-8: byte 16 is 0xb0"),
-        ("torque [N.m]\n1\n".encode("utf-16"), " line 1 is not UTF-8: byte 0 is 0xff"),
+        (b"torque [N.m]\n1\n2\x90\n", " line 3 is not UTF-8: byte 16 is 0x90"),
+        (b"\xff\xfet\0\0\xd8", " line 1 is not UTF-8: byte 4 is 0x00"),
         (
             "torque [N.m]\n1\n".encode("utf-16-le"),
             " holds a zero byte at 1, which no text does; save it as UTF-8, not as UTF-16",
@@ -373,6 +373,16 @@ def test_bytes_that_are_not_utf8_are_refused(tmp_path: Path, data: bytes, messag
     path.write_bytes(data)
     with pytest.raises(ValueError, match=exactly(f"{path}{message}")):
         Recording.from_csv(path)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+def test_names_and_units_of_spreadsheets_are_read_in_their_encoding(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "table.csv"
+    path.write_bytes("Öltemperatur [°C];Moment [µN.m]\r\n21,5;2\r\n".encode(encoding))
+    table = Recording.from_csv(path)
+    assert table.names == ("Öltemperatur", "Moment")
+    assert table.unit("Öltemperatur") == "degC"
+    assert table["Moment"].tolist() == [2.0]
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run.parquet"])

@@ -13,6 +13,7 @@ from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 from strainwave.identification.reading.several_files import same_as
+from strainwave.questions import QuestionError
 from strainwave.report.identify_files import identify_files, identify_summary
 
 from tests.python.command import strainwave
@@ -95,7 +96,7 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "a wrong delimiter": (text("bars.csv", "speed|torque\n1|0.05\n2|0.06\n"), r"separated by .\|.: separate them by commas"),
     "no file": (lambda folder: folder / "none.csv", "cannot be read: No such file"),
     "an empty folder": (folder_of(empty=True), r"contains no file that may be a measurement, as \*\.csv"),
-    "texts among numbers": (text("texts.csv", with_texts()), r"columns not used: speed \[rad/s\]: does it hold texts"),
+    "texts among numbers": (text("texts.csv", with_texts()), r"not used, as they contain texts: speed \[rad/s\]"),
     "torque alone": (text("torque.csv", "time [s],torque [N.m]\n" + "0,1\n1,2\n2,1\n" * 20), "--constant speed="),
     "a constant current": (log(current=np.full(len(CURRENT), 1.0)), "current never changes: a set value, a limit"),
     "a shaft that stands": (log(input_angle=np.full(len(ANGLE), 1.0)), "the angle never changes"),
@@ -119,6 +120,8 @@ def test_what_cannot_be_used_is_refused_with_reason_and_remedy(tmp_path: Path, n
     make, reason = REFUSED[name]
     try:
         found = identify(START, [make(tmp_path)])
+    except QuestionError as question:
+        said = str(question)
     except ValueError as error:
         said = str(error)
         assert said.startswith("no file can be used: ")
@@ -137,7 +140,10 @@ def outlying() -> np.ndarray:
 
 LIMIT = 0.6 * float(np.abs(CURRENT).max())
 SAID: dict[str, tuple[Make, str]] = {
-    "a reversed current": (log(current=-CURRENT), "current is counted against the motion: its sign is turned round"),
+    "a reversed current": (
+        log(current=-CURRENT),
+        "current is counted in the sense of the output, which turns against the input",
+    ),
     "outliers": (log(current=outlying()), r"clipped samples of current are left out: \d+, [\d.]+ % of all"),
     "a clipped current": (log(current=np.clip(CURRENT, -LIMIT, LIMIT)), "outliers or clipped samples of current are left out"),
 }

@@ -16,9 +16,11 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine, distance, mean_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.questions import QuestionError
 
 from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
 from tests.python.identification.candidates.test_motion import SPEED as SWING
+from tests.support.answers import options_of
 
 SPEED = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
 CONSTANT = 0.08  # N.m/A, of the motor of the logs
@@ -270,8 +272,10 @@ def test_a_torque_that_was_measured_is_as_sure_as_itself_whatever_the_torque_con
 
 
 def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"--constant resistance=… and --constant torque_constant=….*--column current=voltage"):
+    with pytest.raises(QuestionError) as asked:
         identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
+    of_motor = "--constant resistance=NUMBER --constant torque_constant=NUMBER"
+    assert options_of(asked.value) == [of_motor, "--column current=voltage"]
 
 
 @pytest.mark.slow("identification")

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import re
-import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.commands.file_options import FileOptions
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.source import measurement_files
+from strainwave.questions import Answer
+
+from tests.evidence.drawn import readings
+from tests.support.answers import answer_with, mapping_of
 
 TURN = 2.0 * np.pi
 RATIO, COULOMB, VISCOUS, INERTIA = 100.0, 0.06, 4e-4, 2.0  # at the input, but for the inertia
@@ -36,18 +36,8 @@ def values(found: Identified) -> dict[str, float]:
     return {each.estimate.path: each.estimate.value for each in found.parameters}
 
 
-def with_options(path: Path, options: str) -> Identified:
-    words = shlex.split(options)
-    given: dict[str, list[str]] = {}
-    for name, value in zip(words[::2], words[1::2], strict=True):
-        given.setdefault(name, []).append(value)
-    files = measurement_files([path])
-    side = given.get("--side", [None])[0]
-    constant = given.get("--constant")
-    said = FileOptions(column=given.get("--column"), unit=given.get("--unit"), side=side, constant=constant).mapping_of(
-        files.files
-    )
-    return identify("csg-20-100", files, mapping=said)
+def with_answer(path: Path, answer: Answer, **further: object) -> Identified:
+    return identify("csg-20-100", [path], mapping=mapping_of(answer, **further))
 
 
 @pytest.mark.slow("identification")
@@ -74,27 +64,23 @@ def test_radians_without_a_unit_stay_radians(tmp_path: Path) -> None:
 @pytest.mark.slow("identification")
 def test_what_no_reading_decides_is_asked_with_options_that_give_the_numbers(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("position", "velocity", "torque"))
-    with pytest.raises(ValueError, match="the fit does not decide between readings; select one by ") as asked:
+    with pytest.raises(ValueError, match="the fit does not decide") as asked:
         identify("csg-20-100", [path])
-    ways = re.findall(r"(--[^()]*) \(([^:()]*): [\d.e+]+ %\)", str(asked.value))
-    options = {described: way for way, described in ways}
-    assert {"rev, rev/s at the output", "rad, rad/s at the output"} <= options.keys()
-    identified = with_options(path, options["rev, rev/s at the output"])
+    identified = with_answer(path, answer_with(asked.value, "rev, rev/s at the output"))
     found, of_gear = values(identified), identified.gear_set.gear.input_inertia * RATIO**2
     assert found["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
     assert found["gear.friction_input.viscous"] == pytest.approx(VISCOUS, rel=0.02)
     assert found["load.inertia"] + of_gear == pytest.approx(INERTIA, rel=0.02)
-    assert not with_options(path, options["rad, rad/s at the output"]).files[0].refused
+    assert not with_answer(path, answer_with(asked.value, "rad, rad/s at the output")).files[0].refused
 
 
 @pytest.mark.slow("identification")
 def test_a_unit_of_a_named_joint_that_no_reading_decides_is_asked(tmp_path: Path) -> None:
     """An upright joint: in revolutions or radians it leaves as little, and the side is in the names."""
     path = log_of_joint(tmp_path, gravity=0.0, unit=TURN, names=("joint_angle", "joint_speed", "joint_torque"))
-    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well: .* select one by ") as asked:
+    with pytest.raises(ValueError, match=r"no unit is stated, and several explain it equally well") as asked:
         identify("csg-20-100", [path])
-    (option,) = re.findall(r"or (--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
-    identified = with_options(path, option)
+    identified = with_answer(path, answer_with(asked.value, "rev, rev/s"))
     inertia = values(identified)["load.inertia"] + identified.gear_set.gear.input_inertia * RATIO**2
     assert inertia == pytest.approx(INERTIA, rel=0.02)
 
@@ -108,10 +94,10 @@ def test_an_upright_joint_of_a_robot_is_in_radians(tmp_path: Path) -> None:
 
 def test_a_reading_in_which_the_input_turns_too_fast_is_none(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=0.0, unit=1.0, names=("position", "velocity", "torque"), pace=2.5)
-    with pytest.raises(ValueError, match="select one by ") as asked:
+    with pytest.raises(ValueError, match="the fit does not decide") as asked:
         identify("csg-20-100", [path])
-    assert "(rad, rad/s at the output: " in str(asked.value)
-    assert "(rev, rev/s at the output: " not in str(asked.value)
+    assert "rad, rad/s at the output with " in str(asked.value)
+    assert "rev, rev/s at the output with " not in str(asked.value)
 
 
 @pytest.mark.slow("identification")
@@ -127,19 +113,19 @@ def test_a_usual_unit_that_explains_less_than_another_one_is_asked_about(tmp_pat
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
     with pytest.raises(ValueError, match="no unit is stated, and another one than the usual explains more") as asked:
         identify("csg-20-100", [path])
-    (option,) = re.findall(r"(--unit \S+ --unit \S+) \(rev, rev/s", str(asked.value))
-    assert values(with_options(path, option))["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
+    by_turns = with_answer(path, answer_with(asked.value, "rev, rev/s"))
+    assert values(by_turns)["load.gravity_torque"] == pytest.approx(6.0, rel=0.03)
 
 
 @pytest.mark.slow("identification")
-def test_a_torque_of_the_other_side_is_named_by_its_friction(tmp_path: Path) -> None:
+def test_a_torque_that_may_be_of_the_other_side_is_asked_about(tmp_path: Path) -> None:
     path = log_of_joint(tmp_path, gravity=25.0, unit=1.0, names=("q", "dq", "tau"))
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
     rows[:, 3] /= RATIO
     np.savetxt(path, rows, delimiter=",", header="time,q,dq,tau", comments="", fmt="%.9g")
-    checks = {each.name: each for each in identify("csg-20-100", [path]).failed}
-    assert "give --column input_torque=tau" in checks["friction of the start set"].remedy
-    found = with_options(path, "--column input_torque=tau")
+    with pytest.raises(ValueError, match=r"tau may be a torque of the motor in N\.m, a torque of the joint in") as asked:
+        identify("csg-20-100", [path])
+    found = with_answer(path, answer_with(asked.value, "a torque of the motor in N.m"))
     assert not found.failed
     assert values(found)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
     assert values(found)["gear.friction_input.coulomb"] == pytest.approx(COULOMB, rel=0.02)
@@ -164,12 +150,18 @@ def test_an_effort_without_a_unit_that_may_be_a_current_is_asked_about(tmp_path:
     time, angle, speed, effort = np.loadtxt(path, delimiter=",", skiprows=1).T
     rows = np.column_stack([time, angle, speed, effort / 9.85])
     np.savetxt(path, rows, delimiter=",", header="time,joint_position,joint_velocity,joint_effort", comments="")
-    with pytest.raises(ValueError, match="joint_effort has no unit, and may be a torque in N·m or the current") as asked:
+    with pytest.raises(ValueError, match="joint_effort may be a current of the motor in A, a torque of the joint") as asked:
         identify("csg-20-100", [path])
-    first, second = (re.search(rf"(--{option} \S+)", str(asked.value)) for option in ("unit", "column"))
-    assert first is not None
-    assert second is not None
-    as_torque = with_options(path, first[1])
-    as_current = with_options(path, second[1].replace("…", "") + " --constant torque_constant=0.0985")
+    as_torque = with_answer(path, answer_with(asked.value, "a torque of the joint in N.m"))
+    of_motor = answer_with(asked.value, "a current of the motor in A")
+    as_current = with_answer(path, of_motor, constants={"torque_constant": 0.0985})
     assert values(as_torque)["load.gravity_torque"] == pytest.approx(25.0 / 9.85, rel=0.01)
     assert values(as_current)["load.gravity_torque"] == pytest.approx(25.0, rel=0.01)
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("seed", [0, 20, 25, 37, 71, 74])
+def test_a_drawn_file_is_read_right_or_asked_about(seed: int) -> None:
+    """Currents in mA without a unit, torques of either side, speeds and angles in rad, deg and rev, commands beside them."""
+    found = readings.outcome(seed)
+    assert found.verdict != "wrong", found.message

@@ -49,6 +49,20 @@ def test_one_way_determines_no_lost_motion_but_orders_over_a_turn() -> None:
     assert sizes == {1.0: pytest.approx(20.0, abs=0.4), 3.0: pytest.approx(5.0, abs=0.4)}
 
 
+def test_orders_of_any_number_are_found_in_the_spectrum() -> None:
+    """72 and 144 per turn of a worm wheel, beside an order of the axis and noise that makes none."""
+    random = np.random.default_rng(3)
+    wanted = np.arange(3600) * (2.0 * np.pi / 3600)
+    of_worm = 4e-5 * np.sin(72.0 * wanted + 1.0) + 1e-5 * np.cos(144.0 * wanted) + 6e-5 * np.cos(wanted)
+    noise = random.normal(0.0, 2e-5, len(wanted))
+    found = positioning(wanted, wanted + of_worm + noise).orders
+    assert [order for order, _, _ in found] == [1.0, 72.0, 144.0]
+    for (_, size, sigma), true in zip(found, (6e-5, 4e-5, 1e-5), strict=True):
+        assert sigma == pytest.approx(2e-5 * np.sqrt(2.0 / len(wanted)), rel=0.1)
+        assert size == pytest.approx(true, abs=4.0 * sigma)
+    assert not positioning(wanted, wanted + noise).orders
+
+
 def test_few_rows_are_refused() -> None:
     with pytest.raises(ValueError, match="positioning needs 8 or more rows"):
         positioning([0.0, 1.0], [0.0, 1.0])

@@ -14,9 +14,10 @@ from strainwave.files.recording import Recording
 from strainwave.identification.reading.recognise import recognise
 from strainwave.report import rig_figures
 from strainwave.report.provenance import Provenance
+from strainwave.report.results_json import plain, results_json
 from strainwave.report.rig import rig_report, setting, summary, unknown
 from strainwave.report.rig_figures import COLOURS
-from strainwave.report.rig_files import angle_files, loop_files, loop_names, plain, results, results_json
+from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
 from strainwave.report.rig_numbers import stated
 from strainwave.report.rig_setup import rig_rows
 from strainwave.rig import Camera, Loop, Step, Value, load

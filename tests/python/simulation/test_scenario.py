@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.signal
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 from strainwave.simulation.scenario import (
@@ -244,7 +244,6 @@ def test_a_pulse_begins_with_its_period_and_ends_before_its_width_is_over() -> N
     assert pulses.value_before(pulses.breaks).tolist() == [0.0, 2.0, 0.0, 2.0]
 
 
-@settings(deadline=None)  # the first example pays for the import of pint
 @given(st.lists(st.tuples(st.floats(0.01, 1.0), amplitude), min_size=1, max_size=10), amplitude)
 def test_a_table_is_linear_interpolation(points: list[tuple[float, float]], first: float) -> None:
     time = np.append(0.0, np.cumsum([gap for gap, _ in points]))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.statistics.determined_sum import sum_by_information
-from strainwave.statistics.linear_fit import linear_fit, own_share, solved
+from strainwave.statistics.linear_fit import linear_fit, normal_inverse, own_share, solved
 
 seeds = st.integers(0, 2**31)
 
@@ -75,3 +75,12 @@ def test_coefficients_of_several_targets_are_those_of_each() -> None:
     columns, targets = draw.normal(size=(30, 3)), draw.normal(size=(30, 2))
     together = solved(columns, targets)
     np.testing.assert_allclose(together, np.stack([solved(columns, each) for each in targets.T], axis=1), rtol=1e-10)
+
+
+def test_directions_that_columns_do_not_separate_are_left_out_of_the_inverse() -> None:
+    """Of two equal columns the sum alone has a variance; that of each is a quarter of it, as of the solution of least norm."""
+    column = np.random.default_rng(2).normal(size=50)
+    for other in (column, column * (1.0 + 1e-12)):
+        inverse = normal_inverse(np.stack([column, other, np.ones(50)], axis=1))
+        alone = normal_inverse(np.stack([2.0 * column, np.ones(50)], axis=1))
+        np.testing.assert_allclose(inverse[:2, :2], alone[0, 0], rtol=1e-9)

@@ -60,7 +60,7 @@ class CoupledDrive:
         """Return the longest stable timestep [s] before an inertia [kg.m²], as the C++ function of this name."""
         return (sqrt(self.damping**2 + 4.0 * self.stiffness * inertia) - self.damping) / self.stiffness
 
-    def sources(self, name: str, step: float, source: str, prefix: str = "drive") -> dict[str, str]:
+    def sources(self, name: str, step: float, source: str, prefix: str = "drive", follows: bool = False) -> dict[str, str]:
         """Return C++ sources by their names.
 
         Args:
@@ -68,6 +68,7 @@ class CoupledDrive:
             step: largest internal step [s]
             source: name of the file that makes the drive a part of that program, in the folder of this module
             prefix: of functions in C
+            follows: whether a command without a rate goes on at that since the last call
         """
         folder = resources.files("strainwave.export.coupled")
         others = {each: folder.joinpath(each).read_text("utf-8") for each in ("coupled.hpp", source)}
@@ -83,7 +84,7 @@ inline constexpr double damping = {self.damping!r};      // N.m.s/rad
 
 }}  // namespace coupled
 """
-        return drive_sources(self.drive, variables(self.drive, step), others)[0]
+        return drive_sources(self.drive, variables(self.drive, step), others, follows=follows)[0]
 
 
 def _slope(drive: Drive, torque: float, angle: float, speed: float) -> float:

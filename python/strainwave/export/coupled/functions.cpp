@@ -26,10 +26,11 @@ SW_EXPORT void SW_NAME(torque)(void* drive, double time, double angle, double sp
     *torque = *torque_rate = NAN;
     if (!drive) return;
     Instance& of = *static_cast<Instance*>(drive);
-    const coupled::Shaft now{angle, speed, command, command_rate};
-    const coupled::Shaft then{angle + speed * period, speed, command + command_rate * period, command_rate};
     const double step = time - of.state[coupled::reached];
     bool works = true;
+    if (fmu::is_followed && command_rate == 0.0 && of.has_begun && step > 0.0) command_rate = (command - of.command) / step;
+    const coupled::Shaft now{angle, speed, command, command_rate};
+    const coupled::Shaft then{angle + speed * period, speed, command + command_rate * period, command_rate};
     if (!of.has_begun)
         works = of.stepper.begin(time, now, of.state);
     else if (step > 0.0)

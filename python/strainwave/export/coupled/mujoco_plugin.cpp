@@ -78,7 +78,7 @@ int init(const mjModel* m, mjData*, int instance) {
         return -1;
     }
     const char* way = config(m, instance, attributes[0]);
-    if (*way != 0 && !coupled::same(way, "held") && !coupled::same(way, "followed")) {
+    if (!coupled::same(way, "held") && !coupled::same(way, "followed")) {
         warn("actuator %s: command is \"%s\"; give \"held\" or \"followed\"", name, way);
         return -1;
     }

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +19,7 @@ from strainwave.export.exported import Form, comment_of
 from strainwave.export.firmware import source
 from strainwave.export.firmware.step import Member, step
 from strainwave.export.names import checked_name
+from strainwave.files import gear_file
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.files.writing import making, write_all
@@ -42,6 +46,7 @@ class Firmware:
         header: file with the step in C++ and all that it needs
         declarations: file with the declarations in C
         source: file with the C++ source of what the declarations declare
+        example: program in C that calls the step from a timer
         inputs, state, outputs: names of the numbers of the structs in C, in their order
         scalar: type of all numbers
         period: time from one step to the next [s]; 0 if the time does not matter
@@ -58,6 +63,7 @@ class Firmware:
     header: Path
     declarations: Path
     source: Path
+    example: Path
     inputs: tuple[str, ...]
     state: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -82,7 +88,7 @@ def firmware(
 
     Args:
         drive: the drive, a set with one, or for a law of the gear the gear alone
-        folder: where `<name>.hpp`, `<name>.h` and `<name>.cpp` are written; made if it does not exist
+        folder: where `<name>.hpp`, `<name>.h`, `<name>.cpp` and the example `<name>_main.c` are written; made if there is none
         part: "control", the sampled controller with its compensation; "drive", motor, gear, load and controller by the steps of
             `sw.simulate`; or a law of the gear: "gear.friction_input", "gear.friction_mesh", "gear.friction_output",
             "gear.stiffness", "gear.hysteresis", "gear.kinematic_error" or "gear.kinematic_noise"
@@ -106,23 +112,24 @@ def firmware(
     ...     firmware(drive, folder).state[:4], firmware(drive, folder, part="gear.stiffness").outputs
     (('law_speed_integral', 'actuation', 'pending', 'until_sample'), ('torque', 'tangent'))
     """
-    found = step(_drive_with(drive, part), part, period)
+    found = step(drive_with(drive, part), part, period)
     name = {"control": "controller"}.get(part, part.rpartition(".")[2]) if name is None else name
     checked_name(name, "C", reserved=RESERVED)
     arguments.one_of("scalar", scalar, SCALARS)
     if scalar == "float":
         _check_range(found.model)
     folder = Path(folder)
-    origins = comment_of(drive.origins, "// ") if isinstance(drive, GearSet) else ""
-    texts: dict[Path, str | bytes] = {folder / file: origins + text for file, text in source.texts(found, name, scalar).items()}
+    about = comment_of(_provenance(drive), "// ")
+    texts: dict[Path, str | bytes] = {folder / file: about + text for file, text in source.texts(found, name, scalar).items()}
     with ExitStack() as stack:
         stack.enter_context(making(folder))
         write_all(texts)
-    header, declarations, own_source = texts
+    header, declarations, own_source, example = texts
     return Firmware(
         header,
         declarations,
         own_source,
+        example,
         tuple(_elements(found.inputs)),
         tuple(_elements(found.state)),
         tuple(_elements(found.outputs)),
@@ -131,7 +138,17 @@ def firmware(
     )
 
 
-def _drive_with(model: Drive | GearSet | Gear, part: str) -> Drive:
+def _provenance(model: Drive | GearSet | Gear) -> list[str]:
+    """Return lines that state what a file was written of, when and by what, and which numbers were identified."""
+    made = f"Written on {datetime.now(UTC):%Y-%m-%d} by strainwave {metadata.version('strainwave')} (Apache-2.0)"
+    if not isinstance(model, GearSet):
+        return [f"{made} of a {'gear' if isinstance(model, Gear) else 'drive'} made in Python"]
+    digest = sha256(gear_file.text(model).encode()).hexdigest()
+    lines = [f"{made} of {model.name}", f"sha256 of its gear.toml, as strainwave writes it: {digest}"]
+    return [*lines, *([f"numbers of {model.name}", *model.origins] if model.origins else [])]
+
+
+def drive_with(model: Drive | GearSet | Gear, part: str) -> Drive:
     """Return the drive that a part is of; of a gear alone, a drive that has it."""
     if isinstance(part, str) and part.startswith("gear."):
         gear = model.gear if isinstance(model, GearSet) else model
@@ -152,4 +169,4 @@ def _elements(members: Iterable[Member]) -> Iterable[str]:
         yield from (f"{each.name}[{i}]" for i in range(len(each.start))) if each.is_array else [each.name]
 
 
-FIRMWARE = Form(firmware, "a microcontroller", "one C++ header and an interface in C", "firmware.md")
+FIRMWARE = Form(firmware, "a microcontroller", "one C++ header, an interface in C and an example", "firmware.md")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from importlib import metadata
 
 from strainwave.export import cplusplus
 from strainwave.export.firmware.step import Member, StepFunction
+from strainwave.export.internal_step import DEFAULT_STEP
 from strainwave.native.static_type import short_name, static_type
 
 FLAGS = "-std=c++20 -O2 -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti"
@@ -14,13 +14,18 @@ OWN_HEADERS = ("strainwave/compiled.hpp", "strainwave/field.hpp")
 
 
 def texts(step: StepFunction, name: str, scalar: str) -> dict[str, str]:
-    """Return the three files of a step by name."""
-    return {f"{name}.hpp": _cplusplus(step, name, scalar), f"{name}.h": _c(step, name, scalar), f"{name}.cpp": _joint(name)}
+    """Return the files of a step by name."""
+    return {
+        f"{name}.hpp": _cplusplus(step, name, scalar),
+        f"{name}.h": _c(step, name, scalar),
+        f"{name}.cpp": _joint(name),
+        f"{name}_main.c": _example(step, name, scalar),
+    }
 
 
 def _about(step: StepFunction) -> str:
     model = f"{step.words}: {short_name(step.model)}" if step.words.startswith("a law") else step.words
-    return f"{model}{_every(step)}.\n   Written by strainwave {metadata.version('strainwave')} (Apache-2.0)"
+    return f"{model}{_every(step)}"
 
 
 def _every(step: StepFunction) -> str:
@@ -66,6 +71,54 @@ void {name}_start({name}_state* state);
 """
 
 
+def _example(step: StepFunction, name: str, scalar: str) -> str:
+    """Return a program in C that calls the step from the system timer of a Cortex-M."""
+    values = "".join(f"        .{each.name} = ({scalar}){each.start[0]!r}, /* {each.unit or '-'} */\n" for each in step.inputs)
+    every = step.period or DEFAULT_STEP
+    return f"""/* An example: {name}_step in the interrupt of the system timer of a Cortex-M, every {every!r} s.
+   Replace `read_inputs`, `apply` and CORE_CLOCK by those of the board. The order of the calls: {name}_start once, before the
+   timer runs; then, in each interrupt, the inputs of this instant, {name}_step, and its outputs at once.
+
+       arm-none-eabi-gcc -std=c99 -O2 -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -c {name}_main.c */
+#include "{name}.h"
+
+#define CORE_CLOCK 168000000u /* Hz */
+#define PERIOD {every!r} /* s */
+#define TIMER_CONTROL (*(volatile unsigned long*)0xE000E010)
+#define TIMER_RELOAD (*(volatile unsigned long*)0xE000E014)
+#define TIMER_VALUE (*(volatile unsigned long*)0xE000E018)
+#define FLOATING_POINT_ACCESS (*(volatile unsigned long*)0xE000ED88)
+
+static {name}_state state; /* one for each motor */
+static volatile {name}_outputs latest;
+
+static {name}_inputs read_inputs(void) {{
+    const {name}_inputs in = {{
+{values}    }};
+    return in;
+}}
+
+static void apply(const {name}_outputs* out) {{ latest = *out; }}
+
+void SysTick_Handler(void);
+void SysTick_Handler(void) {{
+    const {name}_inputs in = read_inputs();
+    const {name}_outputs out = {name}_step(&state, &in);
+    apply(&out);
+}}
+
+int main(void) {{
+    FLOATING_POINT_ACCESS |= 0xFul << 20; /* before any number with a point */
+    {name}_start(&state);
+    TIMER_RELOAD = (unsigned long)(CORE_CLOCK * PERIOD) - 1u;
+    TIMER_VALUE = 0u;
+    TIMER_CONTROL = 7u; /* on, with interrupts, by the clock of the core */
+    for (;;) {{
+    }}
+}}
+"""
+
+
 def _joint(name: str) -> str:
     """Return the source that gives the functions of C++ to C."""
     return f"""// The functions of {name}.h.
@@ -100,11 +153,18 @@ def _cplusplus(step: StepFunction, name: str, scalar: str) -> str:
 
 #define strainwave {name}_strainwave  // so that a program may contain several such headers
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"        // counts of teeth become S
+#pragma GCC diagnostic ignored "-Wfloat-conversion"  // defaults in double are rounded to S once, by the compiler
+#pragma GCC diagnostic ignored "-Wsign-conversion"   // places in arrays of a fixed length are int
+
 namespace strainwave::std {{
 
 {cplusplus.own_text("mathematics.hpp")}
 }}  // namespace strainwave::std
 {package}
+#pragma GCC diagnostic pop
+
 namespace {name} {{
 
 using S = {scalar};

@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from strainwave import Drive, _core, arguments
+from strainwave.export.command_mode import Command, command_mode
 from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.fmu.comparison import difference_to_simulation
 from strainwave.export.fmu.description import Description, build_description, model_description, terminals
@@ -67,6 +68,7 @@ def fmu(
     version: int = 2,
     platforms: Iterable[str] | None = None,
     model_exchange: bool = False,
+    command: Command | None = None,
     step: float | None = None,
     name: str | None = None,
 ) -> Exported:
@@ -83,6 +85,8 @@ def fmu(
             needs no compiler. Platforms other than this machine need the extra `compiler`
         model_exchange: the solver of the tool moves the drive. Co-simulation is recommended: it is faster, and has the steps of
             the simulation
+        command: of co-simulation, as long as its rate is 0 or not connected: "held" within a communication step, as a
+            staircase, or "followed": it goes on at the rate of the last step; by default followed if it is an angle or a speed
         step: internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         name: of the model and the file; by default that of the gear set
 
@@ -109,7 +113,8 @@ def fmu(
     found, states = variables(drive, step), state_variables(drive) if model_exchange else []
     if model_exchange and load_input(drive) == "output_angle":
         raise ValueError("model exchange needs an output shaft that torques move; the load of this drive prescribes its motion")
-    files, token = sources(drive, found, version, model_exchange)
+    mode = command_mode(drive, command)
+    files, token = sources(drive, found, version, model_exchange, mode == "followed" and not model_exchange)
     identifier = re.sub(r"\W", "_", f"sw_{name}", flags=re.ASCII)
     about = Description(name, identifier, token, in_words(drive), step, found, states, model_exchange and has_events(drive))
     binaries, seconds = {}, {}
@@ -117,7 +122,8 @@ def fmu(
         began = time.perf_counter()
         binaries[each] = _binary(each, tuple(sorted(files.items())), version)
         seconds[each] = time.perf_counter() - began
-    content = _archive(about, files, binaries, version)
+    origins = model.origins if isinstance(model, GearSet) else []
+    content = _archive(about, origins, files, binaries, version)
     losses = []
     if not model_exchange and set(own_platform()) <= set(binaries):
         losses = difference_to_simulation(content, drive, found, version, step)
@@ -128,7 +134,7 @@ def fmu(
         {"internal_step": (step, "s")},
         tuple(losses),
         tuple(_left_out(drive, model_exchange)),
-        tuple(_remarks(about, binaries, seconds, len(content))),
+        tuple(_remarks(about, mode, binaries, seconds, len(content))),
     )
 
 
@@ -161,11 +167,14 @@ def _left_out(drive: Drive, model_exchange: bool) -> Iterable[str]:
         yield "counts and options of the models: they are constants of the FMU, as the models themselves are"
 
 
-def _remarks(about: Description, binaries: dict[str, bytes], seconds: dict[str, float], size: int) -> Iterable[str]:
+def _remarks(
+    about: Description, mode: Command, binaries: dict[str, bytes], seconds: dict[str, float], size: int
+) -> Iterable[str]:
     if about.states:
         yield "the solver of the tool integrates the rates of sw.simulate; its tolerance determines the error"
     else:
         yield "the FMU steps the drive by the C++ code of sw.simulate"
+        yield f"the command is {mode} from step to step, unless command_rate is connected"
     yield f"{size / 1e3:.0f} kB; {_counted(about.variables)}"
     for each, content in binaries.items():
         yield f"binary for {each}: {len(content) / 1e3:.0f} kB, compiled in {seconds[each]:.1f} s"
@@ -215,12 +224,12 @@ def _compiler(name: str) -> tuple[Compiler, tuple[str, ...], tuple[str, ...]]:
     return compiler, flags, () if name.endswith("-windows") else ("-lm",)
 
 
-def _archive(about: Description, files: dict[str, str], binaries: dict[str, bytes], version: int) -> bytes:
+def _archive(about: Description, origins: list[str], files: dict[str, str], binaries: dict[str, bytes], version: int) -> bytes:
     """Return the bytes of the FMU, a zip archive."""
     contents: dict[str, str | bytes] = {"modelDescription.xml": model_description(about, version)}
     if version == 3:
         contents["terminalsAndIcons/terminalsAndIcons.xml"] = terminals(about)
-    contents["documentation/index.html"] = _documentation(about)
+    contents["documentation/index.html"] = _documentation(about, origins)
     contents |= {f"sources/{path}": text for path, text in sorted(files.items())}
     contents["sources/buildDescription.xml"] = build_description(about, version)
     for name, content in binaries.items():
@@ -233,13 +242,14 @@ def _archive(about: Description, files: dict[str, str], binaries: dict[str, byte
     return archive.getvalue()
 
 
-def _documentation(about: Description) -> str:
+def _documentation(about: Description, origins: list[str]) -> str:
     """Return the page that tools show of the FMU."""
     lines = "".join(
         f"<tr><td>{escape(each.name)}</td><td>{each.causality}</td><td>{escape(each.unit)}</td>"
         f"<td>{escape(each.description)}</td></tr>\n"
         for each in about.variables
     )
+    stated = "<h2>Origin of the numbers</h2>\n<pre>" + escape("\n".join(origins)) + "</pre>\n" if origins else ""
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{escape(about.name)}</title></head><body>
 <h1>{escape(about.name)}</h1>
@@ -248,7 +258,7 @@ Communication steps are cut into internal steps of at most {about.step!r} s.</p>
 <table>
 <tr><th>name</th><th>causality</th><th>unit</th><th>meaning</th></tr>
 {lines}</table>
-</body></html>
+{stated}</body></html>
 """
 
 

@@ -40,6 +40,8 @@ struct Content {
     double numbers[parameter_count];
     double inputs[input_count];
     double slopes[input_count / 2];  // of the inputs, in the next step only, as FMI 2 sets them
+    bool rate_is_given;              // whether the tool has set a rate of the command
+    double last_command, last_length;  // at the begin of the last step, and its length; 0 before the second
     double outputs[output_count];
     Input<double> acting;  // inputs at this instant
     Evaluation here;
@@ -105,6 +107,7 @@ public:
         if (is(reference, first_input, input_count)) {
             if (!finite(value)) return fail("%s = %g is no number", names[reference - first_input], value);
             content.inputs[reference - first_input] = value;
+            content.rate_is_given |= reference == first_input + 1 && value != 0.0;
         } else if (is(reference, first_parameter, parameter_count)) {
             const Parameter& parameter = parameters[reference - first_parameter];
             if (content.phase != Phase::instantiated && content.phase != Phase::initialising)
@@ -124,6 +127,7 @@ public:
         if (!is(reference, first_input, input_count) || (reference - first_input) % 2 != 0)
             return fail("the variable with value reference %u has no rate that can be set", unsigned(reference));
         content.slopes[(reference - first_input) / 2] = rate;
+        content.rate_is_given |= reference == first_input;
         return true;
     }
 
@@ -143,8 +147,12 @@ public:
 
     // A communication step of `length` [s].
     bool step(double time, double length) {
-        if (!(length >= 0.0 && finite(length))) return fail("the step of %g s must not be negative", length);
+        const double longest = strainwave::exported::max_count * max_step();
+        if (!(length >= 0.0 && length <= longest)) return fail("the step of %g s must lie within [0, %g] s", length, longest);
         content.time = time;
+        const double command = content.inputs[0];
+        const bool is_extrapolated = is_followed && !content.rate_is_given && content.last_length > 0.0;
+        if (is_extrapolated) content.inputs[1] = (command - content.last_command) / content.last_length;
         if (!content.has_begun) {
             if (!prepare()) return false;
         } else if (const Input<double> now = at(0.0); memcmp(&now, &content.acting, sizeof now) != 0) {
@@ -157,7 +165,12 @@ public:
         content.acting = at(length);
         const auto reached = strainwave::flattened<double>(content.acting);
         for (int i = 0; i < input_count; i += 2) content.inputs[i] = reached[i];
+        if (is_extrapolated) content.inputs[0] = command;  // until the tool sets another one
         for (double& slope : content.slopes) slope = 0.0;
+        if (length > 0.0) {
+            content.last_command = command;
+            content.last_length = length;
+        }
         content.time = time + length;
         return show("diverged");
     }
@@ -273,6 +286,7 @@ public:
         if (content.numbers_changed && !make()) return false;
         content.numbers_changed = false;
         content.has_begun = true;
+        content.last_length = 0.0;
         content.time = time;
         content.acting = at(0.0);
         const State shape = drive.initial_state();

@@ -23,24 +23,24 @@ HEADERS_OF_VERSION = {
 DIGEST_LENGTH = 32  # hexadecimal digits of a token
 
 
-def sources(drive: Drive, found: list[Variable], version: int, exchanges: bool) -> tuple[dict[str, str], str]:
+def sources(drive: Drive, found: list[Variable], version: int, exchanges: bool, follows: bool) -> tuple[dict[str, str], str]:
     """Return the source files of the FMU of a drive by their names, and the token that ties a binary to its description.
 
     Raises:
         ImportError: the package fmpy, which contains the headers of FMI, is not installed
     """
     source = resources.files("strainwave.export.fmu").joinpath(f"fmi{version}.cpp").read_text("utf-8")
-    return drive_sources(drive, found, {f"fmi{version}.cpp": source, **_fmi_headers(version)}, exchanges)
+    return drive_sources(drive, found, {f"fmi{version}.cpp": source, **_fmi_headers(version)}, exchanges, follows)
 
 
 def drive_sources(
-    drive: Drive, found: list[Variable], others: Mapping[str, str], exchanges: bool = False
+    drive: Drive, found: list[Variable], others: Mapping[str, str], exchanges: bool = False, follows: bool = False
 ) -> tuple[dict[str, str], str]:
     """Return the sources that step a drive with the others that use them, by their names, and a token that depends on all."""
     model = resources.files("strainwave.export.fmu").joinpath("model.hpp").read_text("utf-8")
     shared = {name: cplusplus.own_text(name) for name in ("contradictions.hpp", "stretches.hpp")}
     files = {"model.hpp": model, **shared, **others, **cplusplus.closure([*cplusplus.headers_of(drive), *RUN_HEADERS])}
-    header = partial(_drive_header, drive, found, exchanges)
+    header = partial(_drive_header, drive, found, exchanges, follows)
     digest = sha256("\0".join([*files.values(), header("")]).encode()).hexdigest()[:DIGEST_LENGTH]
     token = f"{{{digest}}}"
     return {**files, "drive.hpp": header(token)}, token
@@ -56,7 +56,7 @@ def _fmi_headers(version: int) -> dict[str, str]:
     return {name: (folder / name).read_text("utf-8") for name in HEADERS_OF_VERSION[version]}
 
 
-def _drive_header(drive: Drive, found: list[Variable], exchanges: bool, token: str) -> str:
+def _drive_header(drive: Drive, found: list[Variable], exchanges: bool, follows: bool, token: str) -> str:
     """Return the header with the static type of a drive, its numbers and the names of its variables."""
     laws, shape, _ = _core.parts(drive)
     by_causality = {kind: [each for each in found if each.causality == kind] for kind in ("input", "output", "parameter")}
@@ -80,6 +80,7 @@ template <class S>
 using Drive = {static_type(drive)};
 
 inline constexpr bool exchanges = {str(exchanges).lower()};  // model exchange
+inline constexpr bool is_followed = {str(follows).lower()};  // the command: it goes on at the rate of the last step
 inline constexpr char token[] = {_text(token)};
 inline constexpr int laws[] = {{{_listed([*laws, 0])}}};    // one more than there are,
 inline constexpr int shape[] = {{{_listed([*shape, 0])}}};  // so that none is empty

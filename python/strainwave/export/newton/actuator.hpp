@@ -5,7 +5,7 @@
 
 #include "contradictions.hpp"
 #include "stretches.hpp"
-#include "drive.hpp"  // S, Drive, laws, shape, parameter_count, output_count, command_is; written for each drive
+#include "drive.hpp"  // S, Drive, laws, shape, parameter_count, output_count, command_is, is_followed; written for each drive
 
 namespace actuator {
 
@@ -46,7 +46,8 @@ inline void prepare(int i, const S* numbers, double* prepared, int* problems) {
     *reinterpret_cast<Prepared*>(prepared + i * prepared_words) = {model.compile(), *from.numbers};
 }
 
-// The motion of a joint from one instant to the next: Hermite's cubic. The command of the first goes on at its rate.
+// The motion of a joint from one instant to the next: Hermite's cubic. The command of the first goes on at its rate; a command that is
+// followed and has no rate moves to the next in a line.
 class Motion {
     Instant from;
     S temperature, span, begin, bend, turn;
@@ -127,13 +128,16 @@ inline void advance(int i, int count, const double* prepared, int prepared_count
     } else if (feedforward) {
         now.command = S(feedforward[driven]);
     }
-    const Input u{now.command, now.command_rate, now.position, now.speed, gear.temperature, S(0.0)};
     const bool has_begun = before[i] != S(0.0);
+    Instant last{before[count + i], before[2 * count + i], before[3 * count + i], before[4 * count + i]};
+    S rate = now.command_rate;
+    if (has_begun && is_followed && last.command_rate == S(0.0) && rate == S(0.0))
+        last.command_rate = rate = (now.command - last.command) / S(dt);
+    const Input u{now.command, rate, now.position, now.speed, gear.temperature, S(0.0)};
     Evaluation here{};
     if (has_begun) {
         strainwave::Flat<S, State> numbers{};
         for (int k = 0; k < memory_count - first_state; ++k) numbers[k] = before[(first_state + k) * count + i];
-        const Instant last{before[count + i], before[2 * count + i], before[3 * count + i], before[4 * count + i]};
         const State x = strainwave::refilled(gear.drive.initial_state(), numbers);
         here = moved(gear.drive, x, Motion(last, now, S(dt), gear.temperature), S(dt), S(max_step));
         here = gear.drive.evaluate(here.state, u);

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, loads, meter
+from strainwave.export.command_mode import Command, command_mode
 from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.internal_step import internal_step
 from strainwave.export.newton import source
@@ -51,6 +52,7 @@ def newton(
     drive: Drive | GearSet,
     *,
     scalar: Scalar = "double",
+    command: Command | None = None,
     step: float | None = None,
     draws: int = 0,
     seed: int = 0,
@@ -66,6 +68,8 @@ def newton(
     Args:
         drive: a drive, or a gear set with one
         scalar: type of the numbers: "double", or "float" for GPUs that are slow with doubles
+        command: while the target speed is 0: "held" from call to call, as a staircase, or "followed": it moves in a line; by
+            default followed if it is an angle or a speed
         step: largest internal step [s]; by default 0.2 ms, or shorter where the drive needs that
         draws: number of gears that are drawn from what is known of the numbers of a gear set, for domain randomisation
         seed: of the draw
@@ -100,7 +104,8 @@ def newton(
         "outputs": {each.name: each.unit for each in shown},
         "parameters": dict(_parameters(drive)),
     }
-    text = source.source(drive, scalar, signals.command_unit(drive), len(shown))
+    mode = command_mode(drive, command)
+    text = source.source(drive, scalar, signals.command_unit(drive), len(shown), mode == "followed")
     files: dict[str, str | bytes] = {
         "__init__.py": source.OWN.joinpath("runtime.py").read_text("utf-8"),
         "drive.hpp": text,
@@ -120,13 +125,13 @@ def newton(
         {"internal_step": (step, "s")},
         tuple(losses),
         ("the load of the drive, and what it measures of energies: the joint and its link are the load",),
-        tuple(_remarks(about, files, installed)),
+        tuple(_remarks(about, mode, files, installed)),
     )
 
 
-def _remarks(about: dict[str, Any], files: dict[str, str | bytes], installed: bool) -> Iterator[str]:
+def _remarks(about: dict[str, Any], mode: Command, files: dict[str, str | bytes], installed: bool) -> Iterator[str]:
     target = {"position": "joint_target_q, with joint_target_qd as its rate", "speed": "joint_target_qd"}
-    yield f"the command [{about['command_unit']}] is {target.get(about['command'], 'joint_act')}"
+    yield f"the command [{about['command_unit']}] is {target.get(about['command'], 'joint_act')}; without a rate it is {mode}"
     yield f"{len(about['parameters'])} numbers, each settable for each gear; {len(about['outputs'])} outputs"
     yield f"drive.ptx: for GPUs, {len(files['drive.ptx']) / 1e6:.1f} MB" if "drive.ptx" in files else "for CPUs only"
     if not installed:

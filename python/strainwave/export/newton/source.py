@@ -20,7 +20,7 @@ CUDA_ARCHITECTURE = "compute_75"  # virtual, of Turing and later; a driver compi
 MAX_REMEMBERED_TEXTS = 8  # texts of PTX, of some MB each
 
 
-def source(drive: Drive, scalar: str, command: str, outputs: int) -> str:
+def source(drive: Drive, scalar: str, command: str, outputs: int, follows: bool) -> str:
     """Return the code of an actuator as one text that includes nothing.
 
     Args:
@@ -28,13 +28,14 @@ def source(drive: Drive, scalar: str, command: str, outputs: int) -> str:
         scalar: "float" or "double"
         command: unit of its command
         outputs: number of outputs
+        follows: whether a command without a rate moves in a line from call to call; else it is held
     """
-    texts = {"drive.hpp": _drive_header(drive, scalar, command, outputs)}
+    texts = {"drive.hpp": _drive_header(drive, scalar, command, outputs, follows)}
     texts |= {name: OWN.joinpath(name).read_text("utf-8") for name in ("actuator.hpp", "standard.hpp")}
     return cplusplus.amalgamated(["standard.hpp", "actuator.hpp"], texts)
 
 
-def _drive_header(drive: Drive, scalar: str, command: str, outputs: int) -> str:
+def _drive_header(drive: Drive, scalar: str, command: str, outputs: int, follows: bool) -> str:
     """Return the header with the static type of a drive."""
     laws, shape, _ = _core.parts(drive)
     includes = "".join(f"#include <{each}>\n" for each in cplusplus.headers_of(drive))
@@ -54,6 +55,7 @@ inline constexpr int parameter_count = {len(_core.parameters(drive))}, output_co
 
 enum class CommandIs {{ position, speed, feedforward }};
 inline constexpr CommandIs command_is = CommandIs::{TARGETS_BY_UNIT.get(command, "feedforward")};
+inline constexpr bool is_followed = {str(follows).lower()};
 
 }}  // namespace actuator
 """

@@ -14,8 +14,9 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT, slope_of
-from strainwave.identification.candidates.plain import held_out_residuals, moving
+from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_error, moving
 from strainwave.identification.candidates.ripple import by_full_band
+from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.held_out import HeldOut
@@ -26,7 +27,6 @@ Array = NDArray[np.float64]
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
 OF_ALL_LAWS = (f"{INPUT}coulomb", f"{INPUT}viscous")  # numbers of friction that mean the same in each law
-FAST_QUANTILE = 0.95  # of the size of the speed, at which laws of friction have their slopes
 MAX_REFITS = 6  # further models that are fitted to all but the last stretch if the best one is not confirmed
 
 
@@ -43,7 +43,7 @@ def confirmed(
     """
     last, tried = best.folds[-1].stretch, []
     logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
-    plain = min(float(np.sqrt(np.mean(held_out_residuals(log, drive, [last])[0] ** 2))) for log in logs)
+    plain = min(held_out_error(log, drive, last) for log in logs)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
@@ -89,16 +89,20 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
     """Return the standard deviations of the numbers of a fit by how they move without each block of the motion, by path.
 
     The jackknife (Quenouille1956, Tukey1958) over contiguous blocks: it takes no model of the noise, and sees what differs from
-    one part of a record to another. Numbers at a limit have none.
+    one part of a record to another. A law that has no number of its own for low speed need not hold there: how far numbers move
+    without the slow samples is part of their spread. Numbers at a limit have none.
     """
     problem, x = solved_problem(best.fit)
-    rows = np.arange(len(best.log.motion.rows))
+    rows, speed = np.arange(len(best.log.motion.rows)), np.abs(best.log.motion.speed)
     blocks = [(rows >= each[0]) & (rows <= each[-1]) for each in np.array_split(rows, JACKKNIFE_BLOCKS)]
-    without = np.array(list(without_rows(problem, x, blocks, ()))).T
-    numbers = {plain(each.path): values for each, values in zip(problem.plan.unknowns, without, strict=False)}
+    slow = speed[best.log.motion.rows] < MIN_SLIDING_SPEED * np.quantile(speed, FAST_QUANTILE)
+    if best.model.path_of("stribeck_speed") in best.model.free:
+        slow[:] = False
+    values = np.array([x, *without_rows(problem, x, [slow, *blocks], ())]).T
+    numbers = {plain(each.path): own for each, own in zip(problem.plan.unknowns, values, strict=False)}
     return {
-        path: float(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(values)))
-        for path, values in with_sum(numbers, best.model.one_speed).items()
+        path: float(np.hypot(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(own[2:])), own[1] - own[0]))
+        for path, own in with_sum(numbers, best.model.one_speed).items()
     }
 
 

@@ -161,7 +161,7 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
         _warn(table, trusted, best)
         found = [_on_all(each, table, trusted) for each in found]
     found[0] = _widened_by_choice(*found)
-    return [replace(each, fit=_written(each, gear, known)) for each in found]
+    return [replace(each, fit=written(each, gear, table)) for each in found]
 
 
 def innermost(law: Any) -> Any:
@@ -327,8 +327,9 @@ def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
     return chance_of_gain(float(np.sum(before**2)), float(np.sum(left**2)), more, len(left) - unknowns)
 
 
-def _written(candidate: FrictionCandidate, gear: Gear, known: Plain) -> Fit:
-    """Return the fit with the law as the gear shall have it."""
+def written(candidate: FrictionCandidate, gear: Gear, table: FrictionTable) -> Fit:
+    """Return the fit with the law as the gear shall have it: with its bristles, and its ratio of breakaway without a fall."""
+    known = _known(gear.friction_input, table)
     fell = any(estimate.path.endswith("breakaway") for estimate in candidate.fit.estimates)
     with warnings.catch_warnings(action="ignore", category=PassivityWarning):
         law, mesh = _kept(candidate.law, known, fell), _completed(candidate.fit)

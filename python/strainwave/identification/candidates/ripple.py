@@ -20,7 +20,7 @@ from strainwave.identification.experiments.motion_log import MotionLog, per_torq
 from strainwave.identification.fitting.fit import problem_of
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.linear_fit import linear_fit, solved
-from strainwave.statistics.residuals import autoregression, chance_of_gain, correlation_length
+from strainwave.statistics.residuals import autoregression, chance_of_gain, correlation_length, whitened
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -105,7 +105,7 @@ def _bias_in_full_band(path: str, value: float) -> float:
 
 def is_one_wave(log: MotionLog) -> bool:
     """True if a log moves so little in one of both directions that a detent makes up friction over the angle of its order."""
-    return 2.0 * np.sqrt(log.share_of_rarer_way * (1.0 - log.share_of_rarer_way)) < MIN_OWN_SHARE
+    return bool(2.0 * np.sqrt(log.share_of_rarer_way * (1.0 - log.share_of_rarer_way)) < MIN_OWN_SHARE)
 
 
 def sizes_of_waves(model: MotionModel) -> dict[Wave, float]:
@@ -152,10 +152,8 @@ def _whitened(columns: Array, left: Array) -> Array:
 
     Slow errors of a model then hide no fast wave.
     """
-    from scipy import signal
-
     noise = autoregression(left - columns @ solved(columns, left))
-    return np.asarray(signal.lfilter(noise, [1.0], np.column_stack([columns, left]), axis=0))
+    return whitened(np.column_stack([columns, left]), noise)
 
 
 def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> dict[Wave, complex]:

@@ -34,6 +34,7 @@ class Warming:
         reference_temperature: T0, mean of the samples in motion [K]
         samples: count of those in motion
         together: length of the blocks of samples that the intervals rest on
+        one_way: True if all motion is of one direction: then a weight and an offset of the effort are in F0
     """
 
     friction: Estimate
@@ -42,6 +43,7 @@ class Warming:
     reference_temperature: float
     samples: int
     together: int
+    one_way: bool = False
 
 
 def friction_over_temperature(recording: Recording, effort: str = "current", *, slowest: float | None = None) -> Warming:
@@ -51,7 +53,8 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     T - T0. Other torques, as that of the inertia, count as noise. Such noise correlates over a movement and longer: the
     variance is that of sums over blocks of neighbouring samples (LiangZeger1986), the largest of several lengths of block.
 
-    A log of one warm-up does not separate temperature from other changes in the same time, as wear-in or another task.
+    A log of one warm-up does not separate temperature from other changes in the same time, as wear-in or another task. A
+    motion of one direction does not separate the friction from a weight or an offset: its slope alone is that of the friction.
 
     Args:
         recording: columns speed, temperature and the effort, in the order of time
@@ -59,7 +62,7 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
         slowest: speed from which on the axis surely moves [rad/s]; a twentieth of the largest if not given
 
     Raises:
-        ValueError: a temperature that hardly changes, a motion of one direction only, too few samples, or no friction
+        ValueError: a temperature that hardly changes, too few samples in motion, or no friction
     """
     check_recording("recording", recording)
     speed, temperature = sensible(recording, "speed", "rad/s"), recording.values("temperature", "K")
@@ -70,11 +73,8 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
         else arguments.number("slowest", slowest, "rad/s", low=0.0)
     )
     moving = np.abs(speed) > least
-    if moving.sum() < MIN_BLOCKS * BLOCK_LENGTHS[0] or not (np.any(speed[moving] > 0.0) and np.any(speed[moving] < 0.0)):
-        raise ValueError(
-            f"only {moving.sum()} samples move faster than {least:.3g} rad/s, or all of them one way: friction is what turns "
-            "round with the motion, so record more of a motion to and fro"
-        )
+    if moving.sum() < MIN_BLOCKS * BLOCK_LENGTHS[0]:
+        raise ValueError(f"only {moving.sum()} samples move faster than {least:.3g} rad/s: record more of the motion")
     force, way, temperature = force[moving], np.sign(speed[moving]), temperature[moving]
     if np.ptp(temperature) < MIN_TEMPERATURE_SPAN:
         raise ValueError(
@@ -83,24 +83,27 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
         )
     middle = float(np.mean(temperature))
     warmer = temperature - middle
-    jacobian = np.stack([np.ones_like(way), warmer, way, way * warmer], axis=1)
+    one_way = bool(np.ptp(way) == 0.0)
+    of_load = [] if one_way else [np.ones_like(way), warmer]
+    jacobian = np.stack([*of_load, way, way * warmer], axis=1)
     found = solved(jacobian, force)
     scores = jacobian * (force - jacobian @ found)[:, np.newaxis]
     inverse = normal_inverse(jacobian)
     covariances = [
         (length, _clustered(scores, inverse, length)) for length in BLOCK_LENGTHS if len(force) // length >= MIN_BLOCKS
     ]
-    length, covariance = max(covariances, key=lambda each: each[1][3, 3])
+    length, covariance = max(covariances, key=lambda each: each[1][-1, -1])
     freedom = len(force) / length - len(found)
     wider = student(ONE_SIGMA, freedom)
-    level, slope = float(found[2]), float(found[3])
+    level, slope = found[-2:].tolist()
     if level == 0.0:
         raise ValueError(
             f"no part of {effort} turns round with the motion: it shows no friction; give the current or torque of "
             "the motor that moves the axis"
         )
     of_fall = np.array([slope / level**2, -1.0 / level])
-    sigmas = [np.sqrt(covariance[2, 2]), np.sqrt(covariance[3, 3]), np.sqrt(of_fall @ covariance[2:, 2:] @ of_fall)]
+    covariance = covariance[-2:, -2:]
+    sigmas = [np.sqrt(covariance[0, 0]), np.sqrt(covariance[1, 1]), np.sqrt(of_fall @ covariance @ of_fall)]
     numbers: Sequence[tuple[str, str, float]] = (
         ("friction", unit, level), ("slope", f"{unit}/K", slope), ("dry_fall", "1/K", -slope / level)
     )  # fmt: skip
@@ -108,7 +111,7 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
         Estimate(name, of, 0.0, value, wider * float(sigma), False, freedom)
         for (name, of, value), sigma in zip(numbers, sigmas, strict=True)
     )
-    return Warming(of_level, of_slope, of_both, middle, int(moving.sum()), length)
+    return Warming(of_level, of_slope, of_both, middle, int(moving.sum()), length, one_way)
 
 
 def _clustered(scores: Array, inverse: Array, length: int) -> Array:

@@ -118,6 +118,11 @@ class DrivenLog(ComparedByFields):
         begin = VIBRATION_TIME if moving and PLACES.isdisjoint(initial or {}) else 0.0
         end = moved.command.duration - END_PERIODS / smoothed.cutoff
         rows = np.flatnonzero((time >= begin) & (time <= end))
+        if len(rows) == 0:
+            raise ValueError(
+                f"{MAX_STEPS} steps of {step:.2g} s end before {begin + END_PERIODS / smoothed.cutoff:.2g} s, from where the "
+                "log can be compared: see whether inertia and stiffness of the drive are right"
+            )
         rows = rows[:: max(1, -(-len(rows) // MAX_COMPARED))]
         measured = np.stack([sensible(recording, name, CHANNEL_UNITS[name])[rows] for name in chosen])
         held_back: Scenario | float = 0.0

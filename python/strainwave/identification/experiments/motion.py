@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.statistics.spectrum import bandwidth, mean_power
 
 Array = NDArray[np.float64]
 
@@ -200,15 +201,24 @@ def motion_of(
 
 
 def _low_passed(series: Array, cutoff: float, step: float) -> Array:
-    """Return a series through a filter of Butterworth, fourth order, forward and backward; its cut-off is in Hz."""
-    from scipy import signal
+    """Return a series through a Butterworth filter of fourth order, forward and backward; its cut-off is in Hz.
 
-    return np.asarray(signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), series))
+    The line through both ends passes. What is left is zero there, and continued as an odd function.
+    """
+    line = np.linspace(series[0], series[-1], len(series))
+    odd = np.concatenate([series - line, (line - series)[-2:0:-1]])
+    gain = 1.0 / (1.0 + (np.tan(np.pi * np.fft.rfftfreq(len(odd))) / np.tan(np.pi * cutoff * step)) ** 8)
+    return line + np.fft.irfft(np.fft.rfft(odd) * gain, len(odd))[: len(series)]
 
 
 def _every(cutoff: float, step: float) -> int:
     """Return the samples for each that is compared: at twice the pass band residuals of noise are white."""
     return max(1, round(1.0 / (step * 2.0 * PASS_BAND_SHARE * cutoff)))
+
+
+def integrated(rate: Array, time: Array) -> Array:
+    """Return the integral of a rate from its first instant on by trapezoids, shape (n,)."""
+    return np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time)))
 
 
 def _rate(series: Array, step: float) -> Array:
@@ -260,9 +270,9 @@ def spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
         frequency [Hz]; spectral density of the acceleration, and its part due to the noise [rad2/s4/Hz], all of shape
         (n,); standard deviation of the noise of the position [rad]
     """
-    from scipy import signal
-
-    frequency, speed = signal.welch(np.diff(position) / step, 1 / step, nperseg=len(position) // 8)
+    samples = len(position) // 8
+    frequency, power = mean_power(np.diff(position) / step, samples)
+    frequency, speed = frequency / step, power * step / bandwidth(samples)
     gain = (2 * np.sin(np.pi * frequency * step) / step) ** 2
     upper = frequency > 0.25 / step
     density = float(np.median(speed[upper] / gain[upper]))

@@ -38,6 +38,7 @@ ROUGH_TOLERANCE = 1e-3  # likewise, of the passes that determine the weights of 
 REFIT_TOLERANCE = 1e-6  # likewise, of fits to changed data or with a parameter held
 MAX_ROUGH_PASSES = 4  # of one step each, after the first
 MAX_PASSES = 5  # exact ones
+MAX_START_SIGMA = 3.0  # standard deviations of a prior: an unknown that ended farther off starts at the prior
 MAX_WEIGHT_CHANGE = 0.2  # relative, of a pass after which no other one follows
 MAX_SYMMETRIC_SIGMA = 0.2  # standard deviation over the distance to a limit; with a larger one the interval is not symmetric
 OF_GEAR = (FrictionTable, TorsionLoop)  # experiments on a gear, also if the model is a drive
@@ -361,19 +362,26 @@ def solved_problem(found: Fit) -> tuple[Problem, Array]:
     if not isinstance(found, Fit):
         raise TypeError(f"found must be a Fit, which sw.fit returns, not {shortened(found)}")
     experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
-    problem = problem_of(found.plan, found.model, experiments, masks, found.loss)
+    problem = problem_of(found.plan, found.parts[0].model, experiments, masks, found.loss)
     known, tied = len(found.plan.unknowns), len(found.plan.tied)
     values = [each.value for each in found.estimates]
     return problem, np.array(values[:known] + values[known + tied :])
 
 
 def with_priors(found: Fit, priors: Mapping[str, tuple[float, float]]) -> Fit:
-    """Return a fit with further priors of its unknowns: value and standard deviation, by path."""
+    """Return a fit with further priors of its unknowns: value and standard deviation, by path.
+
+    It starts where the fit ended. An unknown that ended far from its prior starts there: of one near a limit no step returns.
+    """
     places = {each.path: place for place, each in enumerate(found.plan.unknowns)}
     more = [Prior(places[path], 1.0, *prior) for path, prior in priors.items()]
     asked = replace(found.plan, priors=(*found.plan.priors, *more))
     experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
-    return solved_from(problem_of(asked, found.model, experiments, masks, found.loss), solved_problem(found)[1])
+    _, x = solved_problem(found)
+    for each in more:
+        if abs(x[each.unknown] - each.value) > MAX_START_SIGMA * each.sigma:
+            x[each.unknown] = each.value
+    return solved_from(problem_of(asked, found.parts[0].model, experiments, masks, found.loss), x)
 
 
 def problem_of(

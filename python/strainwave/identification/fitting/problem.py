@@ -14,7 +14,7 @@ from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
-from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
+from strainwave.identification.fitting.unknowns import LIMIT_TOLERANCE, OF_RECORD, FitParameters, ParameterLink
 from strainwave.identification.fitting.waves import Waves
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.linear_fit import solved
@@ -25,6 +25,8 @@ FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
 MIN_NOISE = 1e-12  # of the size of a channel: no measurement has less noise
 MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost smaller; one with less is the last
 MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
+MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
+MAX_DISTANCE = 1e-3  # likewise, of the size of an unknown before the fit: the data may show nothing of it
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 
 
@@ -319,14 +321,30 @@ class Problem:
                     max_nfev=trials,
                 )
             except _SettledError as settled:
-                return self._ended(with_free(settled.part), held)
-        return self._ended(with_free(np.asarray(solution.x)), held)
+                return self._ended(with_free(settled.part), whole, held, weights)
+        return self._ended(with_free(np.asarray(solution.x)), whole, held, weights)
 
-    def _ended(self, x: Array, held: Sequence[int]) -> Array:
-        """Return unknowns without the rounding by which solvers stop short of a limit."""
-        for place, unknown in enumerate(self.plan.unknowns):
-            x[place] = x[place] if place in held else unknown.ended(float(x[place]))
+    def _ended(self, x: Array, start: Array, held: Sequence[int], weights: Sequence[Weights]) -> Array:
+        """Return unknowns without rounding: beside a limit that the data do not tell from it, or of one that nothing shows."""
+        rows = np.concatenate((self.jacobian(x, weights), self.prior_rows()[0]))
+        for place, (unknown, shown) in enumerate(zip(self.plan.unknowns, np.linalg.norm(rows, axis=0), strict=False)):
+            largest = MAX_DISTANCE * abs(unknown.before) if unknown.before else np.inf
+            change = min(MIN_DISTANCE_SIGMA / shown, largest) if shown > 0.0 else 0.0
+            value = unknown.ended(float(x[place]), change) if shown > 0.0 else start[place]
+            if place not in held and value != x[place]:
+                x[place] = value
+                if not self._is_valid(x):  # a law may exclude the limit of its number, for the sake of another one
+                    x[place] = LIMIT_TOLERANCE * abs(unknown.before)
         return x
+
+    def _is_valid(self, x: Array) -> bool:
+        """True if the laws of all records allow unknowns."""
+        try:
+            for record in self.records:
+                record.model(x)
+        except ValueError:
+            return False
+        return True
 
     def cost(self, x: Array, weights: Sequence[Weights]) -> float:
         """Return twice the objective of a fit: costs of the samples, of which the independent ones count, and of priors."""

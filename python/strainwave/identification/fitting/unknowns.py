@@ -40,14 +40,25 @@ class Unknown:
         """Initial value of a fit: that of the model, moved into the limits."""
         return min(max(self.before, self.low), self.high)
 
-    def at_limit(self, value: float) -> bool:
-        """True if a fit ended at a limit: solvers stop short of it, by far less than the size of the parameter."""
-        near = [LIMIT_TOLERANCE * max(abs(end), abs(self.before)) if isfinite(end) else 0.0 for end in (self.low, self.high)]
+    def at_limit(self, value: float, change: float = 0.0) -> bool:
+        """True if a fit ended at a limit: solvers stop short of it, by far less than the size of the parameter.
+
+        Args:
+            value: where it ended
+            change: of the value, that the data do not show
+        """
+        near = [
+            max(LIMIT_TOLERANCE * max(abs(end), abs(self.before)), change) if isfinite(end) else 0.0
+            for end in (self.low, self.high)
+        ]
         return value <= self.low + near[0] or value >= self.high - near[1]
 
-    def ended(self, value: float) -> float:
-        """Return the value of a fit that ended here: at a limit that limit, or as little from one that is no value."""
-        if not self.at_limit(value):
+    def ended(self, value: float, change: float = 0.0) -> float:
+        """Return the value of a fit that ended here: at a limit that limit, or as little from one that is no value.
+
+        Arguments as of `at_limit`.
+        """
+        if not self.at_limit(value, change):
             return value
         if abs(value - self.low) > abs(value - self.high):
             return self.high

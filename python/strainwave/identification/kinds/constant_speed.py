@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,17 +14,20 @@ from strainwave.identification.kinds import constant_speed_runs
 from strainwave.identification.kinds.constant_speed_runs import ConstantSpeedRun, Together, is_one_speed, run_of
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
+from strainwave.identification.kinds.warm_up import warmed
+from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, measured
-from strainwave.identification.reading.sides import UndecidedError, pair
+from strainwave.identification.reading.sides import pair
 from strainwave.identification.results.determined import MIN_SPEEDS
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.ratio import with_ratio
 from strainwave.messages import listed
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
 MIN_ROWS = 20  # of a record at one speed: fewer are a table
 
@@ -38,14 +42,12 @@ class ConstantSpeed(Kind):
         """True for a torque or current alone, with an angle, or with one speed.
 
         Raises:
-            UndecidedError: an angle goes to and fro under a current, as before it slides or in a log
+            QuestionError: an angle goes to and fro under a current, as before it slides or in a log
         """
         efforts, angles, speeds = (measured(columns, *each) for each in (("torque", "current"), ("angle",), ("speed",)))
         if efforts and angles and not measured(columns, "torque") and turning_points(angles[0].si):
-            raise UndecidedError(
-                f"{pair(angles[0], efforts[0])} go to and fro without time: friction before it slides, with "
-                "--kind presliding, or samples of a log if their rate is known, with --constant rate=HZ"
-            )
+            ways = [LOG_AT_RATE, Answer("friction before it slides", {"kind": "presliding"})]
+            raise QuestionError(f"{pair(angles[0], efforts[0])} go to and fro without time", ways)
         return bool(efforts) and (bool(angles) or not speeds or (len(speeds[0].si) > MIN_ROWS and is_one_speed(speeds[0].si)))
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
@@ -85,8 +87,14 @@ class ConstantSpeed(Kind):
         """Return the means of a file, which is a point of the table of all."""
         run = run_of(file, known)
         if run is None:
-            raise ValueError(_without_motion(file))
-        return constant_speed_runs.of_run(run), known
+            raise _without_motion(file)
+        result, warm = constant_speed_runs.of_run(run), warmed(file)
+        if warm is None:
+            return result, known
+        of_temperature, _ = warm
+        return replace(
+            result, remarks=(*of_temperature.remarks, *result.remarks), pictures=(*result.pictures, *of_temperature.pictures)
+        ), known
 
     def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
         """Fit the friction table of the means of all files."""
@@ -129,13 +137,11 @@ def _is_explained(file: Recognised, known: GearSoFar) -> bool:
     return bool(squares.sum() < MAX_UNEXPLAINED**2 * samples.sum())
 
 
-def _without_motion(file: Recognised) -> str:
-    """Return what to do with a torque or a current without a motion."""
-    do = "does it" if len(file.unused) == 1 else "do they"
-    hint = f" (columns not used: {listed(file.unused)}: {do} hold texts?)" if file.unused else ""
+def _without_motion(file: Recognised) -> QuestionError:
+    """Return the refusal of a torque or a current without a motion, or the question which column is one."""
     if {"angle", "speed", *ENCODERS} & {*file.recording.names, *file.constants}:
-        return f"torque without motion determines orders alone: strainwave orders finds them{hint}"
-    return (
-        "torque alone determines nothing of the gear: record an angle or a speed with it, or, if the shaft turned at one "
-        f"speed, give that with --constant speed='100 1/min'{hint}"
-    )
+        return QuestionError("torque without motion determines orders alone: strainwave orders finds them")
+    hint = f" (not used, as they contain texts: {listed(file.texts)})" if file.texts else ""
+    speed = Answer("the shaft turned at one speed", {"constants": {"speed": 10.0}}, {"speed": "this speed [rad/s]"})
+    ways = [*unnamed.motions(file.unnamed), speed]
+    return QuestionError(f"torque alone determines nothing of the gear: record an angle or a speed with it{hint}", ways)

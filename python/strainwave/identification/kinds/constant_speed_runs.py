@@ -16,6 +16,7 @@ from strainwave.identification.candidates.position import FULL_TURN, PositionFit
 from strainwave.identification.checks.sizes import opposes_motion
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
 from strainwave.identification.experiments.experiment import sensible
+from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.motions import stretches
@@ -135,14 +136,9 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
 
 def _in_time(recording: Recording, prefix: str) -> tuple[Array, list[slice]]:
     """Return the speed at each row, as measured or the mean of its stretch, and the rows of each stretch at constant speed."""
-    from scipy.integrate import cumulative_trapezoid
-
     time, measured = recording.time, f"{prefix}speed" in recording
     speed = sensible(recording, f"{prefix}speed", "rad/s") if measured else np.zeros(len(recording))
-    if f"{prefix}angle" in recording:
-        angle = sensible(recording, f"{prefix}angle", "rad")
-    else:
-        angle = cumulative_trapezoid(speed, time, initial=0)
+    angle = sensible(recording, f"{prefix}angle", "rad") if f"{prefix}angle" in recording else integrated(speed, time)
     parts = constant_speeds(time, angle)
     for part in [] if measured else parts:
         last = part.stop - 1

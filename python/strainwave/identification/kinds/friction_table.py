@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction
+from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
 from strainwave.identification.checks.sizes import (
     friction_of_table,
@@ -31,7 +31,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
-from strainwave.identification.reading.sides import UndecidedError, pair, side_of_table
+from strainwave.identification.reading.sides import pair, side_of_table
 from strainwave.identification.results.changes import changes_of, friction_directions, slopes_by_numbers
 from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.determined import (
@@ -47,7 +47,8 @@ from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.prediction import Prediction, judged, model_error
 from strainwave.identification.results.undetermined import with_friction_at, with_set_before
-from strainwave.messages import as_option
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
+from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length, rms
 
@@ -57,6 +58,7 @@ MIN_ROWS = 4  # speeds of a table
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
 SPEEDS = ("rad/s", "rpm", "rev/s")  # of tables of friction
 UNITS = {"speed": "rad/s", "torque": "N.m"}
+DRY = (".coulomb", ".breakaway")  # torques that a loss under a constant load adds to
 MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
 
 
@@ -69,15 +71,13 @@ class SteadyFriction(Kind):
         """True for speeds and a torque or current.
 
         Raises:
-            UndecidedError: these may be samples of a log
+            QuestionError: these may be samples of a log
         """
         if not (speeds := measured(columns, "speed")) or not measured(columns, "torque", "current"):
             return False
         if (rows := len(speeds[0].si)) > MAX_ROWS and len(stretches(speeds[0].si)) < MIN_ROWS:
-            raise UndecidedError(
-                f"it has {rows} rows of speed and torque without time: samples of a log if their rate is known, with "
-                "--constant rate=HZ, or a table of friction, with --kind friction"
-            )
+            ways = [LOG_AT_RATE, Answer("a table of friction", {"kind": "friction"})]
+            raise QuestionError(f"it has {rows} rows of speed and torque without time", ways)
         return True
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
@@ -92,7 +92,7 @@ class SteadyFriction(Kind):
         if rows > MAX_ROWS:
             if not (parts := stretches(speed.si)):
                 none = f"none of its {rows} rows belongs to a stretch at one speed"
-                raise UndecidedError(f"{none}: give a row for each speed, or its time, as a log")
+                raise QuestionError(f"{none}: give a row for each speed, or its time, as a log")
             steady = sum(part.stop - part.start for part in parts)
             remarks = (f"{steady} of its {rows} rows are steady; the means of {len(parts)} stretches at one speed are taken",)
             means = {name: np.array([column.si[part].mean() for part in parts]) for name, column in found.items()}
@@ -144,15 +144,16 @@ def _check_speed_unit(speed: Column) -> None:
     """Ask for the unit of the speeds of a table, which friction alone does not determine; robots have radians.
 
     Raises:
-        UndecidedError: no unit is stated
+        QuestionError: no unit is stated
     """
     if speed.sure or speed.robot:
         return
     fastest = float(np.abs(speed.raw[np.isfinite(speed.raw)]).max(initial=0.0))
-    ways = [f"{as_option('unit', speed.name, each)} ({convert(fastest, each, 'rpm'):.0f} 1/min at most)" for each in SPEEDS]
-    question = f"the unit of {speed.name} is not stated, and a table of friction does not determine it; give it, with "
-    answer = FileMapping(units={speed.name: SPEEDS[0]})
-    raise UndecidedError(question + " or ".join(ways), (), as_option("unit", speed.name, SPEEDS[0]), answer)
+    ways = [
+        Answer(f"{each}, {convert(fastest, each, 'rpm'):.0f} 1/min at most", {"units": {speed.label.name: each}})
+        for each in SPEEDS
+    ]
+    raise QuestionError(f"the unit of {speed.name} is not stated, and a table of friction does not determine it", ways)
 
 
 def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:
@@ -215,7 +216,8 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
         paths = [each.path for each in best.fit.estimates]
-        fit, estimates = with_set_before(fit, estimates, known, "gear.")
+        again, estimates = with_set_before(fit, estimates, known, "gear.")
+        fit = written(replace(best, fit=again), gear, experiment)
         estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
@@ -265,9 +267,14 @@ def _shared(best: FrictionCandidate, table: FrictionTable) -> dict[str, str]:
     """Return the parameters that a table determines only together with a loss under load, by path, and how."""
     if table.load is None or is_loaded(table) or not table.load.any():
         return {}
-    held = float(np.abs(table.load).max())
-    why = f"one load of {held:.3g} N·m at the input determines the sum of it and the loss there only"
-    return {f"gear.{each.path}": why for each in best.fit.estimates if not each.path.endswith("viscous")}
+    held, loss = float(np.abs(table.load).max()), "friction_mesh.driving_forward"
+    kept = held * float(getattr(best.fit.gear.friction_mesh, "driving_forward", 0.0))
+    sums = (
+        DeterminedSum((each.path, loss), (1.0, held), each.value + kept, each.sigma, each.unit)
+        for each in best.fit.estimates
+        if each.path.endswith(DRY)
+    )
+    return {f"gear.{each.paths[0]}": each.with_others for each in sums}
 
 
 def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable, start: GearSet) -> Iterator[str]:

@@ -71,7 +71,7 @@ class Kind(ABC):
         """True if columns are those of this kind; the kinds that `KINDS` has after it were asked before, and declined.
 
         Raises:
-            UndecidedError: they may be those of several kinds
+            QuestionError: they may be those of several kinds
         """
         return False
 
@@ -80,7 +80,7 @@ class Kind(ABC):
         """Return the channel of each column.
 
         Raises:
-            UndecidedError: the columns are not those of this kind; states which are needed
+            QuestionError: the columns are not those of this kind; states which are needed
         """
 
     def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:

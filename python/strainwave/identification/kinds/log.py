@@ -15,17 +15,16 @@ from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.shafts import put_sided
-from strainwave.identification.kinds.torsion_loop import is_loaded_in_steps, is_series_spring
+from strainwave.identification.kinds.torsion_loop import is_loaded_spring, is_series_spring
 from strainwave.identification.kinds.warm_up import warmed, with_fall
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
-from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
-from strainwave.messages import as_option
+from strainwave.questions import Answer, QuestionError
 from strainwave.statistics.residuals import correlation_length
 
 
@@ -44,7 +43,7 @@ class Log(Kind):
             return False
         drove = measured(columns, "torque", "current", "voltage") or any(column.channel.commanded for column in columns)
         moves = bool(drove and measured(columns, "angle", "speed"))
-        return moves and not is_loaded_in_steps(columns, mapping) and not is_series_spring(columns)
+        return moves and not is_loaded_spring(columns, mapping) and not is_series_spring(columns)
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torques, currents, remarks = _efforts(columns)
@@ -108,13 +107,19 @@ def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
     """Ask for the letter u, which is a voltage in files of motors, and any input of a robot in files of joints.
 
     Raises:
-        UndecidedError: a column has this letter and nothing else for a name
+        QuestionError: a column has this letter and nothing else for a name
     """
     for column in measured(columns, "voltage"):
         is_letter = len(column.name.rstrip("_0123456789[]")) == 1 and column.label.unit is None
         if is_letter and not others and not column.by_user and any(each.robot for each in columns):
-            ways = " or ".join(as_option("column", name, column.name) for name in ("joint_torque", "current", "voltage"))
-            raise UndecidedError(f"{column.name} may be a torque, a current or a voltage; name it with {ways}")
+            name = column.label.name
+            of_motor = {"columns": {"voltage": name}, "constants": {"resistance": 1.0, "torque_constant": 0.1}}
+            ways = [
+                Answer("a torque of the joint", {"columns": {"joint_torque": name}}),
+                Answer("a current of the motor", {"columns": {"current": name}}),
+                Answer("a voltage of the motor", of_motor, {"resistance": "Ohm", "torque_constant": "N.m/A, of the motor"}),
+            ]
+            raise QuestionError(f"{column.name} may be a torque, a current or a voltage", ways)
 
 
 def _ranked(each: MotionCandidate, unit: str) -> Ranked:

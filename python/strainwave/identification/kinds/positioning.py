@@ -11,11 +11,13 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, commanded, measured, names_of
-from strainwave.identification.reading.sides import UndecidedError, pair
+from strainwave.identification.reading.sides import pair
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.orders.positioning import Positioning, positioning
+from strainwave.questions import QuestionError
 
+MIN_INPUT_ORDER = 0.5  # of the input's turn: slower errors are named by the axis alone
 EFFORTS = ("torque", "current", "voltage", "speed", "vibration")
 
 
@@ -38,30 +40,31 @@ class PositioningSteps(Kind):
         elif len(error) == 1 and len([*wanted, *reached]) == 1:
             found = {"command": [*wanted, *reached][0], "twist": error[0]}
         else:
-            raise UndecidedError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
+            raise QuestionError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
         return ColumnRoles(self.name, found, "output", (f"its columns are {pair(*found.values())}: {self.title}",))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Return lost motion and the errors of ISO 230-2; the gear keeps its numbers."""
-        found = positioning_of(file, abs(known.gear_set.gear.kinematics.ratio))
+        found, ratio = positioning_of(file), abs(known.gear_set.gear.kinematics.ratio)
         estimates = [FileEstimate("lost_motion", "rad", found.lost_motion, found.lost_motion_sigma, "")]
         estimates += [
             FileEstimate(f"positioning_error of order {order:g}", "rad", size, sigma, "") for order, size, sigma in found.orders
         ]
         stated = tuple(each for each in estimates if np.isfinite(each.value))
-        remarks = (*file.remarks, *positioning_words(found), *found.remarks)
-        return FileResult(file.path.name, file, "steps to and fro", stated, remarks), known
+        remarks = (*file.remarks, *positioning_words(found, ratio), *found.remarks)
+        how = "steps to and fro" if found.targets else "error over the angle, from one side"
+        return FileResult(file.path.name, file, how, stated, remarks), known
 
 
-def positioning_of(file: Recognised, ratio: float | None) -> Positioning:
+def positioning_of(file: Recognised) -> Positioning:
     """Return the positioning of a file; raises as `positioning`."""
     wanted = file.recording["command"]
     reached = file.recording["output_angle"] if "output_angle" in file.recording else wanted + file.recording["twist"]
-    return positioning(wanted, reached, ratio=ratio)
+    return positioning(wanted, reached)
 
 
-def positioning_words(found: Positioning) -> Iterator[str]:
-    """Yield the errors of ISO 230-2 in words."""
+def positioning_words(found: Positioning, ratio: float | None) -> Iterator[str]:
+    """Yield the errors of ISO 230-2 and the orders over the angle in words; those of the input too, by the ratio of a gear."""
     named = {
         "lost motion, mean of all targets": found.lost_motion,
         "largest reversal value B": found.reversal,
@@ -76,11 +79,14 @@ def positioning_words(found: Positioning) -> Iterator[str]:
             scatter = f" ± {3600.0 * np.degrees(found.lost_motion_sigma):.2g} arcsec" if value is found.lost_motion else ""
             yield f"{name}: {_in_degrees(value)}{scatter}"
     for order, size, sigma in found.orders:
-        yield f"order {order:g} per turn of the axis: {_in_degrees(size)} ± {3600.0 * np.degrees(sigma):.2g} arcsec"
-    yield (
-        f"{found.targets} targets were approached from both sides; {found.within} rows lie within the lost motion behind a "
-        "reversal, and are left out"
-    )
+        of_input = f", {order / ratio:g} of the input" if ratio and order >= MIN_INPUT_ORDER * ratio else ""
+        size_in_words = f"{_in_degrees(size)} ± {3600.0 * np.degrees(sigma):.2g} arcsec"
+        yield f"order {order:g} per turn of the axis{of_input}: {size_in_words}"
+    if found.targets:
+        yield (
+            f"{found.targets} targets were approached from both sides; {found.within} rows lie within the lost motion behind a "
+            "reversal, and are left out"
+        )
 
 
 def _in_degrees(angle: float) -> str:

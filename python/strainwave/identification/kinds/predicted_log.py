@@ -43,6 +43,7 @@ from strainwave.identification.results.prediction import Prediction, judged, val
 from strainwave.messages import listed
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ripple import ripple
+from strainwave.questions import TORQUE_CONSTANT, QuestionError
 from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
@@ -88,7 +89,7 @@ def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
 def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
     taken = log_of(file, GearSoFar(gear_set))
     if taken.in_current:
-        raise ValueError(f"{gear_set.name} has no torque constant: give --constant torque_constant=…")
+        raise QuestionError(f"{gear_set.name} has no torque constant", [TORQUE_CONSTANT])
     return judged(*_PredictedLog.of(file, taken, gear_set).prediction(file, gear_set))
 
 

@@ -15,11 +15,13 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import along_best_motion, fit_plain
 from strainwave.identification.candidates.torque_place import TorquePlace, torque_place
 from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
+from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
-from strainwave.messages import as_option, listed
+from strainwave.messages import listed
+from strainwave.questions import Answer, QuestionError
 
 RECORDER_BIAS = 0.05  # of the rotor's inertia: a current recorded where a controller has just acted shows it larger (assumed)
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
@@ -79,7 +81,9 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive, regressors=file.regressors)
     if fit_plain(log, drive).sense < 0.0:
-        remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
+        of_output = drive.gear.kinematics.ratio < 0.0 and log.effort != "joint_torque"
+        how = "in the sense of the output, which turns against the input" if of_output else "against the motion"
+        remarks.append(f"{log.effort} is counted {how}: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
     log, is_of_speed = along_best_motion(log, recording, drive)
@@ -121,10 +125,8 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
 
 def _with_angle(recording: Recording) -> tuple[Recording, str]:
     """Return a recording of a speed with the angle that it makes, and a remark."""
-    from scipy.integrate import cumulative_trapezoid
-
     side = next(name.removesuffix("_speed") for name in recording.names if name.endswith("_speed"))
-    angle = cumulative_trapezoid(recording.values(f"{side}_speed", "rad/s"), recording.time, initial=0)
+    angle = integrated(recording.values(f"{side}_speed", "rad/s"), recording.time)
     remark = f"no angle was recorded: {side}_speed is summed up, from 0 at the first row, and with it an error of its zero"
     return recording.with_column(f"{side}_angle", angle, "rad"), remark
 
@@ -143,7 +145,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
     inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
-    if not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
+    if "voltage" in file.columns and not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
         by_voltage = _motor_by_voltage(file, given, inertia)
         share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance
         remarks.append(
@@ -176,11 +178,12 @@ def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> moto
     """
     known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
     if missing := [name for name, value in known.items() if value == 0.0]:
-        options = " and ".join(f"--constant {name}=…" for name in missing)
-        raise ValueError(
-            f"a voltage determines the torque of a motor that is known: give {options}; what a controller asks of an amplifier "
-            f"of currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
-        )
+        units = {"resistance": "Ohm, of the motor", "torque_constant": "N.m/A, of the motor"}
+        ways = [
+            Answer("the motor is known", {"constants": dict.fromkeys(missing, 1.0)}, {name: units[name] for name in missing}),
+            Answer("a controller asks it of an amplifier of currents", {"columns": {"current": file.columns["voltage"]}}),
+        ]
+        raise QuestionError("a voltage determines the torque of a motor that is known", ways)
     induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
     return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
 

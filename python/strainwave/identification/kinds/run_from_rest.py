@@ -21,7 +21,6 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
-from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import pictures_of_channels
 from strainwave.identification.results.file_result import FileResult
@@ -29,6 +28,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import MAX_LISTED, JudgedFit
 from strainwave.identification.results.undetermined import with_set_before
+from strainwave.questions import QuestionError
 from strainwave.simulation.run import simulate
 
 MAX_CAUSES = 2  # likely mistakes that are fitted if the model does not explain a run, the likeliest first
@@ -50,7 +50,7 @@ class RunFromRest(Kind):
             }
         )
         if "command" not in found:
-            raise UndecidedError(f"{self.title} needs its command; it has {names_of(columns)}")
+            raise QuestionError(f"{self.title} needs its command; it has {names_of(columns)}")
         _, why = put_sided(found, columns, [], mapping if mapping.side else replace(mapping, side="input"))
         first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
         return ColumnRoles(self.name, found, None, (first, *why))

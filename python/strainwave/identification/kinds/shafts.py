@@ -14,12 +14,13 @@ from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.roles import measured, names_of, put
 from strainwave.identification.reading.sides import (
     MIN_FACTOR_OF_SIDES,
-    UndecidedError,
     side_of_motion,
     side_of_torque,
     sides_of_angles,
+    sides_of_torques,
 )
 from strainwave.messages import as_option
+from strainwave.questions import QuestionError
 
 Array = NDArray[np.float64]
 
@@ -33,7 +34,7 @@ def put_sided(
     """Add motions and torques of a log with their sides; return the sides that move, and what determines them."""
     motions, why = _of_both_shafts([*measured(columns, "angle"), *measured(columns, "speed")])
     if not motions:
-        raise UndecidedError(f"a log needs an angle or a speed; it has {names_of(columns)}")
+        raise QuestionError(f"a log needs an angle or a speed; it has {names_of(columns)}")
     sides: set[Side] = set()
     for column in motions:
         side, why_side = side_of_motion(column, (*motions, *torques), found.get("time"), mapping.side)
@@ -42,10 +43,7 @@ def put_sided(
         put(found, f"{'reflected' if column.channel.reflected else side}_{column.channel.quantity}", column)
     why += _reflect(found, mapping)
     if len(torques) > 1 and not any(column.by_user or column.channel.side for column in torques):
-        first = torques[0]
-        stem = first.name.removesuffix(first.which).rstrip("_.") if first.robot and first.which else first.name
-        ways = f"--column input_torque={stem} if it is that of the motor, or --column joint_torque={stem} if of the joint"
-        raise UndecidedError(f"each of {names_of(torques)} may be the torque; choose one, with {ways}", (), ways)
+        raise QuestionError(f"each of {names_of(torques)} may be the torque", sides_of_torques(torques))
     for column in torques:
         side, why_side = side_of_torque(column, sides, mapping.side)
         why.append(why_side)

@@ -26,13 +26,15 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, measured, needed
-from strainwave.identification.reading.sides import UndecidedError, pair
+from strainwave.identification.reading.sides import pair
 from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.file_result import FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.undetermined import with_set_before
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
+from strainwave.statistics.determined_sum import DeterminedSum
 
 Array = NDArray[np.float64]
 
@@ -56,7 +58,7 @@ class Torsion(Kind):
         """True for a twist and a torque, or for an angle and a torque if the angle may be a twist: a turning shaft is none.
 
         Raises:
-            UndecidedError: these may be samples of a log
+            QuestionError: these may be samples of a log
         """
         angles, torques = measured(columns, "angle"), measured(columns, "torque")
         if measured(columns, "twist") and torques:
@@ -65,10 +67,8 @@ class Torsion(Kind):
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
         if _exceeds_twist(column, mapping):
-            raise UndecidedError(
-                f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists: samples of a log whose rate is "
-                "needed, with --constant rate=HZ; or, if it is a torsion loop all the same, --kind torsion"
-            )
+            ways = [LOG_AT_RATE, Answer("a torsion loop all the same", {"kind": "torsion"})]
+            raise QuestionError(f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists", ways)
         return bool(abs(angle[-1] - angle[0]) <= MIN_TURNING or turning_points(angle) or _is_spring(angle, torque))
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
@@ -77,7 +77,7 @@ class Torsion(Kind):
         angle = twist or needed(columns, "angle", self.title)
         both, rows = pair(angle, torque), len(angle.si)
         if rows < MIN_ROWS:
-            raise UndecidedError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
+            raise QuestionError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
         turns = len(turning_points(angle.si))
         branch = "one branch of a torsion loop, which shows stiffness only"
         shape = f"a torsion loop with {turns} reversal{'s' if turns > 1 else ''}" if turns else branch
@@ -149,12 +149,15 @@ class Torsion(Kind):
         )
 
 
-def is_loaded_in_steps(columns: Sequence[Column], mapping: FileMapping) -> bool:
-    """True for a spring that a rig loads in steps, with the time of each: a log has more rows in a second, or turns."""
+def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
+    """True for a spring that a rig loads, with time: a log has more rows in a second, turns, or is softer than any gear."""
     times, angles, torques = (measured(columns, quantity) for quantity in ("time", "angle", "torque"))
     if not times or len(angles) != 1 or len(torques) != 1 or measured(columns, "speed", "current", "voltage"):
         return False
-    return not _exceeds_twist(angles[0], mapping) and in_steps(times[0].si, angles[0].si, torques[0].si)
+    angle, torque = angles[0].si, torques[0].si
+    if _exceeds_twist(angles[0], mapping):
+        return False
+    return in_steps(times[0].si, angle, torque) or (_is_spring(angle, torque) and _is_as_stiff_as_a_gear(angle, torque))
 
 
 def is_series_spring(columns: Sequence[Column]) -> bool:
@@ -204,20 +207,26 @@ def _is_spring(angle: Array, torque: Array) -> bool:
     return bool(alternates and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING)
 
 
+def _is_as_stiff_as_a_gear(twist: Array, torque: Array) -> bool:
+    """True if a torque grows with an angle as at the output of a gear: weight and inertia of no joint are as stiff."""
+    return bool(np.cov(twist, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(twist) and np.ptp(twist) < MAX_TWIST)
+
+
 def _why_output(angle: Column, torque: Column) -> str:
     """Return why a loop is one of the output, if its columns contain no side.
 
     Raises:
-        UndecidedError: it may be one of the input
+        QuestionError: it may be one of the input
     """
     stiffness = np.ptp(torque.si) / max(float(np.ptp(angle.si)), 1e-300)
     if stiffness > MIN_STIFFNESS_AT_OUTPUT:
         return f"its stiffness of {stiffness:.3g} N.m/rad is that of an output; at an input it is far smaller"
-    raise UndecidedError(
-        f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
-        "with the output locked, --side output if the output was loaded with the input locked; or, if the motor was moved "
-        "to and fro at rest, --kind presliding"
-    )
+    ways = [
+        Answer("the output was loaded with the input locked", {"side": "output"}),
+        Answer("the motor was turned with the output locked", {"side": "input"}),
+        Answer("the motor was moved to and fro at rest", {"kind": "presliding"}),
+    ]
+    raise QuestionError(f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated", ways)
 
 
 def _computed(twist: Column, torque: Column, stiffness: float) -> str:
@@ -285,10 +294,18 @@ def _shared(best: TorsionCandidate, gear: Any, loop: TorsionLoop, friction_measu
         return {f"gear.{estimate.path}": why for estimate in best.fit.estimates}
     if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
         return {}
-    sum_of, ratio = "the loop determines the sum of", abs(loop.input_ratio)
+    ratio, breakaway = abs(loop.input_ratio), "friction_input.breakaway"
+    held = 0.5 * float(np.ptp(loop.friction(gear)))  # at the output
     if isinstance(best.dissipation, InputFriction):
-        why = f"{sum_of} {ratio:g} x friction_input.breakaway and the torque of the hysteresis, which was kept"
-        return {"gear.friction_input.breakaway": why}
-    why = f"{sum_of} the torque of the hysteresis and {ratio:g} x friction_input.breakaway, which was kept"
-    paths = [estimate.path for estimate in best.fit.estimates if estimate.path.startswith("hysteresis.breakaway")]
-    return {f"gear.{path}": why for path in paths}
+        elements = getattr(gear.hysteresis, "breakaway", ())
+        kept = {f"hysteresis.breakaway[{place}]": (1.0 / ratio, f) for place, f in enumerate(elements)}
+    else:
+        kept = {breakaway: (ratio, held / ratio)}
+    paths, factors = tuple(kept), tuple(factor for factor, _ in kept.values())
+    rest = sum(factor * value for factor, value in kept.values())
+    sums = (
+        DeterminedSum((each.path, *paths), (1.0, *factors), each.value + rest, each.sigma, each.unit)
+        for each in best.fit.estimates
+        if each.path.startswith(("hysteresis.breakaway", breakaway))
+    )
+    return {f"gear.{each.paths[0]}": each.with_others for each in sums}

@@ -10,11 +10,12 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
-from strainwave.identification.reading.sides import UndecidedError, pair, sides_of_angles
+from strainwave.identification.reading.sides import pair, sides_of_angles
 from strainwave.identification.results.curves import curves_of_orders
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
 from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
+from strainwave.questions import QuestionError
 
 
 class TwoEncoders(Kind):
@@ -30,7 +31,7 @@ class TwoEncoders(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         angles = measured(columns, "angle")
         if len(angles) != 2:
-            raise UndecidedError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
+            raise QuestionError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
         fast, slow, why_side = sides_of_angles(angles)
         why = f"its columns are {pair(*angles)}, and no torque or current: {self.title}"
         found = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}

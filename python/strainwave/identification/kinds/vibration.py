@@ -11,8 +11,8 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
-from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.questions import QuestionError
 
 
 class Vibration(Kind):
@@ -29,7 +29,7 @@ class Vibration(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         motions, vibration = measured(columns, "angle", "speed"), first(columns, "vibration")
         if not motions or not vibration:
-            raise UndecidedError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
+            raise QuestionError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
         motion = motions[0]
         side: Side = mapping.side or motion.channel.side or "input"
         why = f"its columns are {names_of([motion, *vibration.values()])}: {self.title}"

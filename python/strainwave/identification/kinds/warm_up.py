@@ -23,6 +23,7 @@ EFFORTS = ("joint_torque", "input_torque", "current")
 MIN_CHANGE_SIGMA = 2.0  # beyond which friction changes with the temperature
 TEMPERATURE_CLASSES = 24  # in the figure
 MIN_SAMPLES_PER_CLASS = 10
+ONE_WAY = "it moves one way only: a weight and an offset are in its friction, and its relative fall is not determined"
 
 
 def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
@@ -45,13 +46,16 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     fall, slope, level = found.fall, found.slope, found.friction
     sure = abs(fall.value) > MIN_CHANGE_SIGMA * fall.sigma
     why = "" if sure else "the friction does not change with the temperature beyond chance"
+    why = ONE_WAY if sure and found.one_way else why
     low, high = slope.interval(0.95)
-    remarks = (
+    remarks: tuple[str, ...] = (
         f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
         f"{_celsius(found.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
         f"with 95 % between {low:.3g} and {high:.3g}",
         "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
+    if found.one_way:
+        remarks = (*remarks, ONE_WAY)
     estimates = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
     curves = _curves(series, effort, found)
     means = curves[f"friction_of_{effort}"]
@@ -97,12 +101,13 @@ def _curves(series: Recording, effort: str, found: Warming) -> Recording:
     temperature, way, force = temperature[moving], np.sign(speed[moving]), series[effort][moving]
     edges = np.quantile(temperature, np.linspace(0.0, 1.0, TEMPERATURE_CLASSES + 1))
     place = np.clip(np.searchsorted(edges, temperature, "right") - 1, 0, TEMPERATURE_CLASSES - 1)
-    rows = []
+    rows, ways = [], np.unique(way)
     for each in range(TEMPERATURE_CLASSES):
         there = place == each
-        both = [force[there & (way == sign)] for sign in (1.0, -1.0)]
-        if min(map(len, both)) >= MIN_SAMPLES_PER_CLASS:
-            rows.append((float(temperature[there].mean()), 0.5 * float(both[0].mean() - both[1].mean())))
+        of_ways = [force[there & (way == sign)] for sign in ways]
+        if min(map(len, of_ways)) >= MIN_SAMPLES_PER_CLASS:
+            level = np.mean([sign * values.mean() for sign, values in zip(ways, of_ways, strict=True)])
+            rows.append((float(temperature[there].mean()), float(level)))
     where, level = np.array(rows).reshape(-1, 2).T
     line = found.friction.value + found.slope.value * (where - found.reference_temperature)
     unit = series.unit(effort)

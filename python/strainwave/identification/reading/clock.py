@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
@@ -79,7 +80,8 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array
     time stamps scatter by 0.0802 ms about a clock of 100.1 Hz, which is taken
     """
     if (largest := float(np.abs(stamps).max())) > MAX_TIME:
-        raise ValueError(f"its time reaches {largest:g} s, which no log lasts; give its unit, with --unit time=UNIT")
+        ways = [Answer(f"in {unit}", {"units": {"time": unit}}) for unit in ("ms", "us", "ns")]
+        raise QuestionError(f"its time reaches {largest:g} s, which no log lasts", ways)
     rows, remarks = _longest_stretch(stamps)
     step = _step(stamps[rows])
     if repeated is not None:
@@ -111,7 +113,7 @@ def _step(stamps: Array) -> float:
     """Return the usual time from row to row [s]."""
     steps = np.diff(stamps)
     if not (forward := steps[steps > 0.0]).size:
-        raise ValueError("its time does not run forward; give the rate of its rows instead, with --rate HZ")
+        raise QuestionError("its time does not run forward", [LOG_AT_RATE])
     return float(np.median(forward))
 
 

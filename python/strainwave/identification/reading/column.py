@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from strainwave.files.labels import Label
 from strainwave.files.units import measures
 from strainwave.identification.reading.channels import Channel
-from strainwave.messages import one_line
+from strainwave.messages import MAX_TEXT, one_line
 
 Array = NDArray[np.float64]
 
@@ -58,6 +58,12 @@ class Column:
     def name(self) -> str:
         """Name in the file, as messages and reports show it: on one line, without characters that a terminal obeys."""
         return one_line(self.label.name)
+
+    @property
+    def reference(self) -> str:
+        """Name in the file; its number from 1 if its name cannot be typed."""
+        name = self.label.name
+        return name if self.name == name and len(name) <= MAX_TEXT else str(self.position + 1)
 
     @property
     def at_joint(self) -> bool:

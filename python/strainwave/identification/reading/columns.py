@@ -25,9 +25,11 @@ from strainwave.identification.reading.names import (
     which_of,
     words_of,
 )
-from strainwave.identification.reading.sides import UndecidedError
-from strainwave.messages import as_option, listed, one_line, quoted
+from strainwave.identification.reading.roles import columns_for
+from strainwave.messages import listed, one_line, quoted
+from strainwave.questions import ALL_JOINTS, Answer, QuestionError
 
+MAX_JOINTS_OFFERED = 8  # by a question: more than an arm has are a humanoid's
 MIN_MOTION = 0.01  # of how far the joint moves that moves most: others that move by less rest
 SEVERAL = ("other_angles", "regressors")  # channels that may be several columns
 EXCHANGEABLE = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
@@ -192,7 +194,7 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
 
     Raises:
         ValueError: the file has no such column, or several
-        UndecidedError: it has one for each joint
+        QuestionError: it has one for each joint
     """
     found = []
     wanted = [(name, each) for name, each in mapping.columns.items() if name not in SEVERAL]
@@ -218,7 +220,7 @@ def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> in
     names = [table.labels[place].name for place in places]
     joints = [match[1] for each in names if (match := re.search(r"(\d+)\]?$", each))]
     if len(places) > 1 and joint is None and len(set(joints)) == len(places):
-        raise _which_joint(joints, names[0], "")
+        raise which_joint(f"it has {quoted(column)} of {len(joints)} joints", joints)
     if len(places) != 1:
         fault = f"has {len(places)} columns" if places else "has no column"
         there = listed(label.name for label in table.labels)
@@ -273,7 +275,7 @@ def _taken(group: Sequence[Column], joints: Sequence[str]) -> Sequence[Column]:
     """Return the column of a channel that is taken; two, if their sizes show which is that of the input.
 
     Raises:
-        UndecidedError: each may be the channel
+        QuestionError: each may be the channel
     """
     plain = [column for column in group if not column.which] if len(group) > 1 else group
     channel = group[0].channel
@@ -286,14 +288,14 @@ def _taken(group: Sequence[Column], joints: Sequence[str]) -> Sequence[Column]:
     name = "command" if channel.commanded else "_".join(filter(None, (channel.side, channel.quantity)))
     side = "output" if channel.side == "output" or group[0].robot or len(joints) > 1 else "input"
     wanted = {"output_torque": "joint_torque", "angle": f"{side}_angle", "speed": f"{side}_speed"}.get(name, name)
-    option, names = as_option("column", wanted, group[0].name), [column.name for column in group]
+    names = [column.name for column in group]
     if len({column.which for column in group}) == len(group) and len(joints) > 1:
-        raise _which_joint(joints, listed(names[:2]) + (" …" if len(names) > 2 else ""), f", or name columns, as {option}")
-    raise UndecidedError(f"each of {listed(names)} may be the {name}; choose one, as with {option}", (), option)
+        some = listed(names[:2]) + (" …" if len(names) > 2 else "")
+        raise which_joint(f"it has {len(joints)} joints ({listed(joints)}), as {some}", joints)
+    raise QuestionError(f"each of {listed(names)} may be the {name}", columns_for(wanted, group))
 
 
-def _which_joint(joints: Sequence[str], names: str, instead: str) -> UndecidedError:
+def which_joint(question: str, joints: Sequence[str]) -> QuestionError:
     """Return the question which joint is meant."""
-    option = f"--joint {joints[0]}"
-    question = f"it has {len(joints)} joints ({listed(joints)}), as {names}; choose with {option} or --joint all{instead}"
-    return UndecidedError(question, (), option, FileMapping(joint=joints[0]))
+    ways = [Answer(f"joint {joint}", {"joint": joint}) for joint in joints[:MAX_JOINTS_OFFERED]]
+    return QuestionError(question, [*ways, Answer("each joint, with a gear of its own", {"joint": ALL_JOINTS})])

@@ -9,11 +9,10 @@ import numpy as np
 
 from strainwave.files.units import convert, counts, is_share, measures
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import bits_of, pairs_of_shafts
-from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.slopes import speed_per_slope
-from strainwave.messages import as_option, listed
+from strainwave.messages import listed, one_line
+from strainwave.questions import Answer, QuestionError
 
 COUNTED = "counts/16384"  # for example
 RATIOS = (100.0, 50.0, 80.0, 120.0, 160.0, 30.0)  # of catalogues, the most usual first
@@ -44,23 +43,26 @@ def check_units(columns: Sequence[Column], ratio: float | None) -> None:
         ratio: of the gear, if a person gave it
 
     Raises:
-        UndecidedError: a unit needs the counts of a revolution, or a rated value
+        QuestionError: a unit needs the counts of a revolution, or a rated value
     """
-    needs = {column.name: unit for column in columns if (unit := _incomplete_unit(column))}
+    needs = {column.label.name: unit for column in columns if (unit := _incomplete_unit(column))}
     if not needs:
         return
-    counted = [column for column in columns if counts(needs.get(column.name, ""))]
+    counted = [column for column in columns if counts(needs.get(column.label.name, ""))]
     shares = [name for name, unit in needs.items() if not counts(unit)]
-    whys = ""
+    numbers = {column.label.name: "counts of a revolution" for column in counted}
+    numbers |= {name: f"rated value of which {one_line(name)} is a share" for name in shares}
+    whys = list[str]()
     for column in counted:
-        if needs[column.name] == COUNTED and (found := _counts_by_joint(column, columns, ratio)) is not None:
-            number, why = found
-            needs[column.name], whys = f"counts/{number}", f"{whys} ({why})"
-    lacks = [f"how many counts a revolution has in {listed(column.name for column in counted)}{whys}"] if counted else []
+        name = column.label.name
+        if needs[name] == COUNTED and (found := _counts_by_joint(column, columns, ratio)) is not None:
+            needs[name], why = f"counts/{found[0]}", found[1]
+            whys.append(why)
+            del numbers[name]
+    lacks = [f"how many counts a revolution has in {listed(column.name for column in counted)}"] if counted else []
     lacks += [f"of which rated value {listed(shares)} is a share"] if shares else []
-    options = " ".join(as_option("unit", name, unit) for name, unit in needs.items())
-    question = f"the file does not contain {' and '.join(lacks)}; add it, as with {options}"
-    raise UndecidedError(question, (), options, FileMapping(units=needs))
+    answer = Answer(listed(whys) or "with the numbers of the drive", {"units": needs}, numbers)
+    raise QuestionError(f"the file does not contain {' and '.join(lacks)}", [answer])
 
 
 def _usual_counts(per_turn: float) -> int | None:

@@ -19,9 +19,11 @@ from strainwave.files.table_format import OpenTable
 from strainwave.identification.reading.names import QUANTITY_OF, meaning, words_of
 from strainwave.identification.reading.slopes import MIN_CORRELATION, PARTS, correlation
 from strainwave.messages import listed
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
+MAX_BLOCKS_OFFERED = 2  # by a question
 MAX_UNEVEN = 0.5  # of the usual step: half of the steps of a time differ from it by less
 MAX_ROWS = 20_000  # that are compared
 MAX_VALUE = 1e30  # in any unit: a column with larger numbers was not measured
@@ -57,23 +59,24 @@ class MatrixLayout:
         renamed: OpenTable = replace(opened, labels=[label._replace(name=name) if name else label for label, name in pairs])
         return renamed
 
-    def question(self, *, is_timed: bool, joint: str | None) -> tuple[str, str]:
-        """Return the question which block is the torque or current, and the options that answer it.
+    def question(self, *, is_timed: bool) -> QuestionError:
+        """Return the question which block is the torque or current.
 
         Args:
             is_timed: True if the time of the rows is known
-            joint: of which a person asks for the columns
         """
-        first, rate = next(iter(self.efforts)), "" if is_timed else " --constant rate=HZ"
-        options = f"--column joint_torque={first}{rate}, or --column current={first}{rate} if it is a current"
-        if self.joints > 1 and joint is None:
-            options = f"--joint 1 (or --joint all) {options}"
+        rate = ({}, {}) if is_timed else (LOG_AT_RATE.given, LOG_AT_RATE.numbers)
+        ways = [
+            Answer(f"{name} is a {what}", {"columns": {channel: name}, **rate[0]}, rate[1])
+            for name in list(self.efforts)[:MAX_BLOCKS_OFFERED]
+            for channel, what in (("joint_torque", "torque of the joint"), ("current", "current of the motor"))
+        ]
         time = "" if self.time is None else f"column {self.time + 1} is the time, "
         motions = [[place for place, name in enumerate(self.names) if name.partition("_")[0] == each] for each in ("q", "dq")]
         angles, speeds = (f"{_columns(places)} {'is' if len(places) == 1 else 'are'}" for places in motions)
         blocks = listed(f"{name} = {_columns(places)}" for name, places in self.efforts.items())
         found = f"its columns have no names, but a layout: {time}{angles} the angle of joints, {speeds} the speed"
-        return f"{found}; name the torque or current among {blocks}, as with {options}", options
+        return QuestionError(f"{found}; which is the torque or current, of {blocks}", ways)
 
 
 def _columns(places: Sequence[int]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,8 @@ from strainwave.files.units import convert
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
-from strainwave.messages import as_option, quoted
+from strainwave.messages import quoted
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
@@ -53,7 +55,7 @@ def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
         columns: with the units that are stated or given, and their numbers
 
     Raises:
-        ValueError: a time may be in any unit
+        QuestionError: a time may be in any unit
     """
     found = {column.position: _by_itself(column, columns) for column in columns}
     time = next((column for column in columns if column.channel.quantity == "time"), None)
@@ -149,11 +151,14 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
         for rate in RATES if counts_rows else ():
             if abs(slope / rate / expected - 1.0) < MAX_OFF_RATE:
                 return Assumed("s", f"as it counts rows at {rate:g} Hz: {then}", scale=1.0 / rate)
-    hint = as_option("unit", "time", "ms")
-    lasts = f" if the record lasted {np.ptp(values):.4g} ms" if len(values) else ""
-    raise ValueError(
-        f"column {quoted(column.name)} has no unit, and its steps do not determine it; give it: {hint}{lasts}; if it "
-        "counts rows, give their rate: --constant rate=500"
+    lasted = float(np.ptp(values)) if len(values) else 0.0
+    ways = [
+        Answer(f"in {unit}: the record lasted {convert(lasted, unit, 's'):.4g} s", {"units": {column.label.name: unit}})
+        for unit in ("ms", "us", "s")
+    ]
+    raise QuestionError(
+        f"column {quoted(column.name)} has no unit, and its steps do not determine it",
+        [*ways, replace(LOG_AT_RATE, label="it counts rows")],
     )
 
 

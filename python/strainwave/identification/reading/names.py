@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -20,7 +21,10 @@ UNITS: dict[Quantity, str] = {
 
 # English, German, French, Spanish and Italian words without accents, and the symbols of textbooks and robots.
 QUANTITIES: dict[Quantity, tuple[str, ...]] = {
-    "time": ("time", "t", "zeit", "zeitstempel", "timestamp", "stamp", "temps", "tiempo", "tempo", "clock", "elapsed"),
+    "time": (
+        "time", "t", "zeit", "zeitstempel", "uhrzeit", "datum", "date", "datetime", "timestamp", "stamp", "temps", "heure",
+        "tiempo", "hora", "tempo", "ora", "clock", "elapsed",
+    ),
     "angle": (
         "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
         "ang", "angulo", "angolo", "posicion", "posizione", "encoder", "enc", "geber", "drehgeber", "resolver", "rotation",
@@ -91,7 +95,8 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
 MAX_WORDS_TO_INDEX = 2  # from a symbol, as in tau_J_d
-ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts", "eff")  # what robots call their joints' channels
+EFFORTS = {"effort", "efforts", "eff"}  # words of robots for a torque or, with its unit, a current
+ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", *EFFORTS)  # what robots call their joints' channels
 
 QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
 _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for word in words}
@@ -252,8 +257,11 @@ def _without_unit(name: str, of: Quantity | None = None) -> tuple[str, str | Non
         if any(re.fullmatch(r"J?|[A-Za-z]?\d+", word) for word in words[-count:]):  # of a joint: its number, as A1, or the word
             continue
         rest = "_".join([*words[:-count], *number]).removesuffix("_in")  # position in rad
-        quantity = of or _quantity(words_of(rest), None)[0]
+        named = words_of(rest)
+        quantity = of or ("current" if _is_current(named, unit) else _quantity(named, None)[0])
         unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
+        if unit == "C" and quantity in ("time", "temperature"):  # T_C: no time is in coulombs
+            return rest, "degC"
         if quantity is not None and measures(unit, UNITS[quantity]):
             return rest, unit
         if len(unit) > 1 and set(words_of(rest)) <= {*COMMANDED, *NEUTRAL} | DEVIATIONS and measures(unit, "rad"):
@@ -268,7 +276,7 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
     places = [place for place in places if len(words[place]) > 1] or [
         place for place in places[:1] if words[place] in ROBOT or all(word in qualifiers for word in words[:place])
     ]  # a letter behind another word is an index, but for the q of robots, unless it stands behind a letter, as in i_q
-    named = [(QUANTITY_OF[words[place]], place) for place in places]
+    named = [("current" if _is_current([words[place]], unit) else QUANTITY_OF[words[place]], place) for place in places]
     twist = [each for each in named if each[0] == "twist"]
     torque = [each for each in named if each[0] == "torque"]
     found = (twist if not torque else []) or named[::-1]
@@ -283,6 +291,11 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
     if quantity == "angle" and "dot" in words[place + 1 :]:
         quantity = "speed"
     return quantity, place
+
+
+def _is_current(words: Sequence[str], unit: str | None) -> bool:
+    """True for the effort of a robot in a unit of a current."""
+    return unit is not None and not EFFORTS.isdisjoint(words) and measures(unit, UNITS["current"])
 
 
 def is_of_joint(name: str, stem: str, joint: str | None = None) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -14,22 +14,23 @@ from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
 from strainwave.identification.kinds import KINDS, kind_named
+from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import clock, regular
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import chosen, moving_joints, numbered_joint
+from strainwave.identification.reading.columns import USUAL_FIRST, chosen, moving_joints, numbered_joint, which_joint
 from strainwave.identification.reading.layout import interleaved, nameless
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
 from strainwave.identification.reading.name_of_file import joint_in, speed_in
 from strainwave.identification.reading.names import Side, meaning, which_of, words_of
 from strainwave.identification.reading.roles import ColumnRoles, names_of
-from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
 from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
 from strainwave.identification.reading.values import read
-from strainwave.messages import as_option, listed, one_line, quoted
+from strainwave.messages import listed, one_line, quoted
+from strainwave.questions import ALL_JOINTS, LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
@@ -56,10 +57,12 @@ class Recognised:
         neighbours: the columns of the recording with the angles of other joints that move, by the names of these joints
         regressors: the columns of the recording with torques of which unknown shares act
         joint: the joint of the recording by its name in the file; empty if it has none
-        unused: names in the file of the columns that are not used
+        texts: names in the file of the columns that are not used, and contain texts
         began: the stamp in the file from which the time is counted [s]
+        mapping: what a person, or a choice between readings, states of it
         alternatives: other ways to read it that its names and numbers leave open; the fit may decide between them
-        question: what to ask if the fit does not decide; empty if this reading is the usual one
+        question: what to ask if the fit does not decide; None if this reading is the usual one
+        unnamed: names in the file of columns that are not used, but may be measured
         is_of_robot: True if its channels have the names of a robot's joints, whose motions are in radians by convention
         units_given: channels whose unit a person gave, and the file does not contain
         units_assumed: channels whose unit neither the file nor a person states, and no number determines
@@ -77,10 +80,12 @@ class Recognised:
     neighbours: Mapping[str, str] = field(default_factory=dict)
     regressors: tuple[str, ...] = ()
     joint: str = ""
-    unused: tuple[str, ...] = ()
+    texts: tuple[str, ...] = ()
     began: float = 0.0
-    alternatives: tuple[Alternative, ...] = ()
-    question: str = ""
+    mapping: FileMapping = field(default_factory=FileMapping)
+    alternatives: tuple[Answer, ...] = ()
+    question: QuestionError | None = None
+    unnamed: tuple[str, ...] = ()
     is_of_robot: bool = False
     units_given: tuple[str, ...] = ()
     units_assumed: tuple[str, ...] = ()
@@ -96,21 +101,6 @@ class Recognised:
         return replace(self, recording=Recording(series, units, recording.title))
 
 
-@dataclass(frozen=True)
-class Alternative:
-    """Another way to read a file.
-
-    Args:
-        mapping: with which `recognise` reads it so
-        reason: the difference, in words
-        options: the difference on the command line
-    """
-
-    mapping: FileMapping
-    reason: str
-    options: str
-
-
 def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = None) -> Recognised:
     """Return a file of measurements as it is read, by its names and numbers.
 
@@ -119,7 +109,8 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
         mapping: what a person states of it
 
     Raises:
-        ValueError: the file cannot be read, or leaves open what it is; names the option that settles it
+        QuestionError: the file leaves open what it is; each answer was tried, and leads to a measurement or another question
+        ValueError: the file cannot be read
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -135,29 +126,55 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     source, given = measurement_file(file), mapping or FileMapping()
     try:
         return _recognised(source, given)
-    except UndecidedError as undecided:
-        if not undecided.ways:
-            further = _further(source, given, undecided)
-            raise ValueError(one_line(f"{source.table.file}: {undecided}{further}")) from None
-        return _with_ways(source, [given.updated(way) for way in undecided.ways], one_line(str(undecided)))
+    except QuestionError as question:
+        if not question.by_fit:
+            raise _with_answers_that_work(source, given, question) from None
+        return _with_ways(source, given, question)
 
 
-def _with_ways(source: MeasurementFile, ways: Sequence[FileMapping], question: str) -> Recognised:
-    """Return a file in the first of the ways that answer a question, with the others as alternatives."""
-    first, *others = ways
-    found = _recognised(source, first)
-    alternatives = [replace(each, options=f"--side {first.side} {each.options}") for each in found.alternatives]
-    for other in others:
-        reason, options = f"measured at the {other.side}", f"--side {other.side}"
-        alternatives.append(Alternative(other, reason, options))
-        for each in _recognised(source, other).alternatives:
-            alternatives.append(Alternative(each.mapping, f"{reason}, {each.reason}", f"{options} {each.options}"))
-    assumed = f"no name or number determines the side: {first.side} is taken; otherwise add --side {others[0].side}"
-    return replace(found, alternatives=tuple(alternatives), question=question, remarks=(assumed, *found.remarks))
+def _with_ways(source: MeasurementFile, given: FileMapping, question: QuestionError) -> Recognised:
+    """Return a file in the usual way that answers a question, with the others as alternatives."""
+    ways = list[Answer]()
+    for answer in question.answers:
+        read = _recognised(source, given.updated(FileMapping(**answer.given)))
+        ways += [answer, *(each.after(answer) for each in read.alternatives)]
+    first, found = ways[0], _recognised(source, given.updated(FileMapping(**ways[0].given)))
+    other = next(each for each in ways if each.given["side"] != found.side)
+    assumed = f"no name or number determines the side: {found.side} is taken; otherwise add --side {other.given['side']}"
+    ways = [each for each in ways if each is not first]
+    return replace(found, alternatives=tuple(ways), question=question, remarks=(assumed, *found.remarks))
+
+
+def _with_answers_that_work(source: MeasurementFile, given: FileMapping, question: QuestionError) -> QuestionError:
+    """Return a question with those of its answers with which the file can be read or asks another question, and what it is."""
+    answers, why_not = list[Answer](), ""
+    for answer in question.answers:
+        try:
+            mapping = given.updated(FileMapping(**answer.given))
+            if mapping == given:
+                continue
+            if not answer.files and mapping.joint != ALL_JOINTS:
+                answer = replace(answer, gives=_in_words(_recognised(source, mapping)))
+            answers.append(answer)
+        except QuestionError as following:
+            if following.question != question.question and following.answers:
+                answers.append(replace(answer, gives="one more question follows"))
+        except ValueError as error:
+            why_not = why_not or f"; not {answer.label}: {error}"
+    fault = question.question if answers else f"{question.question}{why_not}"
+    return QuestionError(one_line(fault), answers).of(source.table.file)
+
+
+def _in_words(file: Recognised) -> str:
+    """Return the kind of a file, and how large its motions and efforts are."""
+    names = [name for name in file.columns if CHANNELS[name].measured and CHANNELS[name].quantity not in USUAL_FIRST]
+    found = file.recording
+    sizes = [f"{name} to {np.abs(found[name]).max():.3g} {found.unit(name)}" for name in names if name in found]
+    return f"{kind_named(file.kind).title}; {listed(sizes)}"
 
 
 def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
-    table, remarks = source.table, list[str]()
+    table, remarks, stated = source.table, list[str](), given
     if source.parts and source.run is None:
         remarks = [f"one recording in files of one quantity each: {listed(part.path.name for part in source.parts)}"]
     given, singles = _with_single_numbers(table, given)
@@ -171,10 +188,11 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
     given, by_name = _with_speed_of_name(columns, given, source.path)
     try:
         found = _roles([column for column in columns if column.own], given)
-    except UndecidedError as undecided:
-        left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns))))
-        is_complete = undecided.ways or undecided.options
-        raise UndecidedError(f"{undecided}{'' if is_complete else left}", undecided.ways, undecided.options) from None
+    except QuestionError as question:
+        if question.answers:
+            raise
+        left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns).values())))
+        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns)) from None
     neighbours = {
         f"angle_of_joint_{column.which}": column
         for column in columns
@@ -186,6 +204,8 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
     remarks += [*decided, *of_values, *found.remarks, *_unwrap(table, series, used)]
     try:
         series, in_time, began = _in_time(series, found.columns, found.kind, given)
+    except QuestionError:
+        raise
     except ValueError as error:
         raise ValueError(one_line(f"{table.file}: {error}")) from None
     unused = _unused(table, list(used.values()))
@@ -196,15 +216,17 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         units={name: column.unit or "1" for name, column in found.columns.items()},
         side=found.side,
         why=(*found.why, *by_name),
-        remarks=(*remarks, *in_time, *_of_unused(unused)),
+        remarks=(*remarks, *in_time, *_of_unused(unused.values())),
         constants=dict(given.constants),
         recording=Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
         neighbours={column.which: name for name, column in neighbours.items()},
         regressors=tuple(regressors),
         joint=_joint_of(found.columns, source.path),
-        unused=unused,
+        texts=tuple(name for place, name in unused.items() if table.contents[place] == "other"),
+        unnamed=tuple(unnamed.measured_columns(table, [column.position for column in columns])),
         began=began,
-        alternatives=_other_units(columns, found.columns, given),
+        mapping=stated,
+        alternatives=_other_units(columns, found.columns),
         is_of_robot=any(column.robot for column in found.columns.values()),
         units_given=tuple(name for name, each in found.columns.items() if each.sure and each.unit and not each.label.unit),
         units_assumed=tuple(name for name, each in found.columns.items() if not each.sure),
@@ -215,7 +237,7 @@ def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
     """Return the kind of a set of columns, and the channel of each; the kinds that need most are asked first.
 
     Raises:
-        UndecidedError: several kinds or channels are possible, or none
+        QuestionError: several kinds or channels are possible, or none
     """
     if given.kind is not None:
         return kind_named(given.kind).roles(columns, given)
@@ -224,46 +246,26 @@ def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
         return kind.roles(columns, given)
     needs = "; ".join(f"{each.needs} for {each.name}" for each in kinds if each.needs)
     unknown = f"it has {names_of(columns)}, which is no measurement that is known: it needs {needs}"
-    raise UndecidedError(f"{unknown}. If it has more, name it, as with {as_option('column', 'torque', 'NAME')}")
+    raise QuestionError(unknown)
 
 
-def _further(source: MeasurementFile, given: FileMapping, undecided: UndecidedError) -> str:
-    """Return what to add besides an answer, if that leaves further questions."""
-    further, asked = "", {undecided.options}
-    while undecided.answer is not None:
-        given = given.updated(undecided.answer)
-        try:
-            _recognised(source, given)
-            break
-        except UndecidedError as next_one:
-            if next_one.ways or not next_one.options or next_one.options in asked:
-                break
-            further += f"; and add {next_one.options}"
-            asked.add(next_one.options)
-            undecided = next_one
-        except ValueError:
-            break
-    return further
-
-
-def _other_units(columns: Sequence[Column], found: Mapping[str, Column], given: FileMapping) -> tuple[Alternative, ...]:
+def _other_units(columns: Sequence[Column], found: Mapping[str, Column]) -> tuple[Answer, ...]:
     """Return other units of the channels without one, if their numbers fit them as well."""
     names = {each.position: each.name if name in REFLECTED else name for name, each in found.items()}
     ways = []
     for units in other_units([column for column in columns if column.own and column.position in names]):
         by_name = {names[place]: unit for place, unit in units.items()}
-        options = " ".join(f"--unit {name}={unit}" for name, unit in by_name.items())
-        ways.append(Alternative(given.updated(FileMapping(units=by_name)), "in " + listed(by_name.values()), options))
+        ways.append(Answer("in " + listed(by_name.values()), {"units": by_name}))
     return tuple(ways)
 
 
-def _unused(table: OpenTable, columns: Sequence[Column]) -> tuple[str, ...]:
-    """Return the names in the file of the columns that are not among these."""
+def _unused(table: OpenTable, columns: Sequence[Column]) -> dict[int, str]:
+    """Return the names in the file of the columns that are not among these, by their positions."""
     used = {column.position for column in columns}
-    return tuple(one_line(label.text) for place, label in enumerate(table.labels) if place not in used and label.name)
+    return {place: one_line(label.text) for place, label in enumerate(table.labels) if place not in used and label.name}
 
 
-def _of_unused(names: Sequence[str]) -> list[str]:
+def _of_unused(names: Collection[str]) -> list[str]:
     return [f"columns not used: {listed(names)}"] if names else []
 
 
@@ -274,32 +276,31 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
     """Ask for the torque or current of columns without names, whose layout contains the motion alone.
 
     Raises:
-        UndecidedError: no one named it; names the options
+        QuestionError: no one named it; names the options
     """
     for part in source.parts or (source,):
         _check_not_interleaved(part)
     if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
-        paths = " ".join(str(other) for other in (source.path, *others))
-        raise UndecidedError(f"it has one quantity of a recording; name its files together: {paths}")
+        together = Answer("the files of the recording together", files=tuple(map(str, others)))
+        raise QuestionError("it has one quantity of a recording", [together])
     named, layout = {CHANNELS[ALIASES.get(name, name)].quantity for name in given.columns}, source.layout
     if layout is not None and layout.efforts and not named & {"torque", "current", "voltage"}:
         is_timed = "rate" in given.constants or any(label.name == "time" for label in source.table.labels)
-        question, options = layout.question(is_timed=is_timed, joint=given.joint)
-        raise UndecidedError(question, (), options)
+        raise layout.question(is_timed=is_timed)
 
 
 def _check_not_interleaved(source: MeasurementFile) -> None:
     """Refuse one column without a name in which the numbers of several joints follow each other.
 
     Raises:
-        UndecidedError: it is such a file; states how to convert it
+        QuestionError: it is such a file; states how to convert it
     """
     if len(source.raw.labels) != 1 or not nameless(source.raw):
         return
     numbers, _ = source.raw.measured([ColumnSource(0, "numbers", "numbers", "1")])
     if joints := interleaved(numbers["numbers"]):
         name = source.path.name
-        raise UndecidedError(
+        raise QuestionError(
             f"{name} has one column in which the numbers of {joints} joints follow each other; write a row for each sample, "
             f"as with python -c \"import numpy as np; np.savetxt('rows-{name}', np.loadtxt('{name}').reshape(-1, {joints}))\", "
             "and take the files with rows"
@@ -371,7 +372,7 @@ def check_one_joint(files: Sequence[Recognised]) -> None:
             joints.setdefault(file.joint, file.path.name)
     if len(joints) > 1:
         which = listed(f"{name} of joint {joint}" for joint, name in joints.items())
-        raise ValueError(one_line(f"each joint has a gear of its own, but {which}: add --joint {min(joints)}, or --joint all"))
+        raise which_joint(one_line(f"each joint has a gear of its own, but {which}"), sorted(joints))
 
 
 def _joint_of(columns: Mapping[str, Column], path: Path) -> str:
@@ -431,7 +432,7 @@ def _in_time(
         series, remarks = {"time": when.time, **series}, list(when.remarks)
     if "time" not in series:
         if kind_named(kind).time == "needed":
-            raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
+            raise QuestionError("it has no time", [LOG_AT_RATE])
         return series, remarks, 0.0
     if kind in ("log", "encoders"):
         series, of_rows = _renewed(series, columns)

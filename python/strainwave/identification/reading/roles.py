@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import Quantity, Side
-from strainwave.identification.reading.sides import UndecidedError, pair
-from strainwave.messages import as_option, listed
+from strainwave.identification.reading.sides import pair
+from strainwave.messages import listed
+from strainwave.questions import Answer, QuestionError
 
 
 @dataclass(frozen=True)
@@ -60,15 +61,14 @@ def needed(columns: Sequence[Column], quantity: Quantity, title: str) -> Column:
         title: of the kind of measurement that needs it
 
     Raises:
-        UndecidedError: there is none, or several
+        QuestionError: there is none, or several
     """
     found = measured(columns, quantity)
     found = found if len(found) == 1 else [column for column in found if column.by_user] or found
     if len(found) == 1:
         return found[0]
     lack = f"each of {names_of(found)} may be it" if found else f"it has {names_of(columns)}"
-    way = as_option("column", quantity, "NAME")
-    raise UndecidedError(f"{title} needs one {quantity}: {lack}; choose one, as with {way}")
+    raise QuestionError(f"{title} needs one {quantity}: {lack}", columns_for(quantity, found))
 
 
 def channels(wanted: Mapping[str, Sequence[Column]]) -> dict[str, Column]:
@@ -84,13 +84,18 @@ def put(found: dict[str, Column], name: str, column: Column) -> None:
     """Add the column of a channel; one that a person named replaces one that has it by its name.
 
     Raises:
-        UndecidedError: both may be the channel
+        QuestionError: both may be the channel
     """
     if name not in found or (column.by_user and not found[name].by_user):
         found[name] = column
     elif column.by_user or not found[name].by_user:
-        way = as_option("column", name, column.name)
-        raise UndecidedError(f"{pair(found[name], column)} may both be the {name}; choose one, as with {way}")
+        both = [found[name], column]
+        raise QuestionError(f"{pair(*both)} may both be the {name}", columns_for(name, both))
+
+
+def columns_for(name: str, columns: Sequence[Column]) -> list[Answer]:
+    """Return the answers to which of some columns is a channel."""
+    return [Answer(column.name, {"columns": {name: column.reference}}) for column in columns]
 
 
 def names_of(columns: Sequence[Column]) -> str:

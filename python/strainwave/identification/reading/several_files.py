@@ -14,6 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import EFFORTS
 from strainwave.identification.reading.channels import CHANNELS
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile
@@ -59,7 +60,10 @@ def _in_one_reading(group: Sequence[Recognised], opened: Mapping[Path, Measureme
     usual, _ = Counter(file.kind for file in group).most_common(1)[0]
     readings = dict[Path, dict[_Reading, Recognised]]()
     for file in group:
-        ways = [file, *(recognise(opened[file.path], each.mapping) for each in file.alternatives)]
+        ways = [
+            file,
+            *(recognise(opened[file.path], file.mapping.updated(FileMapping(**each.given))) for each in file.alternatives),
+        ]
         readings[file.path] = {_reading(each): each for each in ways}
     common = set[_Reading].intersection(*(set(readings[file.path]) for file in group if file.kind == usual))
     if len(common) != 1:
@@ -71,7 +75,7 @@ def _in_one_reading(group: Sequence[Recognised], opened: Mapping[Path, Measureme
     for file in group:
         own = readings[file.path]
         same = own.get(one) or next((each for (_, moved), each in own.items() if moved == motions), file)
-        found[file.path] = replace(same, question="", alternatives=(), remarks=(remark, *same.remarks))
+        found[file.path] = replace(same, question=None, alternatives=(), remarks=(remark, *same.remarks))
     return found
 
 
@@ -162,20 +166,24 @@ def _are_alike(one: Recognised, other: Recognised) -> bool:
     return all(bool(np.all(np.abs(a - b) <= MAX_OFF_NUMBER * max(float(np.ptp(a)), 1e-300))) for a, b in pairs)
 
 
+def _less_line(series: Array) -> Array:
+    """Return a series less the straight line that fits it best."""
+    place = np.arange(len(series))
+    return np.asarray(series - np.polyval(np.polyfit(place, series, 1), place))
+
+
 def _are_one_run(one: Recording, other: Recording) -> bool:
     """True if two logs contain one motion: an angle of one is a multiple of an angle of the other, at the same times.
 
     Straight lines are always multiples of each other: what the angles have besides must be so.
     """
-    from scipy.signal import detrend
-
     angles = [next((each[name] for name in ENCODERS if name in each), None) for each in (one, other)]
     if angles[0] is None or angles[1] is None or "time" not in one or "time" not in other:
         return False
     time = np.linspace(max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1]), SAMPLES_COMPARED)
     if not time[-1] > time[0]:
         return False
-    a, b = detrend(np.interp(time, one.time, angles[0])), detrend(np.interp(time, other.time, angles[1]))
+    a, b = _less_line(np.interp(time, one.time, angles[0])), _less_line(np.interp(time, other.time, angles[1]))
     return _are_proportional(a, b, MAX_OFF_RUN) and _may_be_one_effort(one, other, time)
 
 

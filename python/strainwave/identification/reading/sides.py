@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side, meaning
-from strainwave.messages import as_option
+from strainwave.questions import Answer, QuestionError
 
 Array = NDArray[np.float64]
 
@@ -20,23 +19,6 @@ SPEED_QUANTILE = 0.9  # of the time, in which a motor that is recognised by its 
 MAX_FACTOR_OF_SIDE = 2.0  # between the median speeds of two channels of one side
 MIN_FACTOR_OF_SIDES = 10.0  # between the ranges of the angles of input and output
 GIVEN = "as was given"  # of a side
-
-
-class UndecidedError(ValueError):
-    """A question about a file that its names and numbers leave open.
-
-    Args:
-        message: the question, and how to answer it
-        ways: mappings of which each answers it, the usual one first, if a fit can decide between them; else none
-        options: what to add to the command line
-        answer: one that may be given, as far as it shows what is asked next
-    """
-
-    def __init__(
-        self, message: str, ways: Sequence[FileMapping] = (), options: str = "", answer: FileMapping | None = None
-    ) -> None:
-        super().__init__(message)
-        self.ways, self.options, self.answer = tuple(ways), options, answer
 
 
 def side_of_table(speed: Column, torque: Column, given: Side | None) -> tuple[Side, str]:
@@ -63,7 +45,7 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
         given: the side that a person gave
 
     Raises:
-        UndecidedError: nothing determines it
+        QuestionError: nothing determines it
     """
     if side := column.channel.side or given:
         return side, "" if column.channel.side else f"{column.name} is at the {side}, {GIVEN}"
@@ -74,42 +56,43 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
         return "output", f"{column.name} is {why}: it is taken to be at the output"
     motions = [each for each in others if {each.channel.quantity, column.channel.quantity} == {"angle", "speed"}]
     for other in motions:
-        if (side := other.channel.side) and _are_of_one_side(column, other, time):
+        times = _times_as_fast(column, other, time)
+        if (side := other.channel.side) and 1.0 / MAX_FACTOR_OF_SIDE < times < MAX_FACTOR_OF_SIDE:
             return side, f"{column.name} runs as {other.name} does, so it is at the {side} too"
+        if column.sure and other.sure and max(times, 1.0 / times) > MIN_FACTOR_OF_SIDES:
+            side = "input" if times > 1.0 else "output"
+            return side, f"{column.name} runs {times:.3g} times as fast as {other.name}, so it is at the {side}"
     fastest = 0.0 if time is None else float(np.quantile(np.abs(_speed(column, time)), SPEED_QUANTILE))
     if fastest > MIN_MOTOR_SPEED:
         _check_unit(column, fastest)
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
     if {other.channel.side or ("output" if other.robot else None) for other in others} - {None} == {"output"}:
         return "output", f"{column.name} is recorded with channels of a joint: it is taken to be at the output"
-    ways = " or ".join(f"--column {side}_{column.channel.quantity}={column.name}" for side in ("input", "output"))
-    raise UndecidedError(
-        f"the side of {column.name} is not determined, motor or output; give it, with {ways}, or with --side for all",
-        [FileMapping(side="output"), FileMapping(side="input")],
-    )
+    ways = [Answer("of the joint", {"side": "output"}), Answer("of the motor", {"side": "input"})]
+    raise QuestionError(f"{column.name} may be the {column.channel.quantity} of the joint or of the motor", ways, by_fit=True)
 
 
 def _check_unit(column: Column, fastest: float) -> None:
     """Ask for the unit of a motion that is as fast as a motor, but may be that of a joint in degrees.
 
     Raises:
-        UndecidedError: both are possible
+        QuestionError: both are possible
     """
     is_slow = fastest < MAX_JOINT_SPEED and (column.channel.quantity == "speed" or np.ptp(column.si) < MAX_JOINT_RANGE)
     if column.sure or not is_slow:
         return
-    unit = {"angle": "deg", "speed": "deg/s"}[column.channel.quantity]
-    joint = f"--side output {as_option('unit', column.name, unit)}"
-    may_be = f"{column.name} has no unit: it may be that of a motor in {column.unit}, or that of a joint in {unit}"
-    ways = [FileMapping(side="input"), FileMapping(side="output", units={column.name: unit})]
-    raise UndecidedError(f"{may_be}; give it, with --side input, or with {joint}", ways)
+    unit, what = {"angle": "deg", "speed": "deg/s"}[column.channel.quantity], column.channel.quantity
+    motor = Answer(f"of the motor in {column.unit}", {"side": "input"})
+    joint = Answer(f"of the joint in {unit}", {"side": "output", "units": {column.label.name: unit}})
+    question = f"{column.name} has no unit, and may be the {what} of the motor or of the joint"
+    raise QuestionError(question, [motor, joint], by_fit=True)
 
 
 def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tuple[Side, str]:
     """Return the side at which the torque of a log is counted, and what determines it.
 
     Raises:
-        UndecidedError: nothing determines it
+        QuestionError: nothing determines it
     """
     if side := column.channel.side or given:
         return side, "" if column.channel.side else f"{column.name} is at the {side}, {GIVEN}"
@@ -120,16 +103,30 @@ def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tupl
     if len(sides) == 1:
         (side,) = sides
         return side, f"{column.name} is recorded with motion of the {side} only: it is taken to be counted there"
-    ways = f"--column input_torque={column.name} or --column joint_torque={column.name}"
-    question = f"the side at which {column.name} is counted is not determined, motor or output"
-    raise UndecidedError(f"{question}; give it, with {ways}", (), ways)
+    raise QuestionError(f"{column.name} may be the torque of the motor or of the joint", sides_of_torques([column]))
+
+
+def sides_of_torques(torques: Sequence[Column]) -> list[Answer]:
+    """Return the answers to which of some torques is meant, and at which side it is counted."""
+    sides = {"joint_torque": "of the joint", "input_torque": "of the motor"}
+    names = {column.name: _stem(column) for column in torques}
+    return [
+        Answer(f"{name} is the torque {side}", {"columns": {channel: column}})
+        for name, column in names.items()
+        for channel, side in sides.items()
+    ]
+
+
+def _stem(column: Column) -> str:
+    """Return the name of a column, of one of a robot's joint without the number of the joint."""
+    return column.name.removesuffix(column.which).rstrip("_.") if column.robot and column.which else column.reference
 
 
 def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:
     """Return that of two angles, or of two speeds, at the input; that at the output; and what determines it.
 
     Raises:
-        UndecidedError: nothing determines it
+        QuestionError: nothing determines it
     """
     slow, fast = sorted(angles, key=lambda column: float(np.ptp(column.si)))
     named = [column.channel.side for column in angles]
@@ -137,9 +134,15 @@ def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:
         first, second = angles[::-1] if named[0] == "output" or named[1] == "input" else angles
         return first, second, ""
     if np.ptp(fast.si) < MIN_FACTOR_OF_SIDES * np.ptp(slow.si):
-        quantity = fast.channel.quantity
-        ways = f"--column input_{quantity}={fast.name} --column output_{quantity}={slow.name}"
-        raise UndecidedError(f"the sides of {pair(slow, fast)} are not determined; give them, as with {ways}")
+        names = [f"{side}_{fast.channel.quantity}" for side in ("input", "output")]
+        ways = [
+            Answer(
+                f"{motor.name} is that of the motor, {joint.name} of the joint",
+                {"columns": dict(zip(names, (motor.reference, joint.reference), strict=True))},
+            )
+            for motor, joint in ((fast, slow), (slow, fast))
+        ]
+        raise QuestionError(f"which of {pair(slow, fast)} is that of the motor is not determined", ways)
     times = "" if np.ptp(slow.si) == 0.0 else f" {np.ptp(fast.si) / np.ptp(slow.si):.3g} times as far as {slow.name}"
     return fast, slow, f"{fast.name} runs{times}, so it is that of the input"
 
@@ -152,12 +155,12 @@ def _per_minute(speed: float) -> str:
     return f"{speed * 30.0 / np.pi:.4g} 1/min"
 
 
-def _are_of_one_side(first: Column, second: Column, time: Column | None) -> bool:
-    """True if two channels, one of them an angle, run about equally fast."""
+def _times_as_fast(column: Column, other: Column, time: Column | None) -> float:
+    """Return the median speed of a motion over that of another one; not a number if one of them rests, or without a time."""
     if time is None:
-        return False
-    slow, fast = sorted(float(np.median(np.abs(_speed(column, time)))) for column in (first, second))
-    return fast < MAX_FACTOR_OF_SIDE * slow
+        return np.nan
+    own, others = (float(np.median(np.abs(_speed(each, time)))) for each in (column, other))
+    return own / others if own > 0.0 and others > 0.0 else np.nan
 
 
 def _speed(column: Column, time: Column) -> Array:

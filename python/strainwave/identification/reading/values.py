@@ -11,15 +11,16 @@ from numpy.typing import NDArray
 from strainwave.files.labels import ColumnSource
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, counts
+from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.incomplete_units import check_units, with_counts
-from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.recorders import with_registers
-from strainwave.messages import as_option, listed, one_line, quoted
+from strainwave.messages import listed, one_line, quoted
+from strainwave.questions import Answer, QuestionError
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         there = (
             listed(names) if len(names) <= MAX_LISTED else f"{listed(names[:MAX_LISTED])} and {len(names) - MAX_LISTED} more"
         )
-        raise ValueError(one_line(f"{table.file}: no column has a name that is known: {there}; {_naming(table)}"))
+        raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, []))
     sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
     known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)
@@ -46,6 +47,8 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     check_units(own, mapping.constants.get("ratio"))
     try:
         units = units_of(own)
+    except QuestionError:
+        raise
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
     assumed = ", ".join(f"{c.name} in {' '.join(filter(None, units[c.position][:2]))}" for c in own if c.unit is None)
@@ -59,16 +62,6 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
-
-
-def _naming(table: OpenTable) -> str:
-    """Return how to name columns of which neither names nor numbers determine anything."""
-    if len([content for content in table.contents if content == "numbers"]) == 1:
-        return "name it if the speed was constant, as with --column current=1 --constant speed='20 1/min'"
-    names = [label.name for label in table.labels]
-    if nameless(table):
-        return "name them, as with --constant rate=HZ --column output_angle=1 --column joint_torque=2"
-    return f"name it, as with {as_option('column', 'speed', names[0])}"
 
 
 def _with_side(column: Column, mapping: FileMapping) -> Column:
@@ -112,10 +105,10 @@ def _in_si(table: OpenTable, column: Column, unit: Assumed) -> Column:
         values[there] = unit.scale * convert(column.raw[there], unit.unit, found.si_unit)
     except ValueError as error:
         what = "command" if column.channel.commanded else column.channel.quantity
-        place = f"{table.file} column {quoted(column.name)}"
-        hint = as_option("unit", column.name, "counts/16384" if counts(unit.unit) else column.channel.unit)
-        other = f"name another column, with {as_option('column', what, 'NAME')}, or " if column.unit else ""
-        raise ValueError(one_line(f"{place} cannot be the {what}: {error}; {other}give its unit, with {hint}")) from None
+        usual = "counts/16384" if counts(unit.unit) else column.channel.unit
+        numbers = {column.label.name: "counts of a revolution"} if counts(unit.unit) else {}
+        ways = [Answer(f"it is in {column.channel.unit}", {"units": {column.label.name: usual}}, numbers)]
+        raise QuestionError(f"column {quoted(column.name)} cannot be the {what}: {error}", ways) from None
     return replace(found, si=values)
 
 

@@ -15,6 +15,7 @@ from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.questions import QuestionError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,6 +139,7 @@ class FileResult(ComparedByFields):
         remarks: assumptions and limits, in short sentences
         checks: consistency checks of the file
         refused: why the file cannot be used; empty if it can
+        question: that the file leaves open, if that is why it cannot be used
         same_as: the file that contains the same measurement; empty if none does
         what: the file in words, if not the title of its kind
         part_of: the table that it is a point of, together with others; empty if it stands by itself
@@ -156,6 +158,7 @@ class FileResult(ComparedByFields):
     remarks: tuple[str, ...] = ()
     checks: tuple[Check, ...] = ()
     refused: str = ""
+    question: QuestionError | None = None
     same_as: str = ""
     what: str = ""
     part_of: str = ""

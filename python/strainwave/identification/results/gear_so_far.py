@@ -17,6 +17,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.messages import one_line
 from strainwave.parameters import gear_numbers, plain
+from strainwave.questions import TORQUE_CONSTANT, QuestionError
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
 AMPLITUDE = "gear.kinematic_error.amplitude"
@@ -250,7 +251,7 @@ def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
         return file.recording, 0.0
     constant = TorqueConstant.of(file, gear_set)
     if constant is None:
-        raise ValueError("it has the current alone; give the torque constant of the motor, with --constant torque_constant=…")
+        raise QuestionError("it has the current alone", [TORQUE_CONSTANT])
     counted = abs(gear_set.gear.kinematics.ratio) if file.side == "output" else 1.0
     torque = counted * constant.value * file.recording["current"]
     return file.recording.with_column("torque", torque, "N.m"), constant.relative

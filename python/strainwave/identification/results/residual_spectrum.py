@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
 from strainwave.identification.fitting.fit import RecordFit
+from strainwave.statistics.spectrum import mean_power
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,17 +33,13 @@ def amplitude_spectra(time: Array, *series: Array) -> tuple[Array, ...]:
     >>> round(float(frequency[amplitude.argmax()]), 1), round(float(amplitude.max()), 2)
     (5.0, 0.3)
     """
-    from scipy.signal import welch
-
     if len(time) < MIN_SAMPLES:
         raise ValueError(f"the record has {len(time)} samples; a spectrum needs {MIN_SAMPLES} or more")
     even = np.linspace(time[0], time[-1], len(time))
     rate = (len(time) - 1) / (time[-1] - time[0])
-    found: list[Array] = []
-    for values in series:
-        frequency, power = welch(np.interp(even, time, values), rate, nperseg=min(len(time), MAX_SEGMENT), scaling="spectrum")
-        found = [*(found or [frequency[1:]]), np.sqrt(2.0 * power[1:])]
-    return tuple(found)
+    samples = min(len(time), MAX_SEGMENT)
+    powers = [mean_power(np.interp(even, time, values), samples)[1] for values in series]
+    return rate * np.fft.rfftfreq(samples)[1:], *(np.sqrt(2.0 * power[1:]) for power in powers)
 
 
 def spectrum_figure(part: RecordFit, title: str) -> Figure:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.student import student
 
 Array = NDArray[np.float64]
 Law = Literal["power", "exponential", "linear"]
@@ -42,9 +43,7 @@ class Slope:
     @property
     def half_width(self) -> float:
         """Return half the width of the 95 % interval."""
-        from scipy.stats import t
-
-        return float(t.ppf(0.975, self.freedom) * self.sigma)
+        return student(0.95, self.freedom) * self.sigma
 
 
 @dataclass(frozen=True)

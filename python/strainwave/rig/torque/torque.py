@@ -23,6 +23,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import Loop
+from strainwave.statistics.student import student
 
 Array = NDArray[np.float64]
 CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a torque [1]
@@ -208,8 +209,6 @@ def blank(loop: Loop, confidence: float = CONFIDENCE_LEVEL) -> Value:
     >>> round(found.value, 6), found.source
     (0.01, 'steel dummy: regression over 4 points, 95 % from 0.009864 to 0.01014 rad/(N.m)')
     """
-    from scipy.stats import t as student
-
     arguments.number("confidence", confidence, low=0.0, high=1.0)
     n, torque = len(loop), loop.torque - np.mean(loop.torque)
     spread = float(torque @ torque)
@@ -219,7 +218,7 @@ def blank(loop: Loop, confidence: float = CONFIDENCE_LEVEL) -> Value:
     residual = loop.angle - np.mean(loop.angle) - slope * torque
     scatter = float(np.sqrt(residual @ residual / (n - 2) / spread))
     sigma = float(np.hypot(scatter, slope * np.hypot(loop.torque_scale, loop.angle_scale)))
-    half = float(student.ppf(0.5 + 0.5 * confidence, n - 2)) * sigma
+    half = student(confidence, n - 2) * sigma
     if slope + half < 0.0:
         raise ValueError(f"{loop.name}: the angle falls with the torque, by {-slope:.4g} rad/(N.m); a sign is wrong")
     interval = f"{100.0 * confidence:g} % from {slope - half:.4g} to {slope + half:.4g} rad/(N.m)"

@@ -42,18 +42,23 @@ def test_no_fall_is_not_told_from_none() -> None:
     assert low < 0.0 < high
 
 
-@pytest.mark.parametrize(
-    ("changed", "message"),
-    [
-        ({"temperature": np.full(4000, 30.0)}, "the temperature changes by 0 K only"),
-        ({"speed": np.full(4000, 1.0)}, "all of them one way"),
-    ],
-)
-def test_what_tells_nothing_is_refused(changed: dict[str, np.ndarray], message: str) -> None:
-    recording = log(0)
-    for name, values in changed.items():
-        recording = recording.with_column(name, values, recording.unit(name))
-    with pytest.raises(ValueError, match=message):
+def test_one_way_the_slope_is_that_of_the_friction_and_its_level_has_the_weight_inside() -> None:
+    both, off = log(3), []
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        warmth = both["temperature"] - both["temperature"].mean()
+        current = 0.9 - 0.01 * warmth + 0.1 * random.normal(size=len(warmth))
+        one = both.with_column("speed", np.full(len(warmth), 1.0), "rad/s").with_column("current", current, "A")
+        found = friction_over_temperature(one)
+        assert found.one_way
+        off.append([(found.slope.value + 0.01) / found.slope.sigma, (found.friction.value - 0.9) / found.friction.sigma])
+    assert np.all(np.abs(off) < 4.0)
+    assert np.all(np.sqrt(np.mean(np.square(off), axis=0)) < 1.5)
+
+
+def test_a_temperature_that_hardly_changes_is_refused() -> None:
+    recording = log(0).with_column("temperature", np.full(4000, 30.0), "K")
+    with pytest.raises(ValueError, match="the temperature changes by 0 K only"):
         friction_over_temperature(recording)
 
 

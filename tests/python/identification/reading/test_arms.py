@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.questions import QuestionError
 
 from tests.evidence import arms
+from tests.support.answers import options_of
 
 JOINT = arms.Joint()
 
@@ -59,7 +61,7 @@ def test_a_table_without_names_is_read_by_its_layout(tmp_path: Path, seen: dict[
         ValueError, match=r"column 1 is the time, columns 2 to 7 are the angle of joints, columns 8 to 13 "
     ) as refused:
         recognise(tmp_path / "log.csv")
-    assert "--joint 1 (or --joint all) --column joint_torque=block3, or --column current=block3 if it is" in str(refused.value)
+    assert options_of(refused.value)[:2] == ["--column joint_torque=block3", "--column current=block3"]
     is_joint(recognise(tmp_path / "log.csv", FileMapping(joint="2", columns={"current": "block3"})), seen, 1, "current")
     columns = {"time": "1", "output_angle": "3", "output_speed": "9", "current": "15"}
     is_joint(recognise(tmp_path / "log.csv", FileMapping(columns=columns)), seen, 1, "current")
@@ -85,8 +87,10 @@ def test_of_duplicates_the_torque_from_the_current_is_taken(tmp_path: Path, seen
 
 def test_u_of_a_robot_may_be_anything_that_drives_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     arms.log_text(tmp_path / "log.log", seen)
-    with pytest.raises(ValueError, match=r"u2 may be a torque, a current or a voltage; name it with --column joint_torque=u2 "):
+    with pytest.raises(QuestionError, match=r"u2 may be a torque, a current or a voltage") as asked:
         recognise(tmp_path / "log.log", FileMapping(joint="2"))
+    of_voltage = "--column voltage=u2 --constant resistance=NUMBER --constant torque_constant=NUMBER"
+    assert options_of(asked.value) == ["--column joint_torque=u2", "--column current=u2", of_voltage]
     is_joint(recognise(tmp_path / "log.log", FileMapping(joint="2", columns={"joint_torque": "u2"})), seen, 1)
 
 
@@ -102,10 +106,9 @@ def test_an_angle_that_no_gear_twists_by_is_no_torsion_loop(tmp_path: Path) -> N
     np.savetxt(
         tmp_path / "a.csv", np.column_stack([angle, angle**3 / 1e4]), "%.6f", ",", header="joint_angle_deg,torque", comments=""
     )
-    with pytest.raises(
-        ValueError, match=r"joint_angle_deg moves by 2 rad, by which no gear twists: .*--constant rate=HZ; .*--kind torsion"
-    ):
+    with pytest.raises(QuestionError, match=r"joint_angle_deg moves by 2 rad, by which no gear twists") as asked:
         recognise(tmp_path / "a.csv")
+    assert options_of(asked.value)[0] == "--constant rate=NUMBER"
     assert recognise(tmp_path / "a.csv", FileMapping(constants={"rate": 100.0})).kind == "log"
 
 
@@ -134,10 +137,9 @@ def test_a_motor_that_goes_to_and_fro_without_time_is_asked_for(tmp_path: Path) 
     angle = 90.0 * np.sin(np.linspace(0.0, 20.0, 400))
     rows = np.column_stack([angle, np.sign(angle)])
     np.savetxt(tmp_path / "a.csv", rows, "%.6f", ",", header="motor_angle_deg,motor_current", comments="")
-    with pytest.raises(
-        ValueError, match=r"motor_angle_deg and motor_current go to and fro .*--kind presliding, .*--constant rate=HZ"
-    ):
+    with pytest.raises(QuestionError, match=r"motor_angle_deg and motor_current go to and fro") as asked:
         recognise(tmp_path / "a.csv")
+    assert options_of(asked.value) == ["--constant rate=NUMBER", "--kind presliding"]
 
 
 def test_constant_speed_in_the_words_of_robots_is_at_the_output(tmp_path: Path) -> None:
@@ -155,10 +157,9 @@ def test_the_joint_that_moves_alone_is_taken_with_a_remark(tmp_path: Path, seen:
     is_joint(found, alone, 2)
     assert "joint 3 alone moves, and is taken; otherwise add --joint NAME" in found.remarks
     arms.mat(tmp_path / "all.mat", seen)
-    with pytest.raises(
-        ValueError, match=r"it has 3 joints \(1, 2, 3\).* choose with --joint 1 or .* --column output_angle=q_1"
-    ):
+    with pytest.raises(QuestionError, match=r"it has 3 joints \(1, 2, 3\)") as asked:
         recognise(tmp_path / "all.mat")
+    assert options_of(asked.value) == ["--joint 1", "--joint 2", "--joint 3", "--joint all"]
 
 
 def written(path: Path, columns: dict[str, np.ndarray]) -> Path:
@@ -195,8 +196,10 @@ def test_the_sides_of_two_angles_are_determined_by_their_ranges(tmp_path: Path, 
     assert (found.columns["input_angle"], found.columns["output_angle"]) == ("theta", "q")
     assert any("so it is that of the input" in why for why in found.why)
     scaled = columns | {"theta": columns["theta"] / JOINT.ratio}
-    with pytest.raises(ValueError, match=r"the sides of .* are not determined; give them, as with --column input_angle="):
+    with pytest.raises(QuestionError, match=r"which of q and theta is that of the motor is not determined") as asked:
         recognise(written(tmp_path / "b.csv", scaled))
+    sides = {"--column input_angle=theta --column output_angle=q", "--column input_angle=q --column output_angle=theta"}
+    assert set(options_of(asked.value)) == sides
 
 
 def test_the_q_of_a_motor_may_be_as_far_as_it_likes(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
@@ -212,8 +215,8 @@ def test_an_angle_without_a_unit_may_be_of_a_motor_or_of_a_joint_in_degrees(
     columns = {"t": seen["time"], "theta": np.degrees(seen["q"][1]), "tau": seen["joint_torque"][1]}
     path = written(tmp_path / "a.csv", columns)
     found = recognise(path)
-    assert "motor in rad, or that of a joint in deg; give it, with --side input, or with --side output --unit" in found.question
-    assert [each.mapping.units for each in found.alternatives if each.mapping.side == "output"] == [{"theta": "deg"}]
+    assert options_of(found.question) == ["--side input", "--side output --unit theta=deg"]
+    assert [each.given["units"] for each in found.alternatives if each.given["side"] == "output"] == [{"theta": "deg"}]
     is_joint(recognise(path, FileMapping(side="output")), seen, 1, "joint_torque")
     assert recognise(path, FileMapping(side="input")).units["input_angle"] == "rad"
     fast = written(tmp_path / "b.csv", columns | {"theta": 20.0 * columns["theta"]})
@@ -227,12 +230,14 @@ def test_the_question_of_a_matrix_without_time_names_its_blocks(tmp_path: Path, 
     np.savetxt(tmp_path / "a.txt", np.column_stack(rows))
     with pytest.raises(ValueError, match="columns 1 to 3 are the angle of joints, columns 4 to 6 are the speed") as refused:
         recognise(tmp_path / "a.txt")
-    assert "block4 = columns 10 to 12, as with --column joint_torque=block4 --constant rate=HZ" in str(refused.value)
+    assert "block4 = columns 10 to 12" in str(refused.value)
+    assert options_of(refused.value)[0] == "--column joint_torque=block4 --constant rate=NUMBER"
     mapping = FileMapping(columns={"joint_torque": "block4"}, constants={"rate": 200.0})
     assert recognise(tmp_path / "a.txt", mapping).recording["output_angle"] == pytest.approx(alone["q"][1])
     np.savetxt(tmp_path / "b.txt", alone["current"][1])
-    with pytest.raises(ValueError, match="name it if the speed was constant, as with --column current=1 --constant speed="):
+    with pytest.raises(QuestionError, match="no column has a name that is known") as asked:
         recognise(tmp_path / "b.txt")
+    assert "--column current=1 --constant speed=NUMBER" in options_of(asked.value)
 
 
 def test_what_a_person_names_needs_no_choice_of_what_is_like_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
@@ -246,8 +251,9 @@ def test_what_a_person_names_needs_no_choice_of_what_is_like_it(tmp_path: Path, 
 def test_a_share_of_a_rated_torque_needs_the_rated_torque(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     columns = {"t": seen["time"], "joint_pos_rad": seen["q"][1], "torque_permille": seen["current"][1]}
     path = written(tmp_path / "a.csv", columns)
-    with pytest.raises(ValueError, match=r"of which rated value torque_permille is a share; add it, as with --unit"):
+    with pytest.raises(ValueError, match=r"of which rated value torque_permille is a share") as asked:
         recognise(path)
+    assert options_of(asked.value) == ["--unit 'torque_permille=permille of NUMBER N.m'"]
     found = recognise(path, FileMapping(units={"torque": "permille of 0.4 N.m"}))
     assert found.recording["input_torque"] == pytest.approx(0.4e-3 * seen["current"][1], abs=1e-9)
 

@@ -12,6 +12,8 @@ from strainwave.files.units import convert
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 
+from tests.support.answers import options_of
+
 FOLDER = settings(deadline=None, max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 TIME = np.arange(2000) * 0.002
 ANGLE = 1.3 * np.sin(3.0 * TIME)  # rad
@@ -61,17 +63,19 @@ def test_radians_are_taken_if_nothing_determines_the_unit(tmp_path: Path) -> Non
 
 def test_counts_are_asked_for(tmp_path: Path) -> None:
     counts = np.round(ANGLE * 1e4) * 3.0 + 7.0
-    with pytest.raises(ValueError, match=r"how many counts a revolution has in theta_m; add it, as with --unit theta_m="):
+    with pytest.raises(ValueError, match=r"how many counts a revolution has in theta_m") as asked:
         log(tmp_path, "theta_m,i", counts, SPEED)
+    assert options_of(asked.value) == ["--unit theta_m=counts/NUMBER"]
     found = recognise(tmp_path / "log.csv", FileMapping(units={"input_angle": "counts/65536"}))
     assert found.recording["input_angle"] == pytest.approx(counts / 65536 * 2.0 * np.pi)
 
 
 def test_counts_without_those_of_a_revolution_are_asked_for(tmp_path: Path) -> None:
     header = "Position actual value [cnt],Velocity actual value [cnt/s],current [A]"
-    message = r"Position actual value, Velocity actual value; .*=counts/16384' .*Velocity actual value=counts/16384/s'"
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(ValueError, match=r"Position actual value, Velocity actual value") as asked:
         log(tmp_path, header, ANGLE, SPEED, SPEED)
+    units = "--unit 'Position actual value=counts/NUMBER' --unit 'Velocity actual value=counts/NUMBER/s'"
+    assert options_of(asked.value) == [units]
     units = {"Position actual value": "inc/4096", "Velocity actual value": "inc/4096/s"}
     found = recognise(tmp_path / "log.csv", FileMapping(units=units, side="input", kind="log"))
     assert found.recording["input_speed"] == pytest.approx(SPEED / 4096 * 2.0 * np.pi)
@@ -97,6 +101,7 @@ def test_time_since_1970_determines_its_unit(tmp_path: Path, factor: float, unit
 def test_time_in_steps_of_one_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     np.savetxt(path, np.column_stack([np.arange(2000), ANGLE, SPEED]), delimiter=",", header="t,q,tau", comments="")
-    with pytest.raises(ValueError, match=r'column "t" has no unit, and its steps do not determine it; give it: --unit time=ms'):
+    with pytest.raises(ValueError, match=r'column "t" has no unit, and its steps do not determine it') as asked:
         recognise(path)
+    assert options_of(asked.value) == ["--unit t=ms", "--unit t=us", "--unit t=s", "--constant rate=NUMBER"]
     assert recognise(path, FileMapping(units={"time": "ms"})).recording.time[-1] == pytest.approx(1.999)

@@ -30,6 +30,7 @@ NAMES = {
     "Temperature_T0": Meaning("temperature", which="0"),
     "T [N.m]": Meaning("torque", unit="N.m"),
     "T [degC]": Meaning("temperature", unit="degC"),
+    "T_C": Meaning("temperature", unit="degC"),
     "ω [rad/s]": Meaning("speed", unit="rad/s"),
     "rpm": Meaning("speed", unit="rpm"),
     "mNm": Meaning("torque", unit="mNm"),

@@ -9,6 +9,8 @@ import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 
+from tests.support.answers import options_of
+
 RPM = np.array([-3000.0, 10.0, 100.0, 1000.0, -10.0, 200.0])
 TIME = np.arange(400) * 0.002
 SWING = np.sin(2.0 * np.pi * TIME)
@@ -47,8 +49,9 @@ def test_a_table_of_friction(tmp_path: Path, header: str, side: str) -> None:
 
 def test_the_unit_of_the_speeds_of_a_table_is_asked(tmp_path: Path) -> None:
     path = write(tmp_path / "table.csv", "speed,torque [N.m]", RPM / 60.0, np.sign(RPM))
-    with pytest.raises(ValueError, match=r"unit of speed is not stated, .* --unit speed=rev/s .* \(3000 1/min at most\)"):
+    with pytest.raises(ValueError, match=r"unit of speed is not stated, .* rev/s, 3000 1/min at most with") as asked:
         recognise(path)
+    assert options_of(asked.value) == ["--unit speed=rad/s", "--unit speed=rpm", "--unit speed=rev/s"]
     assert recognise(path, FileMapping(units={"speed": "rev/s"})).recording["speed"] == pytest.approx(RPM * np.pi / 30.0)
 
 
@@ -136,8 +139,9 @@ def test_crooked_rows_are_left_out_with_a_remark(tmp_path: Path) -> None:
 def test_several_joints_are_asked_for(tmp_path: Path) -> None:
     header = "time [s],q1 [rad],q2 [rad],tau1 [N.m],tau2 [N.m]"
     path = write(tmp_path / "arm.csv", header, TIME, SWING, 2.0 * SWING, SWING, 3.0 * SWING)
-    with pytest.raises(ValueError, match=r"it has 2 joints \(1, 2\), as q1, q2; choose with --joint 1 or --joint all"):
+    with pytest.raises(ValueError, match=r"it has 2 joints \(1, 2\), as q1, q2") as asked:
         recognise(path)
+    assert options_of(asked.value) == ["--joint 1", "--joint 2", "--joint all"]
     second = recognise(path, FileMapping(joint="2"))
     assert recognise(path, FileMapping(joint="J2")).columns == second.columns
     assert second.columns == {"time": "time", "output_angle": "q2", "joint_torque": "tau2"}
@@ -160,12 +164,22 @@ def test_a_column_without_any_number_is_left_out_with_a_remark(tmp_path: Path) -
 def test_a_side_that_nothing_determines_is_asked_for(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "time [s],position [rad],current [A]", TIME, SWING, SWING)
     found = recognise(path)
-    assert "give it, with --column input_angle=position or --column output_angle=position, or" in found.question
-    assert (found.side, [each.mapping.side for each in found.alternatives]) == ("output", ["input"])
+    assert options_of(found.question) == ["--side output", "--side input"]
+    assert (found.side, [each.given for each in found.alternatives]) == ("output", [{"side": "input"}])
     assert "output_angle" in recognise(path, FileMapping(side="output")).recording
     assert "input_angle" in recognise(path, FileMapping(columns={"input_angle": "position"})).recording
     fast = write(tmp_path / "fast.csv", "time [s],position [rad],current [A]", TIME, 300.0 * TIME, SWING)
     assert "reaches 2865 1/min, so it is at the input" in words_of(recognise(fast))
+
+
+def test_a_speed_a_ratio_faster_than_its_angle_is_that_of_the_motor(tmp_path: Path) -> None:
+    """As servo drives record the angle of the axis beside the speed of the motor."""
+    angle, speed = np.degrees(0.5 * SWING), 80.0 * np.gradient(0.5 * SWING, TIME) * 30.0 / np.pi
+    series = (TIME, angle, speed, np.sign(speed) + 0.01 * angle)
+    names = "Time [s],ActPos [deg],ActVel [rpm],ActTorque [N.m]"
+    found = recognise(write(tmp_path / "servo.csv", names, *series), FileMapping(columns={"input_torque": "ActTorque"}))
+    assert found.columns == {"time": "Time", "output_angle": "ActPos", "input_speed": "ActVel", "input_torque": "ActTorque"}
+    assert "ActVel runs 80 times as fast as ActPos, so it is at the input" in words_of(found)
 
 
 def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
@@ -175,7 +189,7 @@ def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
 
 
 def test_what_is_no_measurement_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"no column has a name that is known: foo, bar; name it, as with --column speed=foo"):
+    with pytest.raises(ValueError, match=r"no column has a name that is known: foo, bar"):
         recognise(write(tmp_path / "a.csv", "foo,bar", [1.0, 2.0], [1.0, 2.0]))
     with pytest.raises(ValueError, match=r"it has time, position, which is no measurement that is known"):
         recognise(write(tmp_path / "b.csv", "time [s],position [rad]", TIME, SWING))
@@ -266,8 +280,9 @@ def test_a_column_of_a_joint_is_named_by_the_stem_of_its_name(tmp_path: Path, ef
     path = arm(tmp_path / "log.csv", "position[{}] [rad]", efforts)
     found = recognise(path, FileMapping(columns={"current": "effort"}, joint="2"))
     assert found.recording["current"] == pytest.approx(5.0 * SWING)
-    with pytest.raises(ValueError, match=r"it has 2 joints \(1, 2\), .*; choose with --joint 1"):
+    with pytest.raises(ValueError, match=r'it has "effort" of 2 joints') as asked:
         recognise(path, FileMapping(columns={"current": "effort"}))
+    assert options_of(asked.value) == ["--joint 1", "--joint 2", "--joint all"]
     with pytest.raises(ValueError, match='has no column "torque" to be the current'):
         recognise(path, FileMapping(columns={"current": "torque"}, joint="2"))
 
@@ -304,6 +319,12 @@ def test_a_spring_that_is_loaded_in_steps_is_a_torsion_loop_and_a_fast_one_may_b
 ) -> None:
     twist = np.concatenate([np.linspace(a, b, 60) for a, b in ((0.2, -0.2), (-0.2, 0.2))])
     assert recognise(columns_of(tmp_path, interval * np.arange(len(twist)), twist, 4.0 * twist)).kind == kind
+
+
+def test_a_fast_record_as_stiff_as_an_output_is_a_torsion_loop(tmp_path: Path) -> None:
+    twist = np.concatenate([np.linspace(a, b, 60) for a, b in ((2e-3, -2e-3), (-2e-3, 2e-3))])
+    loop = 1.5e4 * twist + np.repeat([-0.6, 0.6], 60)
+    assert recognise(columns_of(tmp_path, 0.01 * np.arange(len(twist)), twist, loop)).kind == "torsion"
 
 
 def test_a_slow_log_whose_torque_follows_the_speed_remains_a_log(tmp_path: Path) -> None:

@@ -69,6 +69,29 @@ def test_a_loop_from_the_input_alone_determines_friction_and_hysteresis_together
     together = [each.path for each in found.files[0].estimates if each.state == "identified in combination"]
     assert together in (["gear.friction_input.breakaway"], [path for path in together if "hysteresis.breakaway" in path])
     assert any("give a friction table to separate them" in remark for remark in found.files[0].remarks)
+    whys = [each.why for each in found.files[0].estimates if each.path in together]
+    assert all(why.startswith("determined together with ") and "breakaway" in why and " ± " in why for why in whys)
+
+
+def test_a_number_without_effect_has_that_reason_and_is_that_of_the_set() -> None:
+    """Steady friction depends on bristles by rounding alone, and not on what lets their damping fade, at its limit 0."""
+    law = sw.friction.LuGre(
+        coulomb=0.05, breakaway=0.06, bristle_stiffness=40.0, bristle_damping=1e-4, stribeck_speed=2.0, viscous=3e-4
+    )
+    gear = sw.Gear(friction_input=law)
+    torque = law.steady(SPEED) + 1e-4 * np.random.default_rng(4).normal(size=len(SPEED))
+    table = sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    free = [f"friction_input.{name}" for name in ("coulomb", "bristle_stiffness", "damping_fading")]
+    found = sw.fit(gear, table, free)
+    judged = {
+        each.path.rpartition(".")[2]: each
+        for each in JudgedFit(found, "table.csv", InfluenceOfKept.none(len(found.estimates))).estimates({}, ())
+    }
+    assert judged["coulomb"].state == "identified"
+    for name in ("bristle_stiffness", "damping_fading"):
+        assert judged[name].value == pytest.approx(getattr(law, name), rel=1e-3), name
+        assert judged[name].state == "not identified", name
+    assert judged["damping_fading"].why == "table.csv stays the same when it changes"
 
 
 def test_a_gear_loads_without_a_warning_and_breaks_away_no_lower_than_it_slides() -> None:

@@ -116,3 +116,19 @@ def test_a_number_that_is_not_identified_is_that_of_the_set_and_the_sum_stays() 
     assert after.steady(10.0) == pytest.approx(1.5 * LAW.steady(10.0), rel=2e-2)
     assert abs(after.viscous / LAW.viscous - 1.0) < 1.0 < abs(before.viscous / LAW.viscous - 1.0)
     assert [each.value for each in estimates] == [after.coulomb, after.viscous]
+
+
+def test_a_gear_with_bristles_keeps_them_when_a_table_leaves_the_division_of_friction_to_the_set() -> None:
+    """The law that is fitted to a table is not the one that is written: the set's numbers are priors of the former."""
+    bristles = sw.friction.LuGre(
+        coulomb=0.046, breakaway=0.05, viscous=3.5e-4, bristle_stiffness=40.0, bristle_damping=1e-3, stribeck_speed=1.0
+    )
+    start = sw.GearSet.of(START.gear.replace(friction_input=bristles), name="bristles", source="assumed")
+    speed = np.linspace(9.0, 11.0, 30)
+    torque = 0.07 + 3e-4 * speed + 2e-3 * np.random.default_rng(0).normal(size=30)
+    columns = {"speed": np.append(speed, -speed), "torque": np.append(torque, -torque)}
+    found = sw.identify(start, {"friction": sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"})})
+    law = found.gear_set.gear.friction_input
+    assert isinstance(law, sw.friction.LuGre)
+    assert (law.bristle_stiffness, law.breakaway) == (40.0, law.coulomb)
+    assert law.steady(10.0) == pytest.approx(0.073, rel=0.02)

@@ -223,8 +223,10 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
 
 
 def merged(gear: Gear) -> Gear:
-    """Return the gear with the two Maxwell elements as one that slip at the most similar twists."""
+    """Return the gear without the Maxwell element that has no torque, or with the two as one that slip at similar twists."""
     elements = sorted(pairs(gear), key=lambda e: e[1] / e[0])
+    if elements[0][1] == 0.0:
+        return gear.replace(hysteresis=maxwell(elements[1:]))
     slips = np.log([f / k for k, f in elements])
     first = int(np.argmin(np.diff(slips)))
     (k, f), (other_k, other_f) = elements[first : first + 2]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from strainwave.identification.candidates.torsion.candidate import (
     with_fewer,
 )
 from strainwave.identification.candidates.torsion.dissipation import Dissipation, Dry, Elements, InputFriction, Nothing
-from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
@@ -49,15 +49,30 @@ def fit_loop(
     """
     chosen = np.ones(len(loop.twist), bool) if training is None else training
     kinds = [(spring, dissipation) for dissipation in asked(loop, gear, friction_measured) for spring in SPRINGS]
-    candidates = [candidate(loop, gear, chosen, *each) for each in kinds]
+    candidates = _fitted(loop, gear, chosen, kinds)
     best = min(candidates, key=lambda c: c.error)
     if drift := drifts(with_drift(best, gear)):
         loop = replace(loop, **drift)
-        candidates = [candidate(loop, gear, chosen, *each) for each in kinds]
+        candidates = _fitted(loop, gear, chosen, kinds)
         best = min(candidates, key=lambda c: c.error)
     good = float(np.hypot(1.05 * best.error, MIN_ERROR_SHARE * np.ptp(loop.torque)))
     candidates += simpler(best, good, gear)
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
+
+
+def _fitted(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], kinds: Sequence[tuple[SpringKind, Dissipation]]
+) -> list[TorsionCandidate]:
+    """Return the candidates of springs and dissipations for which there are samples enough; raises if there are for none."""
+    found, refused = list[TorsionCandidate](), list[ValueError]()
+    for each in kinds:
+        try:
+            found.append(candidate(loop, gear, training, *each))
+        except ValueError as error:
+            refused.append(error)
+    if not found:
+        raise refused[0]
+    return found
 
 
 def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:

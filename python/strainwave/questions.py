@@ -1,0 +1,129 @@
+"""Questions that a file leaves open, each with its answers: options of the command, and keyword arguments in Python."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from strainwave.messages import printable
+
+NUMBER = "NUMBER"  # stands in an answer for a number that only a person knows
+ALL_JOINTS = "all"  # in place of the name of a joint
+TABLES = {"columns": "--column", "units": "--unit", "constants": "--constant"}  # arguments with an option for each entry
+SINGLE = {"joint": "--joint", "kind": "--kind", "side": "--side"}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An answer to a question: what a person states of a file.
+
+    Args:
+        label: the answer in words
+        given: the statement, as keyword arguments of `FileMapping`; numbers that only a person knows as an example
+        numbers: these numbers in words, by the names of their constants or columns
+        files: paths of files to read with it
+        gives: what the file is with this answer, in words
+    """
+
+    label: str
+    given: Mapping[str, Any] = field(default_factory=dict)
+    numbers: Mapping[str, str] = field(default_factory=dict)
+    files: tuple[str, ...] = ()
+    gives: str = ""
+
+    @property
+    def options(self) -> list[str]:
+        """The words to add to a command line.
+
+        >>> Answer("samples of a log", {"constants": {"rate": 500.0}}, numbers={"rate": "rows per second"}).options
+        ['--constant', 'rate=NUMBER']
+        """
+        words = [word for name, option in SINGLE.items() if name in self.given for word in (option, str(self.given[name]))]
+        for name, option in TABLES.items():
+            for key, value in self.given.get(name, {}).items():
+                words += [option, f"{key}={self._written(key, value)}"]
+        return [*words, *self.files]
+
+    @property
+    def arguments(self) -> str:
+        """The keyword arguments of `FileMapping`, as Python has them.
+
+        >>> Answer("at the motor", {"side": "input", "units": {"v": "rpm"}}).arguments
+        'side="input", units={"v": "rpm"}'
+        """
+        singles = [f'{name}="{self.given[name]}"' for name in SINGLE if name in self.given]
+        tables = [
+            f"{name}={{{', '.join(self._entry(key, value) for key, value in self.given[name].items())}}}"
+            for name in TABLES
+            if name in self.given
+        ]
+        return ", ".join([*singles, *tables])
+
+    def after(self, first: Answer) -> Answer:
+        """Return this and an answer that was given before, as one."""
+        given = {**first.given, **self.given}
+        given |= {name: {**first.given[name], **self.given[name]} for name in TABLES if {*first.given} & {*self.given} & {name}}
+        return Answer(f"{first.label}, {self.label}", given, {**first.numbers, **self.numbers})
+
+    def _written(self, name: str, value: object) -> str:
+        """Return a value of an option, with the word in place of a number that only a person knows."""
+        text = f"{value:g}" if isinstance(value, float) else str(value)
+        return re.sub(r"\d+(\.\d+)?", NUMBER, text, count=1) if name in self.numbers else text
+
+    def _entry(self, name: str, value: object) -> str:
+        text = self._written(name, value)
+        return f'"{name}": "{text}"' if isinstance(value, str) else f'"{name}": {text}'
+
+
+class QuestionError(ValueError):
+    """A file leaves a question open.
+
+    Args:
+        question: in words
+        answers: that are possible, the usual one first; none if only another record has one
+        by_fit: True if a fit can decide between the answers
+
+    >>> ways = [Answer("of the joint", {"side": "output"}), Answer("of the motor", {"side": "input"})]
+    >>> print(QuestionError("q may be an angle of the joint or the motor", ways))
+    q may be an angle of the joint or the motor: of the joint with --side output (in Python FileMapping(side="output")), or of \
+the motor with --side input (in Python FileMapping(side="input"))
+    """
+
+    def __init__(self, question: str, answers: Sequence[Answer] = (), *, by_fit: bool = False) -> None:
+        self.question, self.answers, self.by_fit = question, tuple(answers), by_fit
+        ways = [
+            f"{each.label} with {shlex.join(each.options)} (in Python FileMapping({each.arguments}))" for each in self.answers
+        ]
+        super().__init__(printable(f"{question}{': ' * bool(ways)}{', or '.join(ways)}"))
+
+    def of(self, name: str) -> QuestionError:
+        """Return the question with the name of its file in front."""
+        return QuestionError(f"{name}: {self.question}", self.answers, by_fit=self.by_fit)
+
+    def lines(self, words: Sequence[str]) -> list[str]:
+        """Return the question, and for each answer a command line to paste.
+
+        Args:
+            words: the command line that led to the question
+
+        >>> answer = Answer("the motor", {"side": "input"}, gives="a log")
+        >>> print(*QuestionError("which side?", [answer]).lines(["x"]), sep="\\n")
+        which side?
+          1. the motor: a log
+            x --side input
+        """
+        found = [self.question]
+        for number, each in enumerate(self.answers, start=1):
+            numbers = "".join(f"; {NUMBER}: {what}" for what in dict.fromkeys(each.numbers.values()))
+            found += [
+                f"  {number}. {each.label}{': ' * bool(each.gives)}{each.gives}{numbers}",
+                f"    {shlex.join([*words, *each.options])}",
+            ]
+        return [printable(line).replace("\n", "\\n") for line in found]
+
+
+TORQUE_CONSTANT = Answer("the motor is known", {"constants": {"torque_constant": 0.1}}, {"torque_constant": "N.m/A"})
+LOG_AT_RATE = Answer("samples of a log", {"constants": {"rate": 500.0}}, {"rate": "rows per second [Hz]"})

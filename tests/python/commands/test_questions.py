@@ -1,0 +1,197 @@
+"""Every command that a question prints works on that file: it gives a result, or asks one more and different question."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from strainwave.commands import cli
+from strainwave.questions import Answer, QuestionError
+
+from tests.python.command import Result, strainwave
+from tests.support.answers import commands_in, outcomes
+
+TIME = np.arange(0.0, 8.0, 0.005)
+ANGLE = 0.8 * np.sin(2.0 * TIME) + 0.2 * np.sin(5.3 * TIME)
+SPEED = 1.6 * np.cos(2.0 * TIME) + 1.06 * np.cos(5.3 * TIME)
+ACCELERATION = -3.2 * np.sin(2.0 * TIME) - 5.618 * np.sin(5.3 * TIME)
+RATIO = 100.0
+NOISE = np.random.default_rng(5).standard_normal((4, len(TIME)))
+TORQUE = 1.5 * ACCELERATION + 20.0 * np.sin(ANGLE) + 6.0 * np.sign(SPEED) + 4.0 * SPEED + 0.05 * NOISE[0]  # at the joint
+OTHER_ANGLE, OTHER_SPEED = np.cos(1.7 * TIME), -1.7 * np.sin(1.7 * TIME)
+OTHER_TORQUE = 15.0 * np.sin(OTHER_ANGLE) + 5.0 * np.sign(OTHER_SPEED) - 2.0 * OTHER_ANGLE + 0.05 * NOISE[1]
+RPM = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
+FRICTION = np.array([50.6, 51.5, 53.1, 55.9, 65.2, 80.1, 109.7])
+SWEEP = np.concatenate([np.linspace(0, 1, 60), np.linspace(1, -1, 120), np.linspace(-1, 0, 60)])
+TO_RECORD = ("record", "needs")  # words of a refusal that names what to record
+
+
+def written(path: Path, header: str, *columns: np.ndarray) -> str:
+    np.savetxt(path, np.column_stack(columns), "%.9g", ",", header=header, comments="")
+    return path.name
+
+
+def loop(folder: Path, header: str = "angle [deg],torque [N.m]") -> str:
+    angle = np.degrees(1.2e-3 * SWEEP + 1e-4 * np.sign(np.gradient(SWEEP)))
+    return written(folder / "a.csv", header, angle, 20.0 * SWEEP)
+
+
+def two_joints(folder: Path) -> str:
+    header = "t [s],q1 [rad],q2 [rad],dq1 [rad/s],dq2 [rad/s],tau1 [Nm],tau2 [Nm]"
+    return written(folder / "a.csv", header, TIME, ANGLE, OTHER_ANGLE, SPEED, OTHER_SPEED, TORQUE, OTHER_TORQUE)
+
+
+def one_quantity(folder: Path) -> str:
+    header = "t [s],arm_1_joint,arm_2_joint"
+    written(folder / "run_velocity.csv", header, TIME, SPEED, OTHER_SPEED)
+    written(folder / "run_effort.csv", header, TIME, TORQUE, OTHER_TORQUE)
+    return written(folder / "run_position.csv", header, TIME, ANGLE, OTHER_ANGLE)
+
+
+def of_two_joints(folder: Path) -> str:
+    written(folder / "q7_run.csv", "t [s],position [rad],effort [Nm]", TIME, OTHER_ANGLE, OTHER_TORQUE)
+    return f"{written(folder / 'q2_run.csv', 't [s],position [rad],effort [Nm]', TIME, ANGLE, TORQUE)} q7_run.csv"
+
+
+def with_counters(folder: Path) -> str:
+    rows = np.arange(len(TIME), dtype=float)
+    header = "t [s],q [rad],seq,stamp,M_A"
+    return written(folder / "a.csv", header, TIME, ANGLE, rows, 1.7e9 + np.floor(TIME), TORQUE)
+
+
+def torque_and_numbers(folder: Path) -> str:
+    return written(folder / "a.csv", "t [s],seq,x1,tau [Nm]", TIME, np.arange(len(TIME), dtype=float), ANGLE, TORQUE)
+
+
+FILES: dict[str, Callable[[Path], str]] = {
+    "joints": two_joints,
+    "files of two joints": of_two_joints,
+    "one quantity": one_quantity,
+    "counters": with_counters,
+    "torque and a column without a meaning": torque_and_numbers,
+    "matrix": lambda folder: written(
+        folder / "a.csv", "c1,c2,c3,c4,c5,c6,c7", TIME, ANGLE, OTHER_ANGLE, SPEED, OTHER_SPEED, TORQUE, OTHER_TORQUE
+    ),
+    "matrix without time": lambda folder: written(folder / "a.csv", "c1,c2,c3", ANGLE, SPEED, TORQUE),
+    "permille": lambda folder: written(
+        folder / "a.csv", "t [s],Position actual value [rad],Torque actual value", TIME, RATIO * ANGLE, np.round(TORQUE / 0.04)
+    ),
+    "counts": lambda folder: written(
+        folder / "a.csv", "t [s],theta_m,i [A]", TIME, np.round(RATIO * ANGLE * 3e4) * 3.0 + 7.0, TORQUE / 10.0
+    ),
+    "speeds without unit": lambda folder: written(folder / "a.csv", "speed,torque [mN.m]", RPM, FRICTION),
+    "loop without side": loop,
+    "loop that is too wide": lambda folder: written(folder / "a.csv", "joint_angle_deg,torque", np.degrees(ANGLE), TORQUE),
+    "to and fro without time": lambda folder: written(
+        folder / "a.csv", "motor_angle_deg,motor_current", 90.0 * SWEEP, np.sign(np.gradient(SWEEP)) + 0.01 * SWEEP
+    ),
+    "speed and torque without time": lambda folder: written(
+        folder / "a.csv", "q [rad],dq [rad/s],tau [Nm]", ANGLE, SPEED, TORQUE
+    ),
+    "rows as time": lambda folder: written(folder / "a.csv", "t,q [rad],tau [Nm]", np.arange(len(TIME)), ANGLE, TORQUE),
+    "time that stands": lambda folder: written(folder / "a.csv", "t [s],q [rad],tau [Nm]", 0.0 * TIME, ANGLE, TORQUE),
+    "effort without unit": lambda folder: written(
+        folder / "a.csv", "time,joint_position,joint_velocity,joint_effort", TIME, ANGLE, SPEED, TORQUE / 9.85
+    ),
+    "sides": lambda folder: written(folder / "a.csv", "t [s],position [rad],current [A]", TIME, ANGLE, TORQUE / 10.0),
+    "sides of two angles": lambda folder: written(
+        folder / "a.csv", "t [s],theta [rad],q [rad],tau_J [Nm]", TIME, ANGLE + 1e-4 * TORQUE, ANGLE, TORQUE
+    ),
+    "side of a torque": lambda folder: written(
+        folder / "a.csv", "t [s],motor_angle [rad],joint_angle [rad],moment [Nm]", TIME, RATIO * ANGLE, ANGLE, TORQUE
+    ),
+    "torques": lambda folder: written(
+        folder / "a.csv", "t [s],q [rad],torque_a [Nm],torque_b [Nm]", TIME, ANGLE, TORQUE, 0.9 * TORQUE
+    ),
+    "any input of a robot": lambda folder: written(folder / "a.csv", "t [s],q [rad],dq [rad/s],u", TIME, ANGLE, SPEED, TORQUE),
+    "names without a meaning": lambda folder: written(folder / "a.csv", "foo,bar", RPM, FRICTION),
+    "one series": lambda folder: written(folder / "a.csv", "foo", 1.0 + 0.1 * NOISE[0][:200]),
+    "voltage": lambda folder: written(
+        folder / "a.csv", "t [s],motor_angle [rad],voltage [V]", TIME, RATIO * ANGLE, TORQUE / 9.0
+    ),
+}  # fmt: skip
+
+
+def first_command(name: str, folder: Path) -> list[str]:
+    return ["identify", "csg-20-100", *FILES[name](folder).split()]
+
+
+@pytest.mark.slow("commands")
+@pytest.mark.parametrize("name", FILES)
+def test_every_command_of_a_question_works_on_that_file(tmp_path: Path, name: str) -> None:
+    command = first_command(name, tmp_path)
+    found = outcomes(command, tmp_path)
+    assert len(found) > 1 or "--" in found[0][0], f"no question: {found}"
+    for words, result in found:
+        is_result = result.returncode in (0, 3)
+        assert is_result or any(word in result.stderr for word in ("record", "unexplained", "needs")), (
+            f"{words}: {result.stderr}"
+        )
+    assert any(result.returncode in (0, 3) for _, result in found)
+
+
+def asked(name: str, folder: Path) -> Result:
+    return strainwave(*first_command(name, folder), folder=folder)
+
+
+def test_counters_and_stamps_are_no_columns_to_choose(tmp_path: Path) -> None:
+    options = [word for command in commands_in(asked("counters", tmp_path)) for word in command]
+    assert any("M_A" in word for word in options)
+    assert not any("seq" in word or "stamp" in word for word in options)
+
+
+def test_numbers_are_not_called_texts(tmp_path: Path) -> None:
+    result = asked("torque and a column without a meaning", tmp_path)
+    assert "text" not in result.stderr
+    assert any("output_angle=x1" in command for command in commands_in(result))
+
+
+def test_a_number_that_only_a_person_knows_is_no_example(tmp_path: Path) -> None:
+    result = asked("permille", tmp_path)
+    assert "'Torque actual value=permille of NUMBER N.m'" in result.stderr
+    pasted = strainwave(*first_command("permille", tmp_path), "--unit", "torque=permille of NUMBER N.m", folder=tmp_path)
+    assert pasted.returncode == 2
+    assert "write the number in place of NUMBER" in pasted.stderr
+
+
+def typing(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
+    """Let a person at a terminal type these lines."""
+    rest = list(lines)
+    monkeypatch.setattr(cli, "_is_terminal", lambda: True)
+    monkeypatch.setattr(cli, "input", lambda prompt: rest.pop(0), raising=False)
+
+
+def in_terminal(monkeypatch: pytest.MonkeyPatch, folder: Path, words: list[str]) -> int:
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(sys, "argv", ["strainwave", *words])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    return int(end.value.code or 0)
+
+
+def test_a_terminal_asks_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    command = first_command("speeds without unit", tmp_path)
+    typing(monkeypatch, "2")
+    assert in_terminal(monkeypatch, tmp_path, command) == 0
+    assert sys.argv[-2:] == ["--unit", "speed=rpm"]
+    assert (tmp_path / "out" / "identify" / "gear.toml").is_file()
+
+
+@pytest.mark.parametrize("typed", ["", "9", "no"])
+def test_a_terminal_without_an_answer_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, typed: str) -> None:
+    typing(monkeypatch, typed)
+    assert in_terminal(monkeypatch, tmp_path, first_command("speeds without unit", tmp_path)) == 2
+
+
+def test_a_question_that_an_answer_does_not_settle_is_an_error_of_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    def asks(*_: object, **__: object) -> None:
+        raise QuestionError("which side?", [Answer("the motor", {"side": "input"})])
+
+    monkeypatch.setattr(cli, "app", asks)
+    typing(monkeypatch, "1", "1")
+    monkeypatch.setattr(sys, "argv", ["strainwave", "identify"])
+    with pytest.raises(AssertionError, match="asked again after an answer: which side"):
+        cli.main()

@@ -1,0 +1,30 @@
+"""Spectra in segments, against those of SciPy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import signal
+from strainwave.statistics.spectrum import bandwidth, mean_power, segment_power
+
+
+@pytest.mark.parametrize("samples", [2, 63, 64, 257])
+def test_power_is_that_of_welch_with_the_same_window(samples: int) -> None:
+    series = np.random.default_rng(1).normal(1.0, 2.0, 1000)
+    frequency, power = mean_power(series, samples)
+    expected_frequency, expected = signal.welch(series, nperseg=samples, scaling="spectrum")
+    assert frequency == pytest.approx(expected_frequency)
+    assert power == pytest.approx(expected, abs=1e-12)
+    _, density = signal.welch(series, nperseg=samples)
+    assert power / bandwidth(samples) == pytest.approx(density, abs=1e-12)
+
+
+@pytest.mark.parametrize("repeated", [0, 10, 90])
+def test_segments_are_those_of_a_spectrogram(repeated: int) -> None:
+    series = np.random.default_rng(2).normal(size=1000)
+    frequency, power = segment_power(series, 100, repeated)
+    expected_frequency, _, expected = signal.spectrogram(
+        series, window="hann", nperseg=100, noverlap=repeated, detrend="constant", scaling="spectrum"
+    )
+    assert frequency == pytest.approx(expected_frequency)
+    assert power.T == pytest.approx(expected, abs=1e-12)
