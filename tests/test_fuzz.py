@@ -26,6 +26,7 @@ FEW = {
     "names": 40,
     "parquet": 60,
     "recognised": 60,
+    "pairs": 60,
     "formats": 30,
     "units": 60,
     "drives": 40,

@@ -94,10 +94,12 @@ the motor with --side input (in Python FileMapping(side="input"))
 
     def __init__(self, question: str, answers: Sequence[Answer] = (), *, by_fit: bool = False) -> None:
         self.question, self.answers, self.by_fit = question, tuple(answers), by_fit
+        in_python = [f" (in Python FileMapping({each.arguments}))" if each.given else "" for each in self.answers]
         ways = [
-            f"{each.label} with {shlex.join(each.options)} (in Python FileMapping({each.arguments}))" for each in self.answers
+            f"{each.label} with {shlex.join(each.options)}{python}"
+            for each, python in zip(self.answers, in_python, strict=True)
         ]
-        super().__init__(printable(f"{question}{': ' * bool(ways)}{', or '.join(ways)}"))
+        super().__init__(_on_one_line(f"{question}{': ' * bool(ways)}{', or '.join(ways)}"))
 
     def of(self, name: str) -> QuestionError:
         """Return the question with the name of its file in front."""
@@ -122,8 +124,14 @@ the motor with --side input (in Python FileMapping(side="input"))
                 f"  {number}. {each.label}{': ' * bool(each.gives)}{each.gives}{numbers}",
                 f"    {shlex.join([*words, *each.options])}",
             ]
-        return [printable(line).replace("\n", "\\n") for line in found]
+        return [_on_one_line(line) for line in found]
 
 
+def _on_one_line(text: str) -> str:
+    """Return a text without the characters that a terminal obeys, at its full length: half a command is none."""
+    return printable(text).replace("\n", "\\n")
+
+
+OF_SIDES = [Answer("of the joint", {"side": "output"}), Answer("of the motor", {"side": "input"})]
 TORQUE_CONSTANT = Answer("the motor is known", {"constants": {"torque_constant": 0.1}}, {"torque_constant": "N.m/A"})
 LOG_AT_RATE = Answer("samples of a log", {"constants": {"rate": 500.0}}, {"rate": "rows per second [Hz]"})

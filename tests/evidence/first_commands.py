@@ -1,8 +1,9 @@
 """Recordings of others at the first command, and at those that questions suggest: `python -m tests.evidence.first_commands`.
 
-Each recording of `trials` (STRAINWAVE_TRIALS) and of `data/arms` (STRAINWAVE_DATA) is given to the command that a person would
-type first. If it is refused with a question, the answer that is true of the file is pasted, twice at most. The table has the
-commands that were needed and the outcome: right, refused in words, or WRONG: another number, without a failed check.
+Each recording of `trials` (STRAINWAVE_TRIALS), of `data/arms` (STRAINWAVE_DATA) and of a recorder that the tests write is given
+to the command that a person would type first. If it is refused with a question, the answer that is true of the file is pasted,
+twice at most. The table has the commands that were needed and the outcome: right, refused in words, or WRONG: a number that is
+further from the truth than three of its standard deviations, without a failed check.
 """
 
 from __future__ import annotations
@@ -20,21 +21,32 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import radians
 from pathlib import Path
 from unittest import mock
 
 from strainwave import exit_codes
 from strainwave.commands.cli import main as strainwave
+from strainwave.questions import NUMBER, Answer
+
+from tests.python.identification.reading.test_your_recorder import RECORDERS
 
 SHARED = Path(__file__).parents[3] / "shared"
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
 TRIALS = Path(os.environ.get("STRAINWAVE_TRIALS", SHARED / "trials"))
 MAX_COMMANDS = 3  # the first, and two that questions suggest
-MAX_SIGMA = 4.0  # standard deviations of a number from the truth: one of some hundred lies further out by chance
+MAX_SIGMA = 3.0  # standard deviations of a number from the truth
 MIN_SHARE_OF_FIRST = 0.8  # of the recordings that are read at the first command
 NO_COMMAND = "no command is suggested"
 COULOMB, VISCOUS, GRAVITY = "gear.friction_input.coulomb", "gear.friction_input.viscous", "load.gravity_torque"
+# Numbers that commands print: the pattern of value and standard deviation, and the size of their unit.
+PRINTED = {
+    "order 2": (r"order 2: (\S+) ± (\S+) µrad", 1e-6),
+    "200": (r"line 200\.\d+ .*: (\S+) ± (\S+) mA", 1e-3),
+    "resonance": (r"resonance at (\S+) ± (\S+) Hz", 1.0),
+    "damping ratio": (r"damping ratio (\S+) ± (\S+)", 1.0),
+}
 Truth = Mapping[str, tuple[float, float]]  # value, and the relative difference that counts as right whatever the deviation
 
 
@@ -47,14 +59,23 @@ class Case:
         file: that path
         truth: of the numbers that are known; none of a recording whose truth nobody knows
         knows: what the person knows: words of the right answer, the first ones before others
-        values: what stands for a placeholder of a suggested command
+        number: what the person writes in place of a number that only the person knows
     """
 
     command: str
     file: Path
     truth: Truth = field(default_factory=dict)
     knows: Sequence[str] = ()
-    values: Mapping[str, str] = field(default_factory=dict)
+    number: str = ""
+
+    def started(self, start: str) -> Case:
+        """Return the case from another set; the ratio is given if that of the set is not the true one."""
+        own = re.search(r"identify (\S+)", self.command)
+        if own is None:
+            return self
+        ratio = own[1].rpartition("-")[2]
+        more = "" if start.endswith(f"-{ratio}") or "ratio=" in self.command else f" --constant ratio={ratio}"
+        return replace(self, command=f"{self.command.replace(own[1], start)}{more}")
 
 
 @dataclass(frozen=True)
@@ -72,7 +93,7 @@ class Outcome:
     message: str = ""
 
 
-def about(coulomb: float, viscous: float | None = None, gravity: float | None = None, off: float = 0.02) -> Truth:
+def about(coulomb: float, viscous: float | None = None, gravity: float | None = None, off: float = 0.0) -> Truth:
     """Return the truth of friction at the input and of gravity, each with a relative difference that counts as right."""
     known = {COULOMB: coulomb, VISCOUS: viscous, GRAVITY: gravity}
     return {path: (value, off) for path, value in known.items() if value is not None}
@@ -83,43 +104,46 @@ def cases() -> list[Case]:
     t, joint = TRIALS, about(0.060, 4e-4, 25.0)
     identify, orders = "identify csg-20-100 FILE", "orders FILE"
     current = f"{identify} --constant torque_constant=0.1"
-    order2 = {"order 2": (121.2e-6, 0.01)}
+    order2 = {"order 2": (121.2e-6, 1e-3)}
     found = [
         Case(identify, t / "moteus/output.csv", joint),
-        Case(identify, t / "epos/permille.csv", joint, values={"0.4": "0.4"}),
-        Case(current, t / "belt150/log.csv", {"ratio": (150.0, 1e-3), GRAVITY: (24.98, 0.02)}, knows=("ratio=150",)),
+        Case(identify, t / "epos/permille.csv", joint, number="0.4"),
+        Case(current, t / "belt150/log.csv", {"ratio": (150.0, 0.0), GRAVITY: (24.98, 0.0)}, knows=("ratio=150",)),
         Case(identify, t / "loadloss/dyno.csv", about(0.050, 3e-4)),
         Case(identify, t / "loadloss/dyno_driving_only.csv", about(0.050, 3e-4)),
         Case(identify, t / "loadloss/friction_load.csv", about(0.050, 3e-4)),
-        Case(identify, t / "twincat/scope_single.csv", joint),
+        Case(identify, t / "twincat/scope_single.csv", joint, number="0.4"),
         Case(identify, t / "plotjuggler/export.csv", joint),
         Case(identify, t / "lostmotion/lost.csv"),
-        Case(identify, t / "lostmotion/full.csv", {"gear.stiffness.a1": (1.6e4, 0.02)}),
+        Case(identify, t / "lostmotion/full.csv", {"gear.stiffness.a1": (1.6e4, 0.0)}),
         *(Case(orders, t / f"turn4/{name}.csv", order2) for name in ("te_60rpm_s7", "te_30rpm_s3")),
         *(Case(orders, t / f"turn4/{name}.csv", order2) for name in ("v_order2only", "v_sine_speed")),
         Case(orders, t / "turn4/te_one.mat", order2),
         Case(orders, t / "turn4/enc2.csv", order2),
-        *(Case(f"{orders} --ratio 100", t / f"turn4/{name}.csv", {"200": (0.030, 0.02)}) for name in ("te_noise", "no_te")),
-        Case(current, t / "turn4/slow.csv", {"steady_friction": (0.064, 0.005)}),
+        *(Case(f"{orders} --ratio 100", t / f"turn4/{name}.csv", {"200": (0.030, 0.0)}) for name in ("te_noise", "no_te")),
+        Case(current, t / "turn4/slow.csv", {"steady_friction": (0.064, 0.0)}),
         Case(current, t / "turn4/slow_sine.csv", about(0.060, 4e-4)),
         Case("identify csg-14-50 FILE --joint 3 --constant rate=200", t / "turn4/rl_motor.csv", about(0.022, 3.6e-5, 4.9)),
         Case(
             f"{identify} --constant ratio=101", t / "turn4/ur_effort.csv", about(0.085, 4e-4, 38.0), knows=("current",),
-            values={"torque_constant=N.m/A": "torque_constant=0.0985"},
+            number="0.0985",
         ),
         Case(
             f"{identify} --constant torque_constant=0.12", t / "turn4/bighyst.csv",
-            {"gear.stiffness.a1": (1.2e4, 0.02), "gear.hysteresis.stiffness[0]": (3e3, 0.1)},
+            {"gear.stiffness.a1": (1.2e4, 0.0), "gear.hysteresis.stiffness[0]": (3e3, 0.0)},
         ),
         Case(f"{identify} --constant torque_constant=0.05", t / "turn4/dxl.csv", about(0.02, 1e-4, 3.2)),
-        Case(identify, t / "turn4/small_table.csv", {COULOMB: (0.05, 0.02), VISCOUS: (4e-4, 0.02)}),
-        Case(identify, t / "turn4/dial.csv", {"lost_motion": (np_deg(0.021), 0.1)}),
-        Case(orders, t / "turn4/runup.csv", {"resonance": (38.0, 0.02)}),
+        Case(identify, t / "turn4/small_table.csv", about(0.05, 4e-4)),
+        Case(identify, t / "turn4/dial.csv", {"lost_motion": (radians(0.021), 0.0)}),
+        Case(orders, t / "turn4/runup.csv", {"resonance": (38.0, 0.0), "damping ratio": (0.03, 0.0)}),
         Case("identify csg-17-50 FILE", t / "turn4/rotor_detent.csv", about(0.084, 3.82e-4)),
-        Case(identify, t / "turn4/07-sea.csv", {"gear.stiffness.a1": (130.0, 0.02)}),
-        Case(identify, t / "turn4/08-panda-theta.csv", {"gear.stiffness.a1": (1.6e4, 0.02)}, knows=("input_angle=theta",)),
-        Case(current, t / "turn4/erob_data.txt", {COULOMB: (0.0118, 0.05)}),
-        Case(identify, t / "turn4/gravity_compensated.csv", {COULOMB: (0.06, 0.02), VISCOUS: (4e-4, 0.02)}),
+        Case(identify, t / "turn4/07-sea.csv", {"series_stiffness": (130.0, 0.0)}),
+        Case(identify, t / "turn4/08-panda-theta.csv", {"gear.stiffness.a1": (1.6e4, 0.0)}, knows=("input_angle=theta",)),
+        Case(
+            current, t / "turn4/erob_data.txt", {"gear.friction_input.law.coulomb": (0.0118, 0.0)},
+            knows=("spd=rpm", "output"),
+        ),
+        Case(identify, t / "turn4/gravity_compensated.csv", about(0.06, 4e-4)),
     ]  # fmt: skip
     ur = ("--joint 1 ", "current=block3")
     for path in sorted((ARMS / "ur10e").glob("*.csv")):
@@ -141,9 +165,17 @@ def cases() -> list[Case]:
     return found
 
 
-def np_deg(angle: float) -> float:
-    """Return degrees in radians."""
-    return angle * 3.141592653589793 / 180.0
+def recorders(folder: Path) -> list[Case]:
+    """Return the files of recorders that the tests write, with the options that their page states."""
+    known = about(0.060, 4e-4, 25.0, off=0.02)  # their torque has no noise
+    found = []
+    for name, (write, answer) in RECORDERS.items():
+        (folder / name).mkdir()
+        path = write(folder / name)
+        given = Answer(name, {key: value for key, value in vars(answer).items() if value and key in ("joint", "side", "units")})
+        constant = " --constant torque_constant=0.1" if name == "UR RTDE" else ""
+        found.append(Case(f"identify csg-20-100 FILE{constant} {shlex.join(given.options)}", path, known))
+    return found
 
 
 def ran(words: Sequence[str]) -> tuple[int, str, str]:
@@ -162,20 +194,12 @@ def suggested(words: Sequence[str], message: str, case: Case) -> list[str] | Non
     """Return the command of a message that is pasted: of several answers the one that the person knows to be true."""
     lines = message.splitlines()
     commands = [line.strip() for line in lines if line.startswith("    strainwave ")]
-    if not commands:  # options in the sentence, which a person adds to the command
-        firsts = re.sub(r"(?:,|\() ?or (?:name columns, as )?--(?:column|joint) \S+|or --joint all", "", message)
-        options = list(dict.fromkeys(re.findall(r"--(?:joint|column|unit|constant|side) (?:'[^']*'|[^\s,;)]+)", firsts)))
-        answers = [each for each in options if any(word in f"{each} " for word in case.knows)] or options[:1]
-        try:
-            return [*words, *shlex.split(" ".join(answers))] if answers else None
-        except ValueError:  # an option in half a quotation
-            return None
+    if not commands:
+        return None
     known = [each for each in commands if all(word in f"{each} " for word in case.knows)]
     known = known or [each for each in commands if any(word in f"{each} " for word in case.knows)]
     command = (known or commands)[0]
-    for placeholder, value in case.values.items():
-        command = command.replace(placeholder, value)
-    return shlex.split(command)
+    return shlex.split(command.replace(NUMBER, case.number))
 
 
 def outcome(case: Case, folder: Path) -> Outcome:
@@ -228,24 +252,27 @@ def numbers_of(out: Path, printed: str) -> dict[str, list[tuple[float, float]]]:
     for path in (out / "results.json",):
         if path.is_file() and (ratio := json.loads(path.read_text(encoding="utf-8")).get("ratio")) is not None:
             found.setdefault("ratio", []).append((float(ratio), 0.0)) if isinstance(ratio, int | float) else None
-    for order, value, sigma in re.findall(r"(order 2): (\S+) ± (\S+) µrad", printed):
-        found.setdefault(order, []).append((float(value) * 1e-6, float(sigma) * 1e-6))
+    for name, (pattern, size) in PRINTED.items():
+        if (numbers := re.search(pattern, printed)) is not None:
+            found[name] = [(size * float(numbers[1]), size * float(numbers[2]))]
     return found
 
 
 def main(given: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="a part of the paths of the recordings (all)")
+    parser.add_argument("--start", default="", help="the set to start from in each command (its own)")
     wanted = parser.parse_args(given)
     counted = Counter[tuple[str, int]]()
     print(f"{'recording':58} {'commands':>8} {'outcome':13} {'s':>5}")
-    for case in cases():
+    written = tempfile.TemporaryDirectory()
+    for case in [*cases(), *recorders(Path(written.name))]:
         if wanted.only not in str(case.file):
             continue
         begun = time.process_time()
         with tempfile.TemporaryDirectory() as folder:
-            found = outcome(case, Path(folder))
-        root = TRIALS if case.file.is_relative_to(TRIALS) else ARMS
+            found = outcome(case.started(wanted.start) if wanted.start else case, Path(folder))
+        root = next(each for each in (TRIALS, ARMS, Path(written.name)) if case.file.is_relative_to(each))
         name = f"{case.file.relative_to(root)}{' --joint all' if 'joint all' in case.command else ''}"
         counted[found.verdict, found.commands] += 1
         print(

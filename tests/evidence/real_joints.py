@@ -5,7 +5,7 @@ last 30 % of the motion, in the full band at every sample, is compared with the 
 (STRAINWAVE_YARDSTICK), which shares nothing with this package: it must not be larger by more than 2 % without a failed check,
 no check may fail if it is smaller, and its median over joints that move alone must be a quarter smaller. Then both halves of
 each record of a joint that moves alone are identified by themselves: 85 % of the numbers that both determine must lie within
-two standard deviations of their difference. From a second start set (`--start csg-20-100 csg-14-100`) the numbers must be the
+two standard deviations of their difference. From a second start set (`--start csg-20-100 csg-17-100`) the numbers must be the
 same, likewise.
 """
 

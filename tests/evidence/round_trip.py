@@ -57,7 +57,10 @@ class RoundTrip:
     problem: str
 
 
-def joints() -> Iterator[tuple[str, str, list[Path], str]]:
+Record = tuple[str, str, list[Path], str]
+
+
+def joints() -> Iterator[Record]:
     """Yield name, initial set, files and options of each record."""
     for trial in real_joints.trials():
         constant = CONSTANT if trial.file.startswith(("ur10e", "kinova-gen3/")) else ""

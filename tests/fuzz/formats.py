@@ -30,6 +30,26 @@ HEADERS = (
     "speed [rpm],torque [Nm],output torque [Nm]", "t,Position1,Velocity1,Torque1,TorqueCur1,Cur1",
     "time [s],motor_angle,link_angle,motor_torque",
 )  # fmt: skip
+PAIRS = (("t", "q", "tau"), ("time", "position", "velocity", "effort"), ("speed", "current", "i_max"), ("t", "t", "q"), ("q",))
+LAYOUTS = (  # of a pair, what stands between pairs, and around a sample
+    ("{}: {:.6g}", ", ", "", ""), ("{} = {:.4g} rad", "; ", "7, ", ""), ('"{}": {:.9g}', ", ", "{", "}"),
+    ("{}:\n- {:.5g}", "\n", "header:\n  seq: 3\n", "\n---"), ("{}={:.3g}", " ", "[INFO] ", ""),
+)  # fmt: skip
+PAIR_WORDS = (
+    *WORDS,
+    "---",
+    "name:\n- elbow",
+    "{",
+    "}",
+    ":",
+    "=",
+    "t: 1, t: 2",
+    '"q": [1, 2]',
+    "inf",
+    "q: rad",
+    "[INFO]",
+    "1:2:3",
+)
 SCALES = (*8 * (1.0,), 1e-300, 1e-3, 1e3, 1e150, 1e300)
 SUFFIXES = ("mat", "73.mat", "mf4", "bag", "mcap")
 
@@ -58,6 +78,20 @@ def recognised_case(random: Generator, folder: Path) -> Case:
             FileMapping(units={"time": "ms"}),
         ),
     )
+    return Case(f"{said} {described(data)}", lambda: recognise(path, said), lambda found: _check(found, path, said))
+
+
+def pairs_case(random: Generator, folder: Path) -> Case:
+    """A text of pairs of a name and a number: a line of them for each sample, JSON lines, or blocks of an echoed topic."""
+    names, rows = picked(random, PAIRS), int(random.integers(1, 40))
+    table = np.cumsum(random.normal(size=(rows, len(names))), axis=0) * picked(random, SCALES)
+    table[:, 0] = np.arange(rows) * 0.01
+    form, between, begin, end = picked(random, LAYOUTS)
+    lines = [begin + between.join(form.format(*pair) for pair in zip(names, row, strict=True)) + end for row in table]
+    data = encoded(mutated("\n".join(lines), random, PAIR_WORDS), random)
+    path = folder / f"log{picked(random, ('.txt', '.log', '.csv'))}"
+    path.write_bytes(data)
+    said = picked(random, (FileMapping(), FileMapping(units={"joint_torque": "N.m"}), FileMapping(constants={"rate": 100.0})))
     return Case(f"{said} {described(data)}", lambda: recognise(path, said), lambda found: _check(found, path, said))
 
 

@@ -14,7 +14,7 @@ from tests.fuzz.calls import calls_case, scalars_case
 from tests.fuzz.claims import claims_case
 from tests.fuzz.datasheets import datasheets_case
 from tests.fuzz.drives import drives_case
-from tests.fuzz.formats import formats_case, recognised_case
+from tests.fuzz.formats import formats_case, pairs_case, recognised_case
 from tests.fuzz.gear_files import name_case, toml_case
 from tests.fuzz.images import images_case
 from tests.fuzz.laws import Case
@@ -51,6 +51,7 @@ KINDS = {
     "names": Kind(name_case, 1, 2.0),
     "parquet": Kind(parquet_case, 4, 2.0),
     "recognised": Kind(recognised_case, 5, 2.0),
+    "pairs": Kind(pairs_case, 3, 2.0),
     "formats": Kind(formats_case, 2, 5.0),
     "claims": Kind(claims_case, 4, 10.0, 2 << 30),
     "images": Kind(images_case, 2, 5.0, 2 << 30),

@@ -15,10 +15,12 @@ from typing import Any, Literal
 
 import numpy as np
 import strainwave as sw
+from strainwave.questions import QuestionError
 
 Verdict = Literal["accepted", "refused", "wrong"]
 
-REFUSALS = (ValueError, TypeError, MemoryError, FloatingPointError, RuntimeError)  # exactly these, and any OSError
+# Exactly these, and any OSError.
+REFUSALS = (ValueError, QuestionError, TypeError, MemoryError, FloatingPointError, RuntimeError)
 PACKAGE = f"{Path(sw.__file__).parent}{os.sep}"
 LONGEST = 1000  # characters of a message
 _CONTROL = {"Cc", "Cs", "Zl", "Zp"}  # what moves a terminal, ends a line, or cannot be written at all

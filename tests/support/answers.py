@@ -12,7 +12,8 @@ from tests.python.command import Result, strainwave
 
 MAX_QUESTIONS = 2  # until a result
 NUMBERS = {
-    "rate": "200", "torque_constant": "0.1", "resistance": "1", "speed": "10", "counts": "65536", "permille": "0.4", "%": "0.4",
+    "rate": "200", "torque_constant": "0.1", "motor_inertia": "1e-5", "ratio": "100", "resistance": "1", "speed": "10",
+    "counts": "65536", "permille": "0.4", "%": "0.4",
 }  # fmt: skip
 
 
@@ -36,7 +37,7 @@ def answer_with(question: BaseException | None, label: str) -> Answer:
 def commands_in(result: Result) -> list[list[str]]:
     """The commands that a question offers, with numbers of an example drive, without the program's name."""
     lines = [line for line in result.stderr.splitlines() if line.startswith("    strainwave ")]
-    return [[_with_number(word) for word in shlex.split(line)[1:]] for line in lines]
+    return [[with_number(word) for word in shlex.split(line)[1:]] for line in lines]
 
 
 def question_in(result: Result) -> str:
@@ -44,14 +45,18 @@ def question_in(result: Result) -> str:
     return result.stderr.partition("\n")[0].rpartition(": ")[2]
 
 
-def _with_number(word: str) -> str:
+def with_number(word: str) -> str:
+    """A word of an option, with a number of an example drive where a person has to write one."""
     if NUMBER not in word:
         return word
     return word.replace(NUMBER, next(number for name, number in NUMBERS.items() if name in word))
 
 
-def outcomes(words: list[str], folder: Path, asked: tuple[str, ...] = ()) -> list[tuple[str, Result]]:
-    """Each command that a command leads to, itself if it asks nothing, with its result; fails if one is led in circles."""
+def outcomes(words: list[str], folder: Path, most: int = 20, asked: tuple[str, ...] = ()) -> list[tuple[str, Result]]:
+    """Each command that a command leads to, itself if it asks nothing, with its result; fails if one is led in circles.
+
+    Of a question with many answers, as of the joints of an arm, the first `most`.
+    """
     result = strainwave(*words, folder=folder)
     commands = commands_in(result)
     if not commands:
@@ -61,4 +66,4 @@ def outcomes(words: list[str], folder: Path, asked: tuple[str, ...] = ()) -> lis
     assert len(asked) < MAX_QUESTIONS, f"a third question: {shlex.join(words)}: {result.stderr}"
     assert result.returncode == 2
     assert len({shlex.join(each) for each in commands}) == len(commands), result.stderr
-    return [found for command in commands for found in outcomes(command, folder, (*asked, question))]
+    return [found for command in commands[:most] for found in outcomes(command, folder, most, (*asked, question))]

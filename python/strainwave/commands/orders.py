@@ -84,7 +84,9 @@ def _of_file(
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
     if read.kind == "positioning":
         steps = positioning_of(read)
-        return OrdersFound(file.path.name, None, None, (*read.remarks, *positioning_words(steps, ratio), *steps.remarks))
+        return OrdersFound(
+            file.path.name, None, None, (*read.remarks, *positioning_words(steps, read.side, ratio), *steps.remarks)
+        )
     side: Any = mapping.side
     found = orders_found(read.recording, file.path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
     return replace(found, remarks=(*read.remarks, *found.remarks))

@@ -16,6 +16,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.parameters import every
 from strainwave.statistics.linear_fit import normal_inverse, solved
+from strainwave.statistics.order_waves import order_waves
 from strainwave.tuning.drawn import drawn_gears
 
 Array = NDArray[np.float64]
@@ -128,8 +129,7 @@ def trend(recording: Recording) -> tuple[Array, Array]:
     """
     angle, current = recording.values("input_angle", "rad"), recording.values("current", "A")
     terms = np.polynomial.legendre.legvander(2.0 * (angle - angle.min()) / np.ptp(angle) - 1.0, TREND_DEGREES)
-    waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
-    design = np.column_stack([terms, *waves])
+    design = np.column_stack([terms, order_waves(angle, ORDERS)])
     found = solved(design, current)
     white = float(np.std(np.diff(current - design @ found)) / np.sqrt(2.0))
     covariance = normal_inverse(design)

@@ -16,6 +16,7 @@ from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
 from strainwave.orders.ripple import MAX_PHASE_STEP, Side
 from strainwave.orders.shaft_pair import Pair, ratio_of
 from strainwave.orders.turning import evenly_turning
+from strainwave.questions import QuestionError
 from strainwave.spline_orders import WAVE_ORDER
 
 Array = NDArray[np.float64]
@@ -98,18 +99,20 @@ def usable(
     if effort is None:
         raise ValueError(
             f"{name}: without current or torque: its columns are {listed(recording.names)}; a diagnosis needs one of "
-            f"{listed(EFFORTS)}; record it, or name its column with --column current=…"
+            f"{listed(EFFORTS)}; record it"
         )
     if not any(each in recording for each, _ in (*ANGLES, *SPEEDS)):
         raise ValueError(
             f"{name}: without an angle or a speed: its columns are {listed(recording.names)}; a diagnosis needs one of "
-            f"{listed(each for each, _ in (*ANGLES, *SPEEDS))}; record it, or name its column with --column output_angle=…"
+            f"{listed(each for each, _ in (*ANGLES, *SPEEDS))}; record it"
         )
     try:
         turning, angle, known, remarks = with_angle(recording, side, rate)
         run = JointRecording(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
         run = _with_shaft_of_input(run) if "input_angle" in recording and "output_angle" in recording else run
         _check_motion(run)
+    except QuestionError as question:
+        raise question.of(name) from None
     except ValueError as error:
         raise ValueError(str(error) if str(error).startswith(f"{name}:") else f"{name}: {error}") from None
     return run

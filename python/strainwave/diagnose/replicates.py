@@ -19,6 +19,7 @@ from strainwave.orders.ripple import Ripple
 from strainwave.orders.smooth_part import Moving, floor_without, shaft_of
 from strainwave.statistics.floor import Floor
 from strainwave.statistics.linear_fit import normal_inverse, solved
+from strainwave.statistics.order_waves import amplitudes_of, order_waves
 
 Array = NDArray[np.float64]
 
@@ -120,8 +121,8 @@ def _load(shaft: Moving, series: Array) -> Array:
     """
     own, weight = shaft.own, shaft.weight
     span = max(float(np.ptp(own.angle)), 1e-12)
-    phases = [tau * k * (own.angle - own.angle[0]) / (TREND_SPANS * span) for k in range(1, TREND_HARMONICS + 1)]
-    trend = [np.ones_like(own.angle), *(wave(phase) for phase in phases for wave in (np.sin, np.cos))]
+    slow = [tau * k / (TREND_SPANS * span) for k in range(1, TREND_HARMONICS + 1)]
+    trend = [np.ones_like(own.angle), *order_waves(own.angle - own.angle[0], slow).T]
     others = [own.sense, own.speed / max(float(np.abs(own.speed).max()), 1e-300)] if own.reverses() else []
     others.append(own.acceleration / max(float(np.abs(own.acceleration).max()), 1e-300))
     columns = np.stack([*trend, *others], axis=1) * weight[:, None]
@@ -161,9 +162,8 @@ def cells_of(
     """
     shaft = motion.shaft
     masks = [shaft.own.sense == sign for _, sign in SENSES] if parts is None else list(parts)
-    phases = [order * shaft.own.angle for order in orders]
-    waves = [wave * mask for mask in masks for phase in phases for wave in (np.cos(phase), -np.sin(phase))]
-    weighted = _without_smooth(shaft, np.stack(waves, axis=1) * shaft.weight[:, None])
+    waves = order_waves(shaft.own.angle, orders) * shaft.weight[:, None]
+    weighted = _without_smooth(shaft, np.concatenate([waves * mask[:, None] for mask in masks], axis=1))
     series = shaft.series * shaft.weight
     both = np.concatenate([shaft.basis * shaft.weight[:, None], weighted], axis=1)
     floor = floor_without(both, series, shaft.weight)  # waves would raise it where the speed varies
@@ -207,13 +207,14 @@ def _block_cells(
         return cells
     places = [2 * (part * len(orders) + k) + half for part, k in used for half in (0, 1)]
     own = columns[inside][:, places]
-    values, sigmas = solved(own, white[inside]), np.sqrt(np.diag(normal_inverse(own)))
+    amplitudes, _ = amplitudes_of(solved(own, white[inside]))
+    sigmas = np.sqrt(np.diag(normal_inverse(own)))
     for place, (part, k) in enumerate(used):
         here = inside & masks[part]
         share = weight[here]
         speed = float(np.average(np.abs(shaft.own.speed[here]), weights=share))
         cells[part][k] = Cell(
-            amplitude=float(np.hypot(values[2 * place], values[2 * place + 1])),
+            amplitude=float(amplitudes[place]),
             sigma=float(np.hypot(sigmas[2 * place], sigmas[2 * place + 1]) / np.sqrt(2.0)),
             freedom=floor.freedom(orders[k] * speed / tau),
             speed=speed / motion.step,

@@ -138,6 +138,7 @@ def read_bam(path: str | Path, ratio: float) -> GearSet:
         names = {name: float(content[name]) for name in content if name not in ("model", "actuator")}
         dry, viscous = names["friction_base"] / ratio, names["friction_viscous"] / ratio**2
         inertia, constant = names["armature"] / ratio**2, names["kt"] / ratio
+        resistance = names.get("R", 0.0)
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise ValueError(one_line(f"{path} is no parameter file of BAM: {_reason(error)}")) from None
     loads = [name for name, value in names.items() if name.startswith(LOAD_TERMS) and value]
@@ -160,7 +161,9 @@ def read_bam(path: str | Path, ratio: float) -> GearSet:
             friction_input=law,
             input_inertia=inertia,
         ),
-        motor=motor.CurrentSource(torque_constant=constant, inertia=0.0),
+        motor=motor.DC(resistance=resistance, torque_constant=constant, back_emf=constant, inertia=0.0)
+        if resistance
+        else motor.CurrentSource(torque_constant=constant, inertia=0.0),
     )
     return replace(GearSet.of(drive, name=path.stem, source=f"BAM, {path.name}"), note=note)
 

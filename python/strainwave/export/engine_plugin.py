@@ -246,7 +246,7 @@ def _left_out(drive: Drive) -> Iterator[str]:
 def _remarks(file: str, version: str, mode: Command, content: bytes) -> Iterator[str]:
     yield "the error is of first order in the timestep: halve it and compare"
     yield f"the command is {mode} from timestep to timestep"
-    yield f'load it before the model: mujoco.mj_loadPluginLibrary("{file}")'
+    yield f'load it before the model: mujoco.mj_loadPluginLibrary("./{file}")'
     yield f"{file} is for MuJoCo {version} alone, {len(content) / 1e3:.0f} kB; export it again after an update of MuJoCo"
 
 

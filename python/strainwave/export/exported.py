@@ -50,7 +50,7 @@ class Exported:
     >>> found = sw.export.joint(sw.GearSet.read("csg-20-100"))
     >>> value, unit = found.numbers["frictionloss"]
     >>> sorted(found.files), round(value, 2), unit
-    (['joint.urdf', 'joint.xml'], 4.61, 'N.m')
+    (['joint.py', 'joint.urdf', 'joint.xml'], 4.61, 'N.m')
     >>> found.left_out[1]
     'torsion: 3.99 mrad at 107 N.m'
     """

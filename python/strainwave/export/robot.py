@@ -18,6 +18,7 @@ Element = ElementTree.Element
 
 DEFAULT_TIMESTEP = 2e-3  # s, of a model that states none
 MAX_MODEL_BYTES = 64 << 20  # of a robot's file
+MAX_NESTED_ELEMENTS = 500  # each takes a call of Python's writer of XML, which allows 1000
 POSITIONS = {"hinge": 1, "slide": 1, "ball": 4, "free": 7}  # numbers of a joint in qpos
 SPEEDS = {"hinge": 1, "slide": 1, "ball": 3, "free": 6}  # in qvel
 # What a joint or actuator of a gear must not have of a class of the robot, and the value that turns it off.
@@ -238,4 +239,9 @@ def _parsed(model: str) -> Element:
         raise ValueError(f"the model is no XML: {error}") from None
     if root.tag != "mujoco":
         raise ValueError(f"the model is a {root.tag}, not a mujoco; MuJoCo itself saves a URDF as MJCF (mj_saveLastXML)")
+    depths = {root: 1}
+    for parent in root.iter():
+        depths.update(dict.fromkeys(parent, depths[parent] + 1))
+    if (deepest := max(depths.values())) > MAX_NESTED_ELEMENTS:
+        raise ValueError(f"the model nests {deepest} elements in each other; a robot may have {MAX_NESTED_ELEMENTS} at most")
     return root

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cache
 from typing import Any
 
@@ -101,6 +101,7 @@ class Validation:
         held_out_varies: root mean square of the channel about its mean there
         zero: constant part of the channel that the file contains, as the zero of a sensor
         delay: of the channel behind the motion [s]
+        shares: of terms of other joints in the torque of the output, by name, as `cos(2 + 3)` [N.m]
 
     Raises:
         ValueError: a text is no line of text, the unit is not known, or a number is not finite
@@ -116,6 +117,7 @@ class Validation:
     held_out_varies: float
     zero: float = 0.0
     delay: float = 0.0
+    shares: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         check_line("file", self.file)
@@ -126,6 +128,8 @@ class Validation:
             arguments.number(name, getattr(self, name), self.unit, brackets="[)", low=0.0)
         arguments.number("zero", self.zero, self.unit)
         arguments.number("delay", self.delay, "s")
+        for name, share in self.shares.items():
+            arguments.number(f"share of {name}", share, "N.m")
 
     @property
     def relative(self) -> float:
@@ -186,8 +190,9 @@ def validation_tables(validation: Sequence[Validation]) -> Any:
     tables = tomlkit.aot()
     for each in validation:
         table = tomlkit.table()
-        for field in fields(each):
-            table.add(field.name, getattr(each, field.name))
+        for name, value in vars(each).items():
+            if value != {}:
+                table.add(name, value)
         tables.append(table)
     return tables
 
@@ -202,6 +207,9 @@ def _covariance_form() -> Form:
 @cache
 def _validation_form() -> Form:
     text, number = {"file", "kind", "channel", "unit"}, {"zero": 0.0, "delay": 0.0}
-    keys = {each.name: (str if each.name in text else float, number.get(each.name, ...)) for each in fields(Validation)}
-    examples = {name: f'{name} = "…"' if name in text else f"{name} = …" for name in keys}
+    names = [each.name for each in fields(Validation) if each.name != "shares"]
+    keys: dict[str, Any] = {name: (str if name in text else float, number.get(name, ...)) for name in names}
+    keys |= {"shares": (dict[str, float], {})}
+    examples = {name: f'{name} = "…"' if name in text else f"{name} = …" for name in names}
+    examples |= {"shares": 'shares = {"cos(2 + 3)" = …}'}
     return Form("key of a validation", schema("validation", keys), examples)

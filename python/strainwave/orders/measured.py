@@ -14,6 +14,7 @@ from strainwave.messages import listed
 from strainwave.orders.ripple import Ripple, Side, ripple
 from strainwave.orders.run_up import RunUp, is_run_up, run_up
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
+from strainwave.questions import LOG_AT_RATE, OF_SIDES, QuestionError
 
 EFFORTS = ("joint_torque", "torque", "input_torque", "current", "vibration")  # in which ripple is looked for, the best first
 ANGLES: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
@@ -118,9 +119,7 @@ def with_angle(recording: Recording, side: Side | None, rate: float | None) -> t
         if name not in recording:
             continue
         if "time" not in recording and rate is None:
-            raise ValueError(
-                f"{name} gives an angle only over time; give the samples per second with --rate, or a column of time"
-            )
+            raise QuestionError(f"{name} gives an angle only over time", [LOG_AT_RATE])
         speed = recording.values(name, "rad/s")
         if rate is not None:
             rate = arguments.number("rate", rate, "Hz", low=0.0)
@@ -133,7 +132,7 @@ def with_angle(recording: Recording, side: Side | None, rate: float | None) -> t
 
 def _side(name: str, known: Side | None, given: Side | None) -> Side:
     if given is None and known is None:
-        raise ValueError(f"{name} may be that of the motor or that of the joint; give --side input or --side output")
+        raise QuestionError(f"{name} may be that of the motor or that of the joint", OF_SIDES)
     if given is not None and known is not None and given != known:
         raise ValueError(f'side = "{given}" is given, but {name} is that of the {known}; leave one of them out')
     return given or known or "output"

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.order_waves import amplitudes_of, order_waves
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
@@ -196,14 +197,14 @@ def _orders(angle: Array, deviation: Array) -> tuple[tuple[tuple[float, float, f
     while len(orders) < MAX_LINES and len(angle) > 3 * (columns.shape[1] + 2):
         power = np.abs(np.fft.rfft(np.bincount(place, left, BINS)))[possible]
         order = int(possible[np.argmax(power)])
-        more = np.column_stack([columns, np.cos(order * angle), np.sin(order * angle)])
+        more = np.column_stack([columns, order_waves(angle, [order])])
         rest = deviation - more @ solved(more, deviation)
         chance = chance_of_gain(float(left @ left), float(rest @ rest), 2, len(angle) - more.shape[1])
         if order in orders or chance * len(possible) > MAX_CHANCE:
             break
         orders, columns, left = [*orders, order], more, rest
-    amplitudes = solved(columns, deviation)[1:]
+    amplitudes, _ = amplitudes_of(solved(columns, deviation)[1:])
     sigma = float(np.sqrt(left @ left / (len(angle) - columns.shape[1]) * 2.0 / len(angle)))
-    lines = zip(orders, np.hypot(amplitudes[::2], amplitudes[1::2]).tolist(), strict=True)
+    lines = zip(orders, amplitudes.tolist(), strict=True)
     found = tuple(sorted((float(order), size, sigma) for order, size in lines))
     return found, [] if found else [f"no order over the angle stands out of the noise, of those up to {highest} per turn"]

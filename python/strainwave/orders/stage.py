@@ -205,8 +205,8 @@ class _Lines:
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Bounds of the logarithms of the natural frequency [rad per sample] and the damping ratio [1]."""
-        return np.log([4.0 * pi / self.count, 1e-3]), np.log([2.0 * pi, 3.0])
+        """Bounds of the logarithms of the natural frequency [rad per sample], within the lines compared, and of the damping."""
+        return np.log([4.0 * pi / self.count, 1e-3]), np.log([2.0 * pi * MAX_FREQUENCY, 3.0])
 
     def is_within_bounds(self, fitted: _Fitted) -> bool:
         """True if the stage lies within its bounds: one on a bound is no vibration, but stands for something else."""

@@ -181,8 +181,16 @@ def transmission_error(
     pair, measured = ratio_of(pair, ratio)
     size = measured.used
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
+    loads = loads_of(pair, size)
+    if 1.0 / abs(size) in [order for order, shaft in chosen if shaft == "output"]:
+        if load is None:  # one wave over the turn of the output, whose gravity is no further column
+            loads = loads[:2]
+            left_out.append("order 1 of the output contains the wind-up by a weight there: one record does not separate them")
+        else:
+            chosen = [each for each in chosen if each != (1.0 / abs(size), "output")]
+            left_out.append("order 1 of the output is part of the wind-up by the load, from which one record does not separate it")
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
-    found, every = _regressed(pair, size, shapes, loads_of(pair, size), dynamic=pair.record.timed)
+    found, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
     lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
@@ -233,6 +241,8 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
             f"turn, and it turns {turns_in:.2g} revolutions"
         )
+    if found and turns_out < MIN_ORDER_PERIODS:
+        remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} of its turns, and it turns {turns_out:.3g} times")
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS if ratio.of_strain_wave else ():

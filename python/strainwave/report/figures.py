@@ -49,14 +49,16 @@ def variables(colours: dict[str, str]) -> str:
 
 def _svg(draw: Draw, size: tuple[float, float], name: str, title: str) -> Element:
     from matplotlib import style
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
     file = io.StringIO()
-    with style.context(["default", STYLE | {"svg.hashsalt": name}]):
+    clear = {"figure.facecolor": "none", "axes.facecolor": "none"}
+    with style.context(["default", STYLE | clear | {"svg.hashsalt": name}]):
         figure = Figure(figsize=size)
         draw(figure)
         nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
-        figure.savefig(file, format="svg", transparent=True, metadata=nothing)
+        FigureCanvasSVG(figure).print_svg(file, metadata=nothing)  # type: ignore[no-untyped-call]  # savefig draws twice
     return _tidied(ElementTree.fromstring(file.getvalue()), name, title)
 
 

@@ -189,7 +189,7 @@ def _not_identified(found: Identified) -> Iterator[str]:
 
 def first_remarks(remarks: Sequence[str], before: str) -> Iterator[str]:
     """Yield the remarks that a terminal shows, and how many more the report has."""
-    yield from (f"{before}{remark}" for remark in remarks[:MAX_REMARKS])
+    yield from (f"{before}{with_options(remark)}" for remark in remarks[:MAX_REMARKS])
     if len(remarks) > MAX_REMARKS:
         yield f"{before}{len(remarks) - MAX_REMARKS} more in the report"
 

@@ -51,7 +51,7 @@ def outcome(seed: int) -> Outcome:
     columns, what = _columns(random, motion.time, motion.angle, motion.speed, torque, ratio, constant)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "log.csv")
-        np.savetxt(path, np.stack(list(columns.values()), axis=1), "%.8g", ",", header=",".join(columns), comments="")
+        np.savetxt(path, np.stack(list(columns.values()), axis=1), "%.13g", ",", header=",".join(columns), comments="")
         try:
             found = identify(
                 STARTS[seed % len(STARTS)],

@@ -27,7 +27,7 @@ START = "csg-20-100"
 RATIO = 100.0  # of the start set
 MIN_NUMBER = 1e-12  # SI; a smaller one that is not 0 is a limit or rounding
 MIN_SIGMA = 1e-3  # standard deviations of a number: what is nearer to 0 is rounding
-LIMIT_DISTANCE = 1e-6  # relative to a limit or the number before, within which a number is that limit
+LIMIT_DISTANCE = 1e-6  # relative to a limit, within which a number is that limit
 MAX_SPREADS = 2.0  # of the start set, within which a number stays that the record does not determine
 
 
@@ -234,7 +234,7 @@ def _of_gear(found: sw.Identified, saved: GearSet) -> Iterator[str]:
             continue
         size, estimate = abs(each.value), estimates.get(plain(f"gear.{path}"))
         sigma = 0.0 if estimate is None or not np.isfinite(estimate.sigma) else estimate.sigma
-        if 0.0 < size < max(MIN_NUMBER, MIN_SIGMA * sigma, LIMIT_DISTANCE * abs(old)) or _is_limit(each):
+        if 0.0 < size < max(MIN_NUMBER, MIN_SIGMA * sigma) or _is_limit(each):
             yield f"{path} = {each.value:.3g} is a limit or rounding"
         elif estimate is not None and estimate.state == "not identified" and old:
             spread = START_SPREAD * abs(old)
@@ -249,11 +249,13 @@ def _is_limit(each: Parameter) -> bool:
 
 
 def _of_lists(found: sw.Identified) -> Iterator[str]:
-    """Yield the estimates that are listed as identified and are limits or rounding."""
-    for parameter in found.parameters:
-        each = parameter.estimate
-        if abs(each.value) < MIN_NUMBER and not each.is_phase:
-            yield f"{each.path} = {each.value:.3g} ± {each.sigma:.2g} is listed as identified"
+    """Yield the estimates that are rounding, and those that are listed as identified and are a limit of 0."""
+    for each in (estimate for file in found.files for estimate in file.estimates):
+        if 0.0 < abs(each.value) < MIN_NUMBER and not each.is_phase:
+            yield f"{each.path} = {each.value:.3g} ± {each.sigma:.2g} is rounding"
+    for each in (parameter.estimate for parameter in found.parameters):
+        if each.value == 0.0 and not each.is_phase:
+            yield f"{each.path} = 0 ± {each.sigma:.2g} is listed as identified"
 
 
 def _of_export(written: Path) -> Iterator[str]:

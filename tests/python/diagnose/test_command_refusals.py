@@ -38,10 +38,10 @@ def test_a_usable_recording_keeps_its_columns() -> None:
             recording(revolutions=400.0, rate=100.0),
             r"aliased: order 2 .* passes at .* Hz .* limit is 40 Hz, 0.8 of half .* slower",
         ),
-        (recording(current=True), r"without current or torque: its columns are time, input_angle; .* --column current="),
+        (recording(current=True), r"without current or torque: its columns are time, input_angle; .* record it"),
         (
             recording(input_angle=True),
-            r"without an angle or a speed: its columns are time, current; .* --column output_angle=",
+            r"without an angle or a speed: its columns are time, current; .* record it",
         ),
     ],
 )
@@ -111,5 +111,5 @@ def test_angles_that_do_not_move_together_are_a_remark() -> None:
 
 def test_a_speed_without_time_is_refused_with_the_name_of_the_file() -> None:
     made = sw.Recording({"input_speed": np.ones(100), "torque": np.ones(100)}, {"input_speed": "rad/s", "torque": "N.m"})
-    with pytest.raises(ValueError, match=r"log.csv: input_speed gives an angle only over time; .* --rate"):
+    with pytest.raises(ValueError, match=r"log.csv: input_speed gives an angle only over time: .* --constant rate=NUMBER"):
         usable(made, "log.csv")

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 from strainwave import Recording
-from strainwave.diagnose.baseline import baseline_of, compared
+from strainwave.diagnose.baseline import Baseline, OrderChange, baseline_of, compared
+from strainwave.diagnose.detection import DETECTION_PROBABILITY
 from strainwave.diagnose.diagnosis import Diagnosis
 from strainwave.diagnose.refusals import usable
 from strainwave.diagnose.replicates import JointMotion, joint_motion
@@ -28,6 +29,7 @@ from tests.support.shares import share_interval
 
 DAYS = Days(baseline=3, later=3)
 RATE = 0.05  # stated rate of false alarms
+CHANGED = sample(40, 100)  # units with a change
 UNITS = sample(100, 200)  # of the comparison alone, with one run each: runs of one unit are not independent
 
 
@@ -76,6 +78,25 @@ def test_the_comparison_alone_has_no_more_alarms_than_stated_in_many_runs() -> N
         probabilities.append(min(each.false_alarm for each in changes))
     for rate in (0.3, *RATES):
         assert sum(each < rate for each in probabilities) <= binom.isf(1e-3, len(probabilities), rate), rate
+
+
+@pytest.mark.slow("diagnose")
+@pytest.mark.parametrize("spread", [0.0, 0.1])
+def test_a_change_of_the_detectable_size_is_an_alarm_in_nine_of_ten(spread: float) -> None:
+    """With a spread from day to day that is to be estimated, and without one, where the share is larger."""
+    random, alarms = np.random.default_rng(3), 0
+    for _ in range(CHANGED):
+        amplitudes = 0.03 * np.exp(0.3 * random.standard_normal(2))
+        baseline = baseline_of([day(random, amplitudes, spread, 0.02) for _ in range(DAYS.baseline)], [2.0, 4.0])
+        size = change_of_order(baseline, day(random, amplitudes, spread, 0.02)).detectable
+        alarms += change_of_order(baseline, day(random, amplitudes + np.array([size, 0.0]), spread, 0.02)).alarm
+    assert binom.isf(0.999, CHANGED, DETECTION_PROBABILITY) <= alarms
+    assert spread == 0.0 or alarms <= binom.isf(1e-3, CHANGED, DETECTION_PROBABILITY)
+
+
+def change_of_order(baseline: Baseline, motion: JointMotion) -> OrderChange:
+    changes = compared(baseline, motion, false_alarm=0.01).changes
+    return next(each for each in changes if each.order == 2.0 and each.direction == "forward")
 
 
 def test_units_and_days_differ() -> None:

@@ -59,6 +59,21 @@ def test_what_was_written_is_read_back(law, tmp_path_factory):
     assert found.gear.input_inertia == pytest.approx(6e-5)
 
 
+@pytest.mark.parametrize("resistance", [0.4, None])
+def test_every_number_is_kept_there_and_back(resistance, tmp_path):
+    """A motor without a resistance takes a current."""
+    path, constant = tmp_path / "mine.json", {"torque_constant": 0.08, "inertia": 2e-5}
+    motor = sw.motor.CurrentSource(**constant) if resistance is None else sw.motor.DC(resistance=resistance, **constant)
+    joint = GearSet.read("csg-20-100").with_parts(motor=motor, source="test")
+    path.write_text(bam(joint).files["bam.json"])
+    numbers = json.loads(path.read_text())
+    back = json.loads(bam(read_bam(path, 100.0), max_torque=100.0).files["bam.json"])
+    assert numbers.get("R") == resistance
+    assert {name: back[name] for name in numbers if name not in ("model", "actuator")} == pytest.approx(
+        {name: value for name, value in numbers.items() if name not in ("model", "actuator")}
+    )
+
+
 def test_inertia_and_torque_constant_are_at_the_output():
     numbers = written(sw.friction.Coulomb(coulomb=0.05))
     assert (numbers["kt"], numbers["armature"]) == (pytest.approx(8.0), pytest.approx(0.6))

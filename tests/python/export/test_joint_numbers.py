@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -40,6 +41,44 @@ def test_a_joint_of_mujoco_rests_below_its_friction(timestep: float) -> None:
     assert turned(written.attrib, 1.1 * friction, timestep) > 0.1
     plain = {key: value for key, value in written.attrib.items() if not key.startswith("sol")}
     assert turned(plain, 0.9 * friction, timestep) > 1e-3  # MuJoCo's own default creeps
+
+
+class Genesis:
+    """Methods of an entity of Genesis, which record what is set."""
+
+    def __init__(self) -> None:
+        self.values = dict[str, list[float]]()
+
+    def set_dofs_armature(self, values: list[float], dofs: list[int]) -> None:
+        self.values["armature"] = values
+
+    def set_dofs_frictionloss(self, values: list[float], dofs: list[int]) -> None:
+        self.values["frictionloss"] = values
+
+    def set_dofs_damping(self, values: list[float], dofs: list[int]) -> None:
+        self.values["damping"] = values
+
+
+def test_isaac_lab_and_genesis_get_the_numbers_under_their_names() -> None:
+    """Isaac Lab takes a friction at rest of its own, at least that in motion."""
+    law = sw.friction.Stribeck(coulomb=0.03, breakaway=0.05, stribeck_speed=2.0)
+    gear = GearSet.of(GEAR.gear.replace(friction_input=law), name="Stribeck", source="test")
+    found, names = joint(gear, max_torque=100.0), dict[str, Any]()
+    exec(str(found.files["joint.py"]), names)
+    robot = Genesis()
+    names["set_in_genesis"](robot, [3, 4])
+    numbers = {name: value for name, (value, _) in found.numbers.items()}
+    assert robot.values == {name: 2 * [numbers[name]] for name in ("armature", "frictionloss", "damping")}
+    assert names["ISAAC_LAB"] == {
+        "armature": numbers["armature"],
+        "friction": numbers["breakaway"],
+        "dynamic_friction": numbers["frictionloss"],
+        "viscous_friction": numbers["damping"],
+    }
+    ratio = abs(gear.gear.kinematics.ratio)
+    assert numbers["breakaway"] == pytest.approx(0.05 * ratio)
+    assert 0.03 * ratio <= numbers["frictionloss"] < numbers["breakaway"]
+    assert all(each in names["__doc__"] for each in found.left_out)
 
 
 def test_an_armature_without_the_rotor_is_stated() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.export.mujoco import mjcf
-from strainwave.export.robot import kept
+from strainwave.export.robot import MAX_NESTED_ELEMENTS, kept
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -69,6 +69,18 @@ def test_what_is_kept_of_a_joint_adds_to_the_gear():
     assert not any("damping" in remark and "replaced" in remark for remark in found.remarks)
     with pytest.raises(ValueError, match=r"keep = \"mass\" must be one of damping, frictionloss, armature"):
         kept("mass")
+
+
+@pytest.mark.parametrize("depth", [400, 20_000])
+def test_a_model_that_nests_deeper_than_its_writer_is_refused_in_one_line(depth):
+    """Each body is in the one before; the joint is that of the first."""
+    bodies = '<body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>' * depth + "</body>" * depth
+    robot = f"<mujoco><worldbody>{bodies}</worldbody></mujoco>".replace("<body>", '<body><joint name="hip"/>', 1)
+    if depth < MAX_NESTED_ELEMENTS:
+        assert "gear_input" in mjcf("csg-20-100", into=robot, joint="hip").files["gear.xml"]
+        return
+    with pytest.raises(ValueError, match="the model nests 20003 elements in each other; a robot may have 500 at most"):
+        mjcf("csg-20-100", into=robot, joint="hip")
 
 
 def test_a_keyframe_of_another_length_is_named():

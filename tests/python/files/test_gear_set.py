@@ -383,7 +383,7 @@ def test_sets_that_differ_in_one_member_are_different(member: str) -> None:
 def test_a_covariance_and_the_errors_on_its_files_survive_writing(tmp_path: Path) -> None:
     numbers, matrix = ("load.inertia", "gear.damping"), ((1e-4, -3e-5), (-3e-5, 0.1 + 0.2))
     validated = (
-        Validation("a.csv", "log", "current", "A", 0.1, 0.5, 0.12, 0.4, -0.01, 2e-3),
+        Validation("a.csv", "log", "current", "A", 0.1, 0.5, 0.12, 0.4, -0.01, 2e-3, {"cos(2 + 3)": 1.25}),
         Validation("b", "torsion", "q", "N.m", 0, 0, 0, 0),
     )
     whole = whole_set().replace(covariance=Covariance(numbers, matrix), validation=validated)

@@ -35,7 +35,8 @@ def percent(share: float) -> str:
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
         f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
-        f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small",
+        f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small, "
+        f"in a log more than {sizes.MAX_FACTOR_OF_LOG:g}",
         f"a factor of {np.exp(3.0 * sizes.MIN_SPREAD_OF_STIFFNESS):.1f} for {percent(sizes.MIN_SPREAD_OF_STIFFNESS)}",
         f"{sizes.MIN_ROWS_OF_LOG} rows or more, and the change of speed explains half of what is left",
         "the spring of a loop carries less than a fifth of the torque",

@@ -8,7 +8,7 @@ from tests.evidence.drawn import several_files, spring_and_loop
 
 
 @pytest.mark.slow("identification")
-@pytest.mark.parametrize("seed", [4, 10, 13])
+@pytest.mark.parametrize("seed", [4, 10, 13, 17])
 def test_springs_and_elements_between_encoders_are_those_of_the_joint(seed: int) -> None:
     found = spring_and_loop.outcome(seed)
     assert found.verdict != "wrong", found.message

@@ -80,3 +80,14 @@ def test_a_file_of_a_dial_is_recognised(tmp_path: Path, header: str) -> None:
     (parameter,) = identify("csg-20-100", [tmp_path / "dial.csv"]).parameters
     assert parameter.estimate.path == "lost_motion"
     assert parameter.estimate.value == pytest.approx(PLAY, abs=4.0 * parameter.estimate.sigma)
+
+
+def test_a_transmission_error_over_the_input_has_orders_of_the_input(tmp_path: Path) -> None:
+    turns = np.arange(0.0, 50.0, 0.05)
+    error = 20.0 * np.cos(4.0 * np.pi * turns) + np.random.default_rng(2).normal(0.0, 0.3, len(turns))
+    np.savetxt(tmp_path / "te.csv", np.column_stack([turns, error]), "%.4f", ",", header="input [rev],TE [arcsec]", comments="")
+    found = identify("csg-20-100", [tmp_path / "te.csv"])
+    (parameter,) = found.parameters
+    assert parameter.estimate.path == "positioning_error of order 2"
+    assert 3600.0 * np.degrees(parameter.estimate.value) == pytest.approx(20.0, abs=0.1)
+    assert any(remark.startswith("order 2 per turn of the input: ") for remark in found.files[0].remarks)

@@ -27,4 +27,4 @@ def test_segments_are_those_of_a_spectrogram(repeated: int) -> None:
         series, window="hann", nperseg=100, noverlap=repeated, detrend="constant", scaling="spectrum"
     )
     assert frequency == pytest.approx(expected_frequency)
-    assert power.T == pytest.approx(expected, abs=1e-12)
+    assert pytest.approx(expected, abs=1e-12) == power.T

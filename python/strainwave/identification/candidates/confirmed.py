@@ -14,19 +14,21 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.leave_out import without_rows
 from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of
 from strainwave.identification.candidates.motion_model import INPUT, slope_of
-from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_error, moving
+from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_out_residuals, moving, stretches
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import plain
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
 OF_ALL_LAWS = (f"{INPUT}coulomb", f"{INPUT}viscous")  # numbers of friction that mean the same in each law
+FAST_SHARE = 0.95  # of the rows: laws of friction are compared by their slope at the speed that they do not exceed
 MAX_REFITS = 6  # further models that are fitted to all but the last stretch if the best one is not confirmed
 
 
@@ -38,19 +40,24 @@ def confirmed(
     Models were compared by one step of Gauss and Newton, which may hide numbers that the rest of the motion does not determine.
 
     Returns:
-        the model, of all tried the one with the smallest error if none is as good; its error and that of plain least squares,
-        with the terms of other joints or without, whichever is smaller; and its prediction, as `refit`
+        the model, of all tried the one with the smallest error if none is as good; its error and the smallest one of plain
+        least squares, with terms of other joints or without; and its prediction, as `refit`
     """
-    last, tried = best.folds[-1].stretch, []
-    logs = {tuple(each.log.regressors): each.log for each in (best, *others)}.values()
-    plain = min(held_out_error(log, drive, last) for log in logs)
+    logs, tried = {tuple(each.log.regressors): each.log for each in (best, *others)}.values(), []
+    of_plain = [(log, held_out_residuals(log, drive, stretches(log))) for log in logs]
+    plain = min((rms(left[-1]) for log, left in of_plain if not (log.regressors and _is_chance(left, best))), default=np.nan)
     for each in (best, *sorted(others, key=lambda other: other.error)[:MAX_REFITS]):
         held_out, predicted = refit(each)
         held_out = replace(held_out, plain=plain)
         tried.append((each, held_out, predicted))
-        if held_out.share_of_plain < held_out.max_share_of_plain and held_out.relative < 1.0:
+        if not held_out.share_of_plain > held_out.max_share_of_plain and held_out.relative < 1.0:
             return tried[-1]
     return min(tried, key=lambda found: found[1].error)
+
+
+def _is_chance(left: Sequence[Array], best: MotionCandidate) -> bool:
+    """True if residuals of plain least squares are smaller than those of a model in the last stretch, but not in all."""
+    return rms(left[-1]) < best.errors[-1] and rms(np.concatenate(left)) > best.error
 
 
 def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
@@ -143,7 +150,7 @@ def _numbers(candidate: MotionCandidate) -> dict[str, float]:
     if model.one_speed:
         numbers[STEADY] = float(law.coulomb + model.one_speed * law.viscous)
         return numbers
-    fast = float(np.quantile(np.abs(model.log.motion.speed[model.log.motion.rows]), FAST_QUANTILE))
+    fast = float(np.quantile(np.abs(model.log.motion.speed[model.log.motion.rows]), FAST_SHARE))
     return {**numbers, OF_ALL_LAWS[0]: float(law.coulomb), OF_ALL_LAWS[1]: slope_of(law, fast)}
 
 

@@ -22,7 +22,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic_starts import UNREACHED_TORQUE, ElasticStart, elastic_starts
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.candidates.torsion.candidate import merged
-from strainwave.identification.candidates.torsion.dissipation import maxwell
+from strainwave.identification.candidates.torsion.dissipation import maxwell, pairs
 from strainwave.identification.experiments.driven_log import MAX_CUTOFF_SHARE, DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion import motion_of, spectra
@@ -33,6 +33,8 @@ from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import linear_fit
+from strainwave.statistics.order_waves import order_waves
+from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 
@@ -48,6 +50,8 @@ MAX_TRIALS = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
 GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
 MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
+MAX_CORRELATION_OF_NOISE = 2.0  # samples: residuals that correlate over more are an error of the model
+SHARE_OF_LATER, LATER = 0.3, 2.5  # stiffness and slip of a further element over those of the one that is there (assumed)
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
 CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
@@ -145,9 +149,8 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
     torque = transmitted_torque(log, drive)
     angles = recording.values("input_angle", "rad"), recording.values("output_angle", "rad")
     error = np.interp(motion.time, recording.time, angles[0] / ratio - angles[1])
-    waves = [wave(order * motion.angle) for order in law.order for wave in (np.sin, np.cos)]
-    series = [torque, np.sign(motion.speed), motion.speed, np.ones_like(torque), *waves]
-    columns = motion.filtered(np.stack(series)).T
+    others = [torque, np.sign(motion.speed), motion.speed, np.ones_like(torque)]
+    columns = motion.filtered(np.stack([*others, *order_waves(motion.angle, law.order).T])).T
     measured = motion.filtered(error[np.newaxis] - error.mean())[0]
     regression = linear_fit(columns, measured)
     softness, sigma = float(regression.values[0]), float(regression.sigma[0])
@@ -262,6 +265,16 @@ def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: f
     tried = [model for each in near if (model := _with(log, each.drive, scale, reach)) is not None]
     if not tried:
         raise ValueError("no spring and hysteresis moves the output as it was measured")
+    best = _simplest(log, tried, scale, reach)
+    if (drive := _with_later_element(best)) and (more := _with(log, drive, scale, reach)) and more.error < best.error:
+        tried.append(more)
+        best = _simplest(log, tried, scale, reach)
+    least = min(tried, key=lambda each: each.error)
+    return best, [each for each in tried if each is not best and each.predicts_as_well_as(least)]
+
+
+def _simplest(log: DrivenLog, tried: list[_TriedModel], scale: str, reach: float) -> _TriedModel:
+    """Return the model with the fewest numbers of those that predict best; models with fewer are tried, and join the others."""
     best = min(tried, key=lambda each: each.error)
     while True:
         simpler = [model for drive in _simpler(best.drive, reach) if (model := _with(log, drive, scale, reach)) is not None]
@@ -270,7 +283,18 @@ def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: f
         good = [each for each in tried if each.predicts_as_well_as(least)]
         before, best = best, min(good, key=lambda each: (len(each.free), each.error))
         if best is before or not any(best is each for each in simpler):
-            return best, [each for each in good if each is not best]
+            return best
+
+
+def _with_later_element(best: _TriedModel) -> Drive | None:
+    """Return the drive with an element more, which slips later, if one stands for two: what it leaves correlates; else None."""
+    gear: Any = best.drive.gear
+    elements = pairs(gear)
+    if len(elements) != 1 or correlation_length(best.left) < MAX_CORRELATION_OF_NOISE:
+        return None
+    ((k, f),) = elements
+    later = maxwell([(k, f), (SHARE_OF_LATER * k, SHARE_OF_LATER * LATER * f)])
+    return best.drive.replace(gear=gear.replace(hysteresis=later))
 
 
 def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:

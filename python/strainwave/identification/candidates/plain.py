@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.motion import END_SAMPLES
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MotionLog, per_torque, turnover_speed
 from strainwave.statistics.linear_fit import linear_fit, own_share, solved
 
@@ -25,7 +26,6 @@ MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exce
 MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction begins, which plain least squares does not describe
 MIN_OWN_SHARE_OF_SPEED = 0.1  # of the speed: if less differs from its sign, the record has one speed
 MAX_ROWS_OF_SIGMA = 4000  # samples from which the standard deviation of an inertia is computed
-RIGID = [0, 4, 5]  # columns of inertia and gravity
 BLOCKS_PER_STRETCH = 10  # over which the residual scatters
 
 
@@ -58,11 +58,13 @@ class Plain(ComparedByFields):
 
 
 def moving(log: MotionLog) -> Rows:
-    """Return the sound samples of the grid from the first motion to the last, shape (m,)."""
+    """Return the sound samples from the first motion to the last, without the ends that filters spoil, shape (m,)."""
     speed = np.abs(log.motion.speed)
     fast = np.flatnonzero(speed > MIN_SPEED * np.quantile(speed, FAST_QUANTILE))
     rows = np.zeros(len(speed), bool)
     rows[fast[0] : fast[-1] + 1] = True
+    spoilt = END_SAMPLES * log.motion.every
+    rows[:spoilt] = rows[-spoilt:] = False
     return rows & log.sound
 
 
@@ -171,24 +173,6 @@ def held_out_residuals(log: MotionLog, drive: Drive, blocks: Sequence[Rows]) -> 
         weights = solved(columns[rows & ~block], torque[rows & ~block])
         found.append(scale * (torque - columns @ weights)[block])
     return found
-
-
-def held_out_error(log: MotionLog, drive: Drive, stretch: Rows) -> float:
-    """Return the smallest error of plain least squares on a stretch by the rest of the motion, root mean square.
-
-    With Coulomb and viscous friction alone; with a curved viscous part; and with a loss under load, the inertia and gravity of
-    Coulomb and viscous friction alone.
-    """
-    columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
-    speed, sign, others = log.motion.speed, columns[:, 2], rows & ~stretch
-    load = np.abs(columns[:, RIGID] @ solved(columns[others], torque[others])[RIGID])
-    curved = np.stack([sign * np.sqrt(np.abs(speed)), speed * np.abs(speed)], axis=1)
-    errors = []
-    for more in (np.zeros((len(sign), 0)), curved, (sign * load)[:, np.newaxis]):
-        every = np.hstack([columns, more])
-        left = (torque - every @ solved(every[others], torque[others]))[stretch]
-        errors.append(float(np.sqrt(np.mean(left**2))))
-    return abs(per_torque(drive, log.effort)) * min(errors)
 
 
 def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave import friction
 from strainwave.identification.experiments.friction_table import FrictionTable, varies
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.order_waves import amplitudes_of, order_waves
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
@@ -252,10 +253,7 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
     """
     assert table.angle is not None
     mean = table.torque - residual
-    pairs = {
-        n: mean[:, np.newaxis] * np.stack([np.sin(n * table.angle), np.cos(n * table.angle)], 1)
-        for n in range(1, MAX_ORDER + 1)
-    }
+    pairs = {n: mean[:, np.newaxis] * order_waves(table.angle, [n]) for n in range(1, MAX_ORDER + 1)}
     orders: list[int] = []
     waves, left = np.zeros(0), float(np.sum(residual**2))
     while len(orders) < MAX_WAVES:
@@ -264,9 +262,7 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
         if MAX_ORDER * chance_of_gain(left, still, 2, len(residual) - len(found)) > MAX_CHANCE:
             break
         orders, waves, left = [*orders, order], found, still
-    sine, cosine = waves.reshape(-1, 2).T
-    size, phase = np.hypot(sine, cosine).tolist(), np.arctan2(cosine, sine).tolist()
-    return sorted(zip(map(float, orders), size, phase, strict=True))
+    return sorted(zip(map(float, orders), *(each.tolist() for each in amplitudes_of(waves)), strict=True))
 
 
 def _explained(residual: Array, pairs: list[Array]) -> tuple[Array, float]:

@@ -68,7 +68,7 @@ def torque_place(log: MotionLog, drive: Drive, motor_given: bool = False) -> Tor
             why = "it contains no friction of the gear" if share < MIN_FRICTION_SHARE else sizes
             behind = _with_rotor(drive, NO_ROTOR, 0.0)
             return TorquePlace(
-                behind if share >= MIN_FRICTION_SHARE else _frictionless(behind),
+                behind if share >= MIN_FRICTION_SHARE else frictionless(behind),
                 0.0 if total < rotor else rotor, share >= MIN_FRICTION_SHARE,
                 f"{log.effort} was measured behind the rotor: {why}; the load's inertia is all that it contains",
             )  # fmt: skip
@@ -94,7 +94,7 @@ def _with_rotor(drive: Drive, motor: float, gear: float) -> Drive:
     )
 
 
-def _frictionless(drive: Drive) -> Drive:
+def frictionless(drive: Drive) -> Drive:
     """Return the drive without friction at input and mesh, which a torque behind the gear does not contain."""
     return drive.replace(gear=drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS))
 

@@ -30,7 +30,8 @@ MAX_INERTIA_SIGMA = 3.0  # standard deviations between the inertias of a load by
 OBJECT_OF_CIA_402 = {"torque", "actual", "value"}  # words of the name of object 0x6077
 MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its unit
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
-MAX_SPEED_FACTOR = 1.5  # between a speed and the slope of its angle: filters and noise change it by less, units by more
+MAX_SPEED_FACTOR = 2.45  # between a speed and the slope of its angle: the nearest units, rpm and deg/s, lie a factor of 6 apart
+MAX_FILTERED_FACTOR = 1.5  # likewise: filters and noise change it by less
 SPEED_UNITS = ("rad/s", "deg/s", "rpm", "rev/s")
 RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
 
@@ -59,7 +60,8 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         yield Check(
             "plain least squares", source, share, limit, "1", share > limit,
             f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
-            "record longer, at several speeds and both ways: the record does not determine more than its mean friction",
+            "record longer, or see whether columns, units and sides are right: what the model has beyond plain least squares "
+            "does not predict this record",
         )  # fmt: skip
 
 
@@ -86,15 +88,7 @@ def unit_of_torque(file: Recognised) -> Iterator[Check]:
 
 def speed_against_angle(file: Recognised) -> Iterator[Check]:
     """Yield the check that a speed is the slope of the angle of the same shaft, in the units that both are taken in."""
-    record = file.recording
-    for angle in set(record.names) & {"input_angle", "output_angle"}:
-        speed = angle.replace("angle", "speed")
-        if speed not in record.names or "time" not in record.names:
-            continue
-        factor = abs(speed_per_slope(record[angle], record[speed], record.time))
-        if factor == 0.0:
-            continue
-        names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in (angle, speed)]
+    for factor, speed, names in _speed_factors(file):
         usual = {unit: convert(1.0, unit, "rad/s") for unit in SPEED_UNITS}
         fitting = next((unit for unit, size in usual.items() if abs(_own_size(file, speed) / factor / size - 1.0) < 0.1), "")
         hint = as_option("unit", names[1], fitting or "UNIT")
@@ -104,6 +98,28 @@ def speed_against_angle(file: Recognised) -> Iterator[Check]:
             f"{names[1]} is {factor:.4g} times the slope of {names[0]}, in the units that they are taken in",
             f"one unit is wrong: give it, with {hint} if it is that of the speed, or that of the angle",
         )  # fmt: skip
+
+
+def speed_of_another_clock(file: Recognised) -> Iterator[str]:
+    """Yield a remark on a speed that is not the slope of its angle, by a factor that no unit makes."""
+    for factor, _, names in _speed_factors(file):
+        if MAX_FILTERED_FACTOR < max(factor, 1.0 / factor) <= MAX_SPEED_FACTOR:
+            yield (
+                f"{names[1]} is {factor:.4g} times the slope of {names[0]}, which no unit makes: the clock may be wrong by "
+                "this factor, and with it viscous friction and inertia; see whether the time is right"
+            )
+
+
+def _speed_factors(file: Recognised) -> Iterator[tuple[float, str, list[str]]]:
+    """Yield each speed over the slope of its angle, its channel, and the names of the columns of angle and speed."""
+    record = file.recording
+    for angle in set(record.names) & {"input_angle", "output_angle"}:
+        speed = angle.replace("angle", "speed")
+        if speed not in record.names or "time" not in record.names:
+            continue
+        if factor := abs(speed_per_slope(record[angle], record[speed], record.time)):
+            names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in (angle, speed)]
+            yield factor, speed, names
 
 
 def _own_size(file: Recognised, speed: str) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,7 @@ RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the t
 RIPPLE_COLUMNS = ("current", "motor_torque", "torque")  # in which the ripple of the wave generator is looked for
 MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
 MOTION_BLOCKS = 10  # of the motion
+MOVED_BY_OTHERS = ("load.", "gear.friction_mesh.")  # numbers of a load, and of a loss under it, which other joints change
 MIN_ROWS_PER_BLOCK = 5
 # A body that is wider than a centimetre has a pendulum length above 2 cm, twice its radius of gyration. Arms have some metres;
 # counterweights and rotors make it longer. A wrong unit of time, as minutes or milliseconds, is a factor of 3600 or 1e6.
@@ -42,7 +43,7 @@ MAX_NEGATIVE_PART = 1.0  # of the held-out error of plain least squares: a large
 
 
 def checks_of_motion(
-    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, source: str
+    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, source: str, joints: Collection[str] = ()
 ) -> Iterator[Check]:
     """Yield the checks of a log by its own motion.
 
@@ -52,6 +53,7 @@ def checks_of_motion(
         recording: of the log, with its angle in the unit of the file
         held_out: its error on data held out, and that of plain least squares
         source: name of the file
+        joints: names of other joints that move
     """
     alone = not best.log.regressors
     if alone and not np.any(best.log.extra):
@@ -62,7 +64,7 @@ def checks_of_motion(
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
     yield from negative_parts(best.log, drive, held_out.plain if np.isfinite(held_out.plain) else held_out.error, source)
-    yield from halves(best, source)
+    yield from halves(best, source, MOVED_BY_OTHERS if joints or best.log.regressors else ())
 
 
 # ---- Gravity ---------------------------------------------------------------------------------------------------------
@@ -119,7 +121,7 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
         "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
         f"gravity goes with the sine of the motor's angle over about {ratio / scale:.3g}, the ratio of the gear is "
         f"{ratio:.6g}",
-        "see whether the start set is that of this gear, or give its ratio: --constant ratio=…",
+        "see whether the start set is that of this gear, or give its ratio: --constant ratio=NUMBER",
     )  # fmt: skip
 
 
@@ -245,10 +247,10 @@ def negative_parts(log: MotionLog, drive: Drive, error: float, source: str) -> I
     )  # fmt: skip
 
 
-def halves(best: MotionCandidate, source: str) -> Iterator[Check]:
+def halves(best: MotionCandidate, source: str, left_out: tuple[str, ...]) -> Iterator[Check]:
     """Yield the check that both halves of the motion determine the same numbers, as runs of one gear do.
 
-    Inertia and gravity are compared of a joint that moves alone: others change both on the way.
+    `left_out` are beginnings of paths that are not compared.
     """
     count = len(best.log.motion.rows)
     first = np.arange(count) < count // 2
@@ -258,7 +260,7 @@ def halves(best: MotionCandidate, source: str) -> Iterator[Check]:
         return
     apart, words = 0.0, ""
     compared = pair[0].keys() & pair[1].keys()
-    for path in (each for each in compared if not best.log.regressors or not each.startswith("load.")):
+    for path in (each for each in compared if not each.startswith(left_out)):
         one, other = (each[path] for each in pair)
         spread = repeatability(path) * max(abs(one.value), abs(other.value))
         distance = abs(one.value - other.value) / float(np.linalg.norm([spread, one.sigma, other.sigma]))

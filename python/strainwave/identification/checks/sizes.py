@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compared with that of a gear
 MAX_RATIO = 1e4  # of a gear
 MAX_FACTOR = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
-MAX_FACTOR_OF_EXPLAINED = 50.0  # if the record is explained: the start set is a guess, but wrong units or sides make more
-MIN_SHARE_OF_A_UNIT = 1e-6  # of the friction of the start set: a wrong unit makes it no smaller
+MAX_FACTOR_OF_LOG = 50.0  # the start set is a guess, and data held out judge a log; but wrong units or sides make more
+MIN_FACTOR_OF_LOG = 1e-6  # no wrong unit makes less: a fit that ends with less has found no friction
 STIFFNESS_SPREAD = 1.3  # factor by which gears of one kind differ in stiffness, as makers state
 MIN_SPREAD_OF_STIFFNESS = 0.3  # standard deviation of its logarithm, as makers state it
 MAX_SHARE_BY_ACCELERATION = 0.5  # of what steady friction leaves unexplained: if acceleration explains more, it is a log
@@ -154,10 +154,9 @@ def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> 
 
 
 def friction_of_log(
-    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float = 1.0, column: str = "NAME",
-    explained: bool = False,
-) -> Iterator[Check]:  # fmt: skip
-    """Yield the checks of the friction of a log: that its torque shows some, and its size.
+    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float, column: str = "NAME"
+) -> Iterator[Check]:
+    """Yield the check of the size of the friction of a log; none without friction, or without a gear to compare it with.
 
     Args:
         law: fitted
@@ -167,28 +166,17 @@ def friction_of_log(
         source: name of the file
         ratio: of the gear, by which friction differs if the torque is counted at the other side
         column: name of the torque in the file
-        explained: True if the model predicts the record better than plain least squares: then its friction is no guess
     """
     speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
-    if speed <= 0.0:
-        return
     found, before = float(law.steady(speed)), float(start.steady(speed))
-    if before > 0.0:
-        share, least = max(found / before, 0.0), MIN_SHARE_OF_A_UNIT
-        yield Check(
-            "friction in the torque", source, least / max(share, 1e-300), 1.0, "1", share < least,
-            "no friction is left: its Coulomb torque is at its bound of 0",
-            "see whether the signs of angle, speed and torque fit each other",
-        )  # fmt: skip
-        if share < least:
-            return
+    if speed <= 0.0 or before <= 0.0 or found < MIN_FACTOR_OF_LOG * before or abs(ratio) < MIN_RATIO:
+        return
     unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
-    factor = found / before if before > 0.0 and found > 0.0 else 1.0
+    factor = found / before
     near_thousand = abs(abs(np.log(factor)) - np.log(1000.0)) < np.log(MAX_FACTOR_LEFT)
     mistake = f"a factor of 1000 lies between {unit}; " if near_thousand else _other_side(factor, effort, abs(ratio), column)
     remedy = f"{mistake}see whether units, side, ratio and torque constant are right, or start from a set like this gear"
-    max_factor = MAX_FACTOR_OF_EXPLAINED if explained else MAX_FACTOR
-    if (check := friction_level(law, start, speed, source, remedy, max_factor)) is not None:
+    if (check := friction_level(law, start, speed, source, remedy, MAX_FACTOR_OF_LOG)) is not None:
         yield check
 
 

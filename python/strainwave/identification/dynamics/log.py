@@ -17,6 +17,7 @@ from strainwave.identification.candidates.friction import innermost
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.order_waves import amplitudes_of, order_waves
 
 Array = NDArray[np.float64]
 
@@ -159,10 +160,8 @@ def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
     output_angle = log.measured[log.channels.index("output_angle")]
     angle = input_angle - input_angle[0]
     error = angle / ratio - (output_angle - output_angle[0])
-    waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
-    columns = np.column_stack((np.ones_like(angle), angle, *waves))
-    weights = solved(columns, error)[2:].reshape(-1, 2)
-    amplitude, phase = np.hypot(*weights.T), np.arctan2(weights[:, 1], weights[:, 0])
+    columns = np.column_stack((np.ones_like(angle), angle, order_waves(angle, ORDERS)))
+    amplitude, phase = amplitudes_of(solved(columns, error)[2:])
     largest = MAX_SLOPE / (abs(ratio) * np.array(ORDERS))
     amplitude = np.where(amplitude < largest, amplitude, 1e-3 * largest)  # no error of a gear: something else is wrong
     return kinematic_error.Fourier(order=ORDERS, amplitude=amplitude.tolist(), phase=phase.tolist())

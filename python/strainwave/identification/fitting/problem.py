@@ -14,7 +14,7 @@ from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
-from strainwave.identification.fitting.unknowns import LIMIT_TOLERANCE, OF_RECORD, FitParameters, ParameterLink
+from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
 from strainwave.identification.fitting.waves import Waves
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.linear_fit import solved
@@ -26,7 +26,6 @@ MIN_NOISE = 1e-12  # of the size of a channel: no measurement has less noise
 MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost smaller; one with less is the last
 MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
 MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
-MAX_DISTANCE = 1e-3  # likewise, of the size of an unknown before the fit: the data may show nothing of it
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 
 
@@ -328,13 +327,12 @@ class Problem:
         """Return unknowns without rounding: beside a limit that the data do not tell from it, or of one that nothing shows."""
         rows = np.concatenate((self.jacobian(x, weights), self.prior_rows()[0]))
         for place, (unknown, shown) in enumerate(zip(self.plan.unknowns, np.linalg.norm(rows, axis=0), strict=False)):
-            largest = MAX_DISTANCE * abs(unknown.before) if unknown.before else np.inf
-            change = min(MIN_DISTANCE_SIGMA / shown, largest) if shown > 0.0 else 0.0
-            value = unknown.ended(float(x[place]), change) if shown > 0.0 else start[place]
+            resolution = MIN_DISTANCE_SIGMA / shown if shown > 0.0 else 0.0
+            value = unknown.ended(float(x[place]), resolution) if shown > 0.0 else start[place]
             if place not in held and value != x[place]:
                 x[place] = value
                 if not self._is_valid(x):  # a law may exclude the limit of its number, for the sake of another one
-                    x[place] = LIMIT_TOLERANCE * abs(unknown.before)
+                    x[place] = unknown.beside_limit(resolution)
         return x
 
     def _is_valid(self, x: Array) -> bool:

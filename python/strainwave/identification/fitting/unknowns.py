@@ -14,6 +14,7 @@ from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import Parameter, every, parameters, unknown
 
 LIMIT_TOLERANCE = 1e-6  # of the size of a parameter: within it of a limit, a fit ended there
+MAX_DISTANCE = 0.1  # of the size of a parameter before the fit, from its limit: a fit that ended there moved it
 OPEN_AT_ZERO = 2.0**-126  # lowest value of a number that must be greater than 0, see `_core.parameters`
 OF_RECORD = " @ "  # between the path of a parameter and the name of the only record that has it
 
@@ -40,29 +41,36 @@ class Unknown:
         """Initial value of a fit: that of the model, moved into the limits."""
         return min(max(self.before, self.low), self.high)
 
-    def at_limit(self, value: float, change: float = 0.0) -> bool:
+    def at_limit(self, value: float, resolution: float = 0.0) -> bool:
         """True if a fit ended at a limit: solvers stop short of it, by far less than the size of the parameter.
 
         Args:
             value: where it ended
-            change: of the value, that the data do not show
+            resolution: change of the value that the data do not show; of a value that stayed near its initial one, as no data
+                show it, a part of that counts
         """
-        near = [
-            max(LIMIT_TOLERANCE * max(abs(end), abs(self.before)), change) if isfinite(end) else 0.0
+        near = min(resolution, MAX_DISTANCE * abs(self.before)) if self.before else resolution
+        low, high = (
+            max(LIMIT_TOLERANCE * max(abs(end), abs(self.before)), near) if isfinite(end) else 0.0
             for end in (self.low, self.high)
-        ]
-        return value <= self.low + near[0] or value >= self.high - near[1]
+        )
+        return value <= self.low + low or value >= self.high - high
 
-    def ended(self, value: float, change: float = 0.0) -> float:
-        """Return the value of a fit that ended here: at a limit that limit, or as little from one that is no value.
+    def ended(self, value: float, resolution: float = 0.0) -> float:
+        """Return the value of a fit that ended here: at a limit that limit, or beside one that is no value.
 
         Arguments as of `at_limit`.
         """
-        if not self.at_limit(value, change):
+        if not self.at_limit(value, resolution):
             return value
         if abs(value - self.low) > abs(value - self.high):
             return self.high
-        return LIMIT_TOLERANCE * abs(self.before) if self.low == OPEN_AT_ZERO else self.low
+        return self.beside_limit(resolution) if self.low == OPEN_AT_ZERO else self.low
+
+    def beside_limit(self, resolution: float) -> float:
+        """Return the value that stands for 0 where that is excluded: what data do not tell from it, or as little."""
+        size = abs(self.before)
+        return min(max(LIMIT_TOLERANCE * size, resolution), size)
 
 
 @dataclass(frozen=True)

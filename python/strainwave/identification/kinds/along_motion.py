@@ -24,6 +24,7 @@ from strainwave.identification.checks.logs import (
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
+    speed_of_another_clock,
     torque_constant_by_voltage,
     unit_of_torque,
 )
@@ -39,9 +40,8 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.determined import friction_at
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture, is_uncertain
+from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA
 from strainwave.identification.results.motor_inertia import MOTOR
@@ -61,9 +61,8 @@ ONE_WAVE = "the motion goes nearly one way: a detent and friction over the angle
 DEPTH_BY_SET = "it counts from Coulomb friction, whose split from viscous friction is that of the start set"
 OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
-    "--constant motor_inertia=…"
+    "--constant motor_inertia=NUMBER"
 )
-BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -87,7 +86,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
-        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=…")
+        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=NUMBER")
         between, known = between_encoders(taken, judged, errors, known, file.path.name)
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
@@ -102,15 +101,12 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best = judged
     if not in_current and taken.has_friction:
         known, estimates = _with_friction(known, best, estimates, file.path.name)
-    every = (*of_model, *file.remarks, *remarks, *_shares(best.fit, file.regressors))
+    every = (*of_model, *speed_of_another_clock(file), *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
-    explained = held_out.relative < MAX_UNEXPLAINED and not held_out.share_of_plain > held_out.max_share_of_plain
     if not in_current and taken.has_friction:
-        checks += friction_of_log(
-            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, explained=explained
-        )
+        checks += friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
     checks += [
         *unit_of_torque(file),
         *speed_against_angle(file),
@@ -118,7 +114,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_given_inertia(taken, name),
         *_torque_constant(taken, name),
     ]
-    checks += checks_of_motion(best, drive, recording, held_out, name)
+    checks += checks_of_motion(best, drive, recording, held_out, name, file.neighbours)
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, loads, stiffness, structure
+from strainwave import Drive, hysteresis, loads, stiffness, structure
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.confirmed import spread_by_blocks
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
@@ -37,6 +37,7 @@ PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques
 MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
 DAMPING_RATIO_SIGMA = 2e-3  # of critical damping (assumed): noise of the input that passes its filter looks like damping
 MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
+BREAKAWAY = "gear.hysteresis.breakaway"
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
@@ -69,7 +70,24 @@ def between_encoders(
         pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),), between=found.fit,
     )  # fmt: skip
     parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
-    return result, _with_parts(known, found, [part for part in parts if part not in known.determined], result)
+    finer = {"hysteresis"} if _is_finer(found, of_gear, known) else set[str]()
+    return result, _with_parts(known, found, [part for part in parts if part not in known.determined - finer], result)
+
+
+def _is_finer(found: ElasticCandidate, estimates: Sequence[FileEstimate], known: GearSoFar) -> bool:
+    """True if a log resolves more Maxwell elements than an earlier file, whose torques have the same sum."""
+    before, law = known.gear_set.gear.hysteresis, found.drive.gear.hysteresis
+    own = [each for each in estimates if each.path.startswith("gear.hysteresis.")]
+    if (
+        not isinstance(before, hysteresis.MaxwellSlip)
+        or not isinstance(law, hysteresis.MaxwellSlip)
+        or any(each.why for each in own)
+    ):
+        return False
+    sigmas = [each.sigma for each in own if each.path.startswith(BREAKAWAY)]
+    sigmas += [entry.uncertainty or 0.0 for path, entry in known.gear_set.sources.items() if path.startswith(BREAKAWAY)]
+    apart = abs(float(np.sum(law.breakaway)) - float(np.sum(before.breakaway)))
+    return len(law.breakaway) > len(before.breakaway) and apart < MIN_PART_SIGMA * float(np.linalg.norm(sigmas))
 
 
 def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
@@ -126,7 +144,7 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
         by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
     known = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
     if not known:
-        missing = "is not known: give --constant motor_inertia=…"
+        missing = "is not known: give --constant motor_inertia=NUMBER"
         if taken.motor_known:
             missing = f"is not known well enough compared with that of the load: ± {taken.rotor:.2g} kg·m² at the output"
         raise ValueError(
@@ -237,7 +255,7 @@ def _first_segment(found: ElasticCandidate, law: Any) -> bool:
 def _law_of(path: str, found: ElasticCandidate) -> str:
     part, gear = path.removeprefix("gear.").partition(".")[0], found.drive.gear
     if part == "hysteresis":
-        count = sum(each.path.startswith("gear.hysteresis.breakaway") for each in found.fit.estimates)
+        count = sum(each.path.startswith(BREAKAWAY) for each in found.fit.estimates)
         return f"of {count} element{'s' if count > 1 else ''}"  # elements of different sets have nothing in common
     if path == "gear.stiffness.k1":
         return "three_segment"

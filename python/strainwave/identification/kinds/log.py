@@ -51,7 +51,7 @@ class Log(Kind):
         found = channels(
             {
                 "time": measured(columns, "time"),
-                "command": commanded(columns, "angle"),
+                "command": sorted(commanded(columns, "angle"), key=lambda column: not column.by_user)[:1],
                 "voltage": measured(columns, "voltage") or commanded(columns, "voltage"),
                 "current": currents,
                 "temperature": measured(columns, "temperature"),

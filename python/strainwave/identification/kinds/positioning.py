@@ -9,6 +9,7 @@ import numpy as np
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, commanded, measured, names_of
 from strainwave.identification.reading.sides import pair
@@ -41,7 +42,8 @@ class PositioningSteps(Kind):
             found = {"command": [*wanted, *reached][0], "twist": error[0]}
         else:
             raise QuestionError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
-        return ColumnRoles(self.name, found, "output", (f"its columns are {pair(*found.values())}: {self.title}",))
+        side = mapping.side or found["command"].channel.side or "output"
+        return ColumnRoles(self.name, found, side, (f"its columns are {pair(*found.values())}: {self.title}",))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Return lost motion and the errors of ISO 230-2; the gear keeps its numbers."""
@@ -51,7 +53,7 @@ class PositioningSteps(Kind):
             FileEstimate(f"positioning_error of order {order:g}", "rad", size, sigma, "") for order, size, sigma in found.orders
         ]
         stated = tuple(each for each in estimates if np.isfinite(each.value))
-        remarks = (*file.remarks, *positioning_words(found, ratio), *found.remarks)
+        remarks = (*file.remarks, *positioning_words(found, file.side, ratio), *found.remarks)
         how = "steps to and fro" if found.targets else "error over the angle, from one side"
         return FileResult(file.path.name, file, how, stated, remarks), known
 
@@ -63,8 +65,8 @@ def positioning_of(file: Recognised) -> Positioning:
     return positioning(wanted, reached)
 
 
-def positioning_words(found: Positioning, ratio: float | None) -> Iterator[str]:
-    """Yield the errors of ISO 230-2 and the orders over the angle in words; those of the input too, by the ratio of a gear."""
+def positioning_words(found: Positioning, side: Side | None, ratio: float | None) -> Iterator[str]:
+    """Yield the errors of ISO 230-2 and the orders over the angle of a side in words; of the output those of the input too."""
     named = {
         "lost motion, mean of all targets": found.lost_motion,
         "largest reversal value B": found.reversal,
@@ -79,9 +81,10 @@ def positioning_words(found: Positioning, ratio: float | None) -> Iterator[str]:
             scatter = f" ± {3600.0 * np.degrees(found.lost_motion_sigma):.2g} arcsec" if value is found.lost_motion else ""
             yield f"{name}: {_in_degrees(value)}{scatter}"
     for order, size, sigma in found.orders:
-        of_input = f", {order / ratio:g} of the input" if ratio and order >= MIN_INPUT_ORDER * ratio else ""
+        is_fast = side == "output" and ratio and order >= MIN_INPUT_ORDER * ratio
+        of_input = f", {order / ratio:g} of the input" if is_fast and ratio else ""
         size_in_words = f"{_in_degrees(size)} ± {3600.0 * np.degrees(sigma):.2g} arcsec"
-        yield f"order {order:g} per turn of the axis{of_input}: {size_in_words}"
+        yield f"order {order:g} per turn of the {'input' if side == 'input' else 'axis'}{of_input}: {size_in_words}"
     if found.targets:
         yield (
             f"{found.targets} targets were approached from both sides; {found.within} rows lie within the lost motion behind a "

@@ -40,7 +40,7 @@ from strainwave.identification.results.changes import (
 )
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction, judged, validations
-from strainwave.messages import listed
+from strainwave.messages import listed, one_line
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ripple import ripple
 from strainwave.questions import TORQUE_CONSTANT, QuestionError
@@ -74,7 +74,7 @@ def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
     if gear_set.load is None:
         raise ValueError(
             f"{gear_set.name} has no [load], without which no torque along a motion is predicted; identify it from a log, with "
-            "--constant torque_constant=… if the log contains a current: a rough one will do to predict currents"
+            "--constant torque_constant=NUMBER if the log contains a current: a rough one will do to predict currents"
         )
     found = _predicted(file, gear_set)
     if not found.contradicts:
@@ -111,6 +111,7 @@ class _PredictedLog(ComparedByFields):
         drive: the saved one, with the motor of the log
         zero: of the effort, as saved
         delay: of the effort, as saved [s]
+        shares: of terms of other joints, as saved; empty if they are fitted to the log
         later: change of the delay, with which the effort is predicted [s]
         turned: change of the zero of the angle at the output, with which it is predicted; `drive` has it [rad]
         values: of the other parts that may have changed, by name, as last estimated; as saved if not given
@@ -121,6 +122,7 @@ class _PredictedLog(ComparedByFields):
     drive: Drive
     zero: float
     delay: float
+    shares: Mapping[str, float]
     later: float = 0.0
     turned: float = 0.0
     values: Mapping[str, float] = field(default_factory=dict)
@@ -128,17 +130,21 @@ class _PredictedLog(ComparedByFields):
     @classmethod
     def of(cls, file: Recognised, taken: PreparedLog, gear_set: GearSet) -> _PredictedLog:
         """Return a log compared with a saved drive."""
-        log = min((taken.log, *taken.with_others), key=lambda each: held_out_rms(each, taken.drive))
         drive = taken.drive.replace(load=gear_set.load)
-        saved = validations(gear_set, file.kind, log.effort)
-        zero, delay = (saved[0].zero, saved[0].delay) if saved else (0.0, 0.0)
+        every, logs = validations(gear_set, file.kind, taken.log.effort), (taken.log, *taken.with_others)
+        own = [each for each in every if each.file == one_line(file.path.name)]
+        saved = next(iter((*own, *every)), None)
+        zero, delay, shares = (saved.zero, saved.delay, saved.shares) if saved else (0.0, 0.0, {})
+        known = [each for each in logs if list(each.regressors) == list(shares) and (own or shares)]
+        log = known[0] if known else min(logs, key=lambda each: held_out_rms(each, taken.drive))
         log = replace(log, recorded=log.recorded - zero, force=log.force - zero)
-        return cls(taken, log.with_delay(), drive, zero, delay)
+        return cls(taken, log.with_delay(), drive, zero, delay, shares if known else {})
 
     @property
     def nuisances(self) -> Array:
-        """Delay of the measurement, shape (k,); zero and terms of other joints are 0, as they are no part of the drive."""
-        return np.array([self.delay + self.later if each.name == "delay" else 0.0 for each in self.log.nuisances])
+        """Delay of the measurement, and terms of other joints as saved, shape (k,); the zero is no part of the drive."""
+        known = {f"{OTHER}{name}": share for name, share in self.shares.items()} | {"delay": self.delay + self.later}
+        return np.array([known.get(each.name, 0.0) for each in self.log.nuisances])
 
     @cached_property
     def rows(self) -> Rows:
@@ -157,13 +163,13 @@ class _PredictedLog(ComparedByFields):
 
     def prediction(self, file: Recognised, gear_set: GearSet) -> tuple[Prediction, GearSet, float]:
         """Return the comparison, the saved set, and the mean variance of what it predicts."""
-        log, rows, resting = self.log, self.rows, self.log.motion.resting
+        log, rows = self.log, self.rows
         slopes, covariance = slopes_by_numbers(gear_set, self.drive, self.at, OF_RIGID_DRIVE)
         there, directions, changes = self._estimated(gear_set)
         values = {each.name: each.value for each in changes}
-        others = _explained({name: value for name, value in values.items() if name.startswith(OTHER)}, directions)
-        residual = log.residual(self.drive, self.nuisances) - np.where(resting, 0.0, others)
-        changed = there.log.residual(there.drive, there.nuisances) - np.where(resting, 0.0, _explained(values, directions))
+        fitted = {} if self.shares else {name: value for name, value in values.items() if name.startswith(OTHER)}
+        residual = log.residual(self.drive, self.nuisances) - _explained(fitted, directions)
+        changed = there.log.residual(there.drive, there.nuisances) - _explained(values, directions)
         channel, unit, measured = log.effort, log.units[0], log.recorded + self.zero
         lines, about_lines = self._lines(residual, file)
         found = Prediction(
@@ -260,7 +266,7 @@ class _PredictedLog(ComparedByFields):
         for name in log.regressors:
             shares = np.array([float(each.name == f"{OTHER}{name}") for each in log.nuisances])
             effect = log.whole(drive, self.nuisances + shares) - self.at(drive)
-            yield Direction(f"{OTHER}{name}", "N.m", 0.0, effect, max_sigma=np.inf)
+            yield Direction(f"{OTHER}{name}", "N.m", self.shares.get(name, 0.0), effect, max_sigma=np.inf)
 
     def _temperature(self) -> Array | None:
         """Return the temperature about its mean at every sample [K]; None if it was not recorded, or hardly changes."""
@@ -294,7 +300,8 @@ class _PredictedLog(ComparedByFields):
 
     def _remarks(self) -> Iterator[str]:
         if self.log.regressors:
-            yield f"terms of other joints are fitted to this recording: {listed(self.log.regressors)}"
+            source = "as saved" if self.shares else "fitted to this recording"
+            yield f"terms of other joints are {source}: {listed(self.log.regressors)}"
         if self.drive.load.name != "inertia" and self.drive.load.name != "pendulum":
             yield f"the load is as saved: {self.drive.load.name}"
 

@@ -155,7 +155,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         return Drive(gear=gear, motor=by_voltage, load=loads.Inertia(inertia=1.0)), remarks, False
     in_current = constant is None and not {"input_torque", "joint_torque"} & set(file.recording.names)
     if in_current:
-        remarks.append("the torque constant is not known: torques are in A; give --constant torque_constant=… for N.m")
+        remarks.append("the torque constant is not known: torques are in A; give --constant torque_constant=NUMBER for N.m")
         gear = gear.replace(input_inertia=0.0)
     elif "motor_inertia" in constants:
         remarks.append(

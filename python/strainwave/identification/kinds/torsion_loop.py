@@ -67,8 +67,10 @@ class Torsion(Kind):
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
         if _exceeds_twist(column, mapping):
-            ways = [LOG_AT_RATE, Answer("a torsion loop all the same", {"kind": "torsion"})]
-            raise QuestionError(f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists", ways)
+            loop = [] if measured(columns, "speed") else [Answer("a torsion loop all the same", {"kind": "torsion"})]
+            raise QuestionError(
+                f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists", [LOG_AT_RATE, *loop]
+            )
         return bool(abs(angle[-1] - angle[0]) <= MIN_TURNING or turning_points(angle) or _is_spring(angle, torque))
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
@@ -201,6 +203,7 @@ def in_steps(time: Array, angle: Array, torque: Array) -> bool:
     return is_slow and float(np.ptp(angle)) <= MIN_TURNING and _is_spring(angle, torque)
 
 
+@np.errstate(all="ignore")
 def _is_spring(angle: Array, torque: Array) -> bool:
     """True if the torque alternates and follows the angle."""
     alternates = torque.min() < 0.0 < torque.max() and np.ptp(angle) > 0.0

@@ -40,7 +40,7 @@ class TwoEncoders(Kind):
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""
         given = file.constants.get("ratio")
-        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=…")
+        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
         name = file.path.name
         remarks, pictures = (*file.remarks, *found.remarks), (Picture(curves_of_orders(found)),)
         result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), remarks, pictures=pictures)

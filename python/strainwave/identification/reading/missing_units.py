@@ -13,6 +13,7 @@ from strainwave.files.units import convert
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
+from strainwave.identification.reading.times import is_file_time
 from strainwave.messages import quoted
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
@@ -20,7 +21,7 @@ Array = NDArray[np.float64]
 
 ANGLES = {"rad": 2.0 * np.pi, "deg": 360.0, "rev": 1.0}  # units, and a revolution in each
 SPEEDS = ("rad/s", "deg/s", "rpm")
-EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
+EPOCHS = ((1e18, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
 RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
 MIN_BITS, MAX_BITS = 6, 40  # of an encoder
 MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
@@ -122,6 +123,8 @@ def _unit_of_size(size: float) -> str | None:
 def _by_itself(column: Column, columns: Sequence[Column]) -> Assumed:
     """Return the unit of a column that is stated, or that its own numbers determine, or the usual one."""
     values = column.raw[np.isfinite(column.raw)]
+    if column.channel.quantity == "time" and is_file_time(values):
+        return Assumed("us", "as it counts tenths of them since 1601", True, scale=0.1)
     if column.unit is not None:
         return Assumed(column.unit, "stated", True)
     match column.channel.quantity:

@@ -76,8 +76,9 @@ OTHERS = (
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
     "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
 )  # fmt: skip
-ERRORS = {"error", "err", "fehler", "deviation", "abweichung"}
-DEVIATIONS = ERRORS | {"position", "positioning", "angle", "angular"}
+ERRORS = {"error", "err", "fehler", "deviation", "abweichung", "te"}
+OF_TRANSMISSION = {"te", "transmission", "kinematic"}
+DEVIATIONS = ERRORS | OF_TRANSMISSION | {"position", "positioning", "angle", "angular"}
 FINE_UNITS = ("arcsec", "arcmin", "\u2033", "\u2032")  # in which a deviation is one of the position
 ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
 # Words for a share of a rated value, each with its unit.
@@ -142,7 +143,8 @@ def meaning(label: Label) -> Meaning | None:
     words = words_of(name)
     if unit is not None and measures(unit, UNITS["vibration"]):
         return Meaning("vibration", unit=unit)
-    if unit in FINE_UNITS and set(words) <= DEVIATIONS and ERRORS & set(words):
+    is_fine = unit in FINE_UNITS or (unit is not None and measures(unit, "rad") and OF_TRANSMISSION & set(words))
+    if is_fine and set(words) <= DEVIATIONS and ERRORS & set(words):
         return Meaning("twist", unit=unit)
     if any(word in OTHERS for word in words):
         return None

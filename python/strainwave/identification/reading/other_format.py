@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from strainwave.number_texts import is_number
+
 BEGINNINGS = {
     b"\x89PNG": "a picture (PNG)", b"\xff\xd8\xff": "a picture (JPEG)", b"GIF8": "a picture (GIF)", b"BM": "a picture (BMP)",
     b"%PDF": "a PDF document", b"PK\x03\x04": "a ZIP archive, as spreadsheets are", b"\x1f\x8b": "packed (gzip)",
@@ -27,8 +29,9 @@ def other_format(path: Path) -> str | None:
 
 
 def _other_separator(begin: bytes) -> str | None:
-    """Return a separator that tables are not read with, if two lines in a row have it equally often, and no other one."""
+    """Return a separator that tables are not read with, if the first two lines have it equally often, the second numbers."""
     lines = [line for line in begin.decode("utf-8", "ignore").splitlines() if line.strip() and not line.startswith("#")][:2]
     if len(lines) < 2 or any(each in line for line in lines for each in ",;\t"):
         return None
-    return next((each for each in "|:^~" if lines[0].count(each) == lines[1].count(each) > 0), None)
+    separators = [each for each in "|:^~" if lines[0].count(each) == lines[1].count(each) > 0]
+    return next((each for each in separators if all(map(is_number, lines[1].split(each)))), None)

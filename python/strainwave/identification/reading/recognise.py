@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -127,9 +128,10 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     try:
         return _recognised(source, given)
     except QuestionError as question:
-        if not question.by_fit:
-            raise _with_answers_that_work(source, given, question) from None
-        return _with_ways(source, given, question)
+        if question.by_fit:
+            with suppress(ValueError):  # an answer leads to a further question, or works not at all
+                return _with_ways(source, given, question)
+        raise _with_answers_that_work(source, given, question) from None
 
 
 def _with_ways(source: MeasurementFile, given: FileMapping, question: QuestionError) -> Recognised:
@@ -151,7 +153,9 @@ def _with_answers_that_work(source: MeasurementFile, given: FileMapping, questio
     for answer in question.answers:
         try:
             mapping = given.updated(FileMapping(**answer.given))
-            if mapping == given:
+            if mapping == given and not answer.files:
+                continue
+            if mapping.joint == ALL_JOINTS and not joints_of(source, given):
                 continue
             if not answer.files and mapping.joint != ALL_JOINTS:
                 answer = replace(answer, gives=_in_words(_recognised(source, mapping)))
@@ -192,7 +196,10 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         if question.answers:
             raise
         left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns).values())))
-        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns)) from None
+        if unnamed.is_frequency_response(table):
+            why = "it is a frequency response, which is not read: give the record in time from which it was computed"
+            raise QuestionError(f"{why}{left}") from None
+        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, given.kind)) from None
     neighbours = {
         f"angle_of_joint_{column.which}": column
         for column in columns
@@ -337,7 +344,7 @@ def _with_speed_of_name(columns: Sequence[Column], given: FileMapping, path: Pat
     speed = None if moves or not known & {"torque", "current"} else speed_in(path)
     if speed is None:
         return given, ()
-    why = f"by its name it turned at {speed:.4g} rad/s; otherwise add --constant speed=…"
+    why = f"by its name it turned at {speed:.4g} rad/s; otherwise add --constant speed=NUMBER"
     return given.updated(FileMapping(constants={"speed": speed})), (why,)
 
 
@@ -392,12 +399,13 @@ def _with_joint(source: MeasurementFile, given: FileMapping) -> tuple[FileMappin
     if of_another and not moving_joints(source.table, FileMapping()):
         raise ValueError(one_line(f"{source.table.file}: by its name it is of joint {named}, and not of joint {given.joint}"))
     if named in moving and len(moving) > 1:
-        others = listed(joint for joint in moving if joint != named)
+        others = [joint for joint in moving if joint != named]
         return replace(given, joint=named), [
-            f"joint {named} is taken, which its name contains, while {others} move too; otherwise add --joint NAME"
+            f"joint {named} is taken, which its name contains, while {listed(others)} move too; "
+            f"otherwise add --joint {others[0]}"
         ]
     if len(moving) == 1:
-        return replace(given, joint=moving[0]), [f"joint {moving[0]} alone moves, and is taken; otherwise add --joint NAME"]
+        return replace(given, joint=moving[0]), [f"joint {moving[0]} alone moves, and is taken"]
     return given, []
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import Side, meaning
-from strainwave.questions import Answer, QuestionError
+from strainwave.questions import OF_SIDES, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
@@ -68,8 +68,8 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
     if {other.channel.side or ("output" if other.robot else None) for other in others} - {None} == {"output"}:
         return "output", f"{column.name} is recorded with channels of a joint: it is taken to be at the output"
-    ways = [Answer("of the joint", {"side": "output"}), Answer("of the motor", {"side": "input"})]
-    raise QuestionError(f"{column.name} may be the {column.channel.quantity} of the joint or of the motor", ways, by_fit=True)
+    question = f"{column.name} may be the {column.channel.quantity} of the joint or of the motor"
+    raise QuestionError(question, OF_SIDES, by_fit=True)
 
 
 def _check_unit(column: Column, fastest: float) -> None:
@@ -108,7 +108,7 @@ def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tupl
 
 def sides_of_torques(torques: Sequence[Column]) -> list[Answer]:
     """Return the answers to which of some torques is meant, and at which side it is counted."""
-    sides = {"joint_torque": "of the joint", "input_torque": "of the motor"}
+    sides = {"input_torque": "of the motor", "joint_torque": "of the joint"}
     names = {column.name: _stem(column) for column in torques}
     return [
         Answer(f"{name} is the torque {side}", {"columns": {channel: column}})
@@ -163,6 +163,7 @@ def _times_as_fast(column: Column, other: Column, time: Column | None) -> float:
     return own / others if own > 0.0 and others > 0.0 else np.nan
 
 
+@np.errstate(all="ignore")
 def _speed(column: Column, time: Column) -> Array:
     """Return a speed, or that of an angle over a thousandth of the record; 0 if its time does not run forward."""
     if column.channel.quantity == "speed":

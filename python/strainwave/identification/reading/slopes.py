@@ -50,9 +50,9 @@ def speed_per_slope(angle: Array, speed: Array, time: Array) -> float:
     """Return the speed per unit of the slope of an angle, by least squares; 0 if nothing moves, or they are not related."""
     for parts in PARTS:
         slopes, speeds = slopes_and_speeds(angle, speed, time, parts)
-        square, product = float(slopes @ slopes), float(slopes @ speeds)
-        if 0.0 < square < np.inf and product**2 > MIN_EXPLAINED * square * float(speeds @ speeds):
-            return product / square
+        square, product, largest = slopes @ slopes, slopes @ speeds, speeds @ speeds
+        if 0.0 < square < np.inf and product**2 > MIN_EXPLAINED * square * largest:
+            return float(product / square)
     return 0.0
 
 

@@ -18,12 +18,11 @@ from strainwave.files.labels import ColumnSource, Label, places_of
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
 from strainwave.files.tables import FORMATS, is_table_of_numbers, open_table
-from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, Quantity, is_of_joint, meaning
 from strainwave.identification.reading.slopes import is_slope
-from strainwave.identification.reading.times import merged, unit_of_time, with_one_time
+from strainwave.identification.reading.times import merged, seconds_of, with_one_time
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -315,7 +314,7 @@ class _Part:
         at = next(place for place, found in enumerate(meanings) if found and found.quantity == "time")
         names = [label.name if found else f"{name}_{label.name}" for label, found in zip(table.labels, meanings, strict=True)]
         units = {each: label.unit for each, label in zip(names, table.labels, strict=True) if label.unit}
-        time = convert(series[at], unit_of_time(table.labels[at]), "s")
+        time = seconds_of(series[at], table.labels[at])
         return _Part(name, series[:at] + series[at + 1 :], time, names[:at] + names[at + 1 :], units)
 
     @property

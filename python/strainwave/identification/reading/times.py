@@ -21,6 +21,7 @@ PARTS = {
     **dict.fromkeys(("ns", "nsec", "nsecs", "nanosec", "nanosecs", "nanosecond", "nanoseconds"), 1e-9),
     **dict.fromkeys(("us", "usec", "usecs", "microsec", "microseconds"), 1e-6),
 }  # s
+FILE_TIMES = (1e17, 1e18)  # of Windows, in tenths of a microsecond since 1601: no log has such times in another unit
 MIN_PAIRS = 2  # of a time and a channel
 
 
@@ -142,7 +143,7 @@ def _with_own_times(table: OpenTable) -> OpenTable:
     for place, name in zip(range(0, len(labels), 2), channels, strict=True):
         time, values = numbers[str(place)], numbers[str(place + 1)]
         rows = np.isfinite(time) & np.isfinite(values)
-        time, values = convert(time[rows], unit_of_time(labels[place]), "s"), values[rows]
+        time, values = seconds_of(time[rows], labels[place]), values[rows]
         if not len(time) or not (np.diff(time) > 0.0).all():
             return table
         grids.append(Grid(time, {name: values}))
@@ -159,6 +160,13 @@ def merged(grids: Sequence[Grid]) -> list[Grid]:
     return found
 
 
-def unit_of_time(label: Label) -> str:
-    """Return the unit of a column of time: the one that it states, or seconds."""
-    return label.unit if label.unit is not None and measures(label.unit, "s") else "s"
+def seconds_of(time: Array, label: Label) -> Array:
+    """Return a column of time [s], by the unit that it states, or in seconds; stamps of Windows by their size."""
+    if is_file_time(time):
+        return np.asarray((time - FILE_TIMES[0]) * 1e-7)
+    return np.asarray(convert(time, label.unit if label.unit is not None and measures(label.unit, "s") else "s", "s"))
+
+
+def is_file_time(time: Array) -> bool:
+    """True for stamps that count tenths of a microsecond since 1601, as Windows does."""
+    return bool(len(time) and FILE_TIMES[0] < time.min() and time.max() < FILE_TIMES[1])

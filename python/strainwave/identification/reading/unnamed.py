@@ -11,6 +11,7 @@ from strainwave.files.labels import ColumnSource
 from strainwave.files.table_format import OpenTable
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.layout import rises_evenly
+from strainwave.identification.reading.names import words_of
 from strainwave.messages import MAX_TEXT, one_line
 from strainwave.questions import LOG_AT_RATE, Answer
 
@@ -21,7 +22,9 @@ MAX_COMPARED = 64  # columns whose numbers are read
 MIN_STAMP = 1e8  # of a column: s since 1970, or ns in a second, and nothing that a drive measures
 EFFORTS = {"joint_torque": "the torque of the joint", "current": "the current of the motor"}
 MOTIONS = {"output_angle": "the angle of the joint", "input_angle": "the angle of the motor", "speed": "a speed"}
+OF_ONE_SIDE = ("friction", "torsion")  # kinds whose torque has no side in its name
 PAIRS = (("output_angle", "joint_torque"), ("speed", "torque"))  # of channels that are a measurement together
+FREQUENCIES, RESPONSES = {"frequency", "freq", "frequenz"}, {"magnitude", "mag", "gain", "amplitude", "phase", "betrag"}
 SPEED = {"constants": {"speed": 10.0}}, {"speed": "the constant speed [rad/s]"}
 
 
@@ -50,14 +53,14 @@ def measured_columns(table: OpenTable, used: Sequence[int]) -> dict[str, Array]:
     return {names[int(place)]: values for place, values in numbers.items() if is_measured(values)}
 
 
-def answers(table: OpenTable, known: Sequence[Column]) -> list[Answer]:
+def answers(table: OpenTable, known: Sequence[Column], kind: str | None) -> list[Answer]:
     """Return what the columns of a file may be whose names mean nothing, if others lack an effort, a motion, or both."""
     series = measured_columns(table, [column.position for column in known])
     quantities = {column.channel.quantity for column in known if column.own and not column.channel.commanded}
     has_effort, has_motion = bool(quantities & {"torque", "current"}), bool(quantities & {"angle", "speed", "twist"})
     names = [name for name, values in series.items() if not rises_evenly(values)] or list(series)
     if has_effort != has_motion:
-        wanted = {"torque": "the torque"} if "twist" in quantities else EFFORTS
+        wanted = {"torque": "the torque"} if "twist" in quantities or kind in OF_ONE_SIDE else EFFORTS
         return _each(names, wanted if has_motion else MOTIONS)
     if has_effort or not names:
         return []
@@ -69,6 +72,12 @@ def answers(table: OpenTable, known: Sequence[Column]) -> list[Answer]:
     if "time" in quantities:
         return pairs
     return [Answer(f"{pairs[0].label}", {**pairs[0].given, **LOG_AT_RATE.given}, LOG_AT_RATE.numbers), *pairs[1:]]
+
+
+def is_frequency_response(table: OpenTable) -> bool:
+    """True if a column is a frequency and another one a magnitude, a gain or a phase."""
+    words = {word for label in table.labels for word in words_of(label.name)}
+    return bool(words & FREQUENCIES and words & RESPONSES)
 
 
 def motions(names: Sequence[str]) -> list[Answer]:

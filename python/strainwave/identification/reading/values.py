@@ -19,12 +19,23 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.recorders import with_registers
-from strainwave.messages import listed, one_line, quoted
+from strainwave.messages import as_option, listed, one_line, quoted
 from strainwave.questions import Answer, QuestionError
 
 Array = NDArray[np.float64]
 
 MIN_WHOLE = 0.5  # of the rows of the slowest channel: with fewer whole rows the channels were sampled at other instants
+OTHER_UNITS: dict[str, tuple[str, str]] = {
+    "time": ("ms", "s"),
+    "angle": ("deg", "rad"),
+    "twist": ("deg", "rad"),
+    "speed": ("rpm", "rad/s"),
+    "torque": ("mN.m", "N.m"),
+    "current": ("mA", "A"),
+    "voltage": ("mV", "V"),
+    "temperature": ("K", "degC"),
+    "vibration": ("mm/s2", "m/s2"),
+}  # usual ones, of which an example differs from the unit that is taken
 MAX_LISTED = 4  # names, if none is known
 
 
@@ -37,7 +48,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         there = (
             listed(names) if len(names) <= MAX_LISTED else f"{listed(names[:MAX_LISTED])} and {len(names) - MAX_LISTED} more"
         )
-        raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, []))
+        raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, [], mapping.kind))
     sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
     known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)
@@ -53,7 +64,11 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         raise ValueError(one_line(f"{table.file} {error}")) from None
     assumed = ", ".join(f"{c.name} in {' '.join(filter(None, units[c.position][:2]))}" for c in own if c.unit is None)
     remarks = [*left_out, *remarks, *of_recorder, *counted]
-    remarks += [f"no unit is stated: {assumed}; otherwise add --unit NAME=UNIT"] if assumed else []
+    if assumed:
+        column = next(c for c in own if c.unit is None)
+        other = next(unit for unit in OTHER_UNITS[column.channel.quantity] if unit != units[column.position].unit)
+        remark = f"no unit is stated: {assumed}; otherwise add its unit, as {as_option('unit', column.label.name, other)}"
+        remarks.append(remark)
     angle = next((c for c in own if c.channel.quantity == "angle" and not c.channel.commanded), None)
     neighbour = Assumed(UNITS["angle"] if angle is None else units[angle.position].unit, sure=True)  # in that of the joint
     found = [_in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known]

@@ -18,11 +18,11 @@ from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validati
 from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import moving
-from strainwave.identification.candidates.torque_place import MIN_FRICTION_SHARE
+from strainwave.identification.candidates.torque_place import frictionless
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
-from strainwave.identification.results.file_result import IN_CURRENT, FileEstimate, FileResult
+from strainwave.identification.results.file_result import BEHIND_GEAR, IN_CURRENT, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import is_of, source_of
 from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
@@ -108,7 +108,7 @@ def not_written(files: Sequence[FileResult]) -> str:
     kept = [part for part in parts if part != "load"]
     return (
         f"without the measured {listed(parts)}: the torque constant is not known, and these numbers are in A "
-        f"(give --constant torque_constant=…){f'; the gear keeps {listed(kept)} of the start set' if kept else ''}"
+        f"(give --constant torque_constant=NUMBER){f'; the gear keeps {listed(kept)} of the start set' if kept else ''}"
     )
 
 
@@ -340,17 +340,9 @@ def _saved(drive: Drive, whole: GearSet) -> Drive:
     """Return the drive of a log as saved; without inertias that its torque does not contain, as `predict` has it."""
     motor_there: Any = drive.motor
     gear = whole.gear.replace(input_inertia=drive.gear.input_inertia)
-    if not _has_friction(drive, whole):
-        gear = gear.replace(friction_input=drive.gear.friction_input, friction_mesh=drive.gear.friction_mesh)
     is_of_motor = gear.input_inertia == whole.gear.input_inertia
     inertia = float(getattr(whole.motor, "inertia", motor_there.inertia)) if is_of_motor else motor_there.inertia
     return drive.replace(gear=gear, load=whole.load, motor=motor_there.replace(inertia=inertia))
-
-
-def _has_friction(drive: Drive, whole: GearSet) -> bool:
-    """True if the torque of a log contains friction of the gear: behind the gear there is none."""
-    fitted, saved = (float(law.steady(1.0)) for law in (drive.gear.friction_input, whole.gear.friction_input))
-    return fitted > MIN_FRICTION_SHARE * saved
 
 
 def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | None) -> Iterator[Validation]:
@@ -364,16 +356,21 @@ def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | 
             or not np.isfinite([held_out.error, held_out.zero]).all()
         ):
             continue
-        error, varies, zero, delay = held_out.error, held_out.zero, 0.0, 0.0
+        error, varies, zero, delay, shares = held_out.error, held_out.zero, 0.0, 0.0, dict[str, float]()
         if each.fit is not None and drive is not None and isinstance(log := each.fit.parts[0].experiment, MotionLog):
             unknown = dict(zip([part.name for part in log.nuisances], nuisances_of(each.fit).tolist(), strict=True))
             rows = moving(log)
             saved = _saved(drive, whole)
             saved = saved if each is best else saved.replace(load=drive.load, motor=drive.motor)
+            if any(estimate.why == BEHIND_GEAR for estimate in each.estimates):
+                saved = frictionless(saved)
             left = log.residual(saved, nuisances_of(each.fit))[rows]
+            offset = 0.0 if log.both_ways else float(np.mean(left))  # one way, a zero and friction are one number
+            left = left - offset
             error, varies = float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[rows]))
-            zero, delay = unknown.get(f"{log.effort}_zero", 0.0), unknown.get("delay", 0.0)
+            zero, delay = unknown.get(f"{log.effort}_zero", 0.0) + offset, unknown.get("delay", 0.0)
+            shares = {name: unknown[f"share of {name}"] for name in log.regressors}
         yield Validation(
             one_line(each.name), each.recognised.kind, held_out.channel, held_out.unit, error, varies, held_out.error,
-            held_out.zero, zero, delay,
+            held_out.zero, zero, delay, shares,
         )  # fmt: skip

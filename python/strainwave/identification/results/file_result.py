@@ -24,6 +24,7 @@ State = Literal["identified", "identified in combination", "not identified", "ke
 Look = Literal["table", "loop", "series", "means"]
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
 IN_CURRENT = "in A"  # law of an estimate without the torque constant
+BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 TOO_UNCERTAIN = "standard deviation exceeds half the value"
 
 

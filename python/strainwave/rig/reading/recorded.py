@@ -13,12 +13,13 @@ from strainwave.files.recording import Recording
 from strainwave.files.tables import open_table
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
-from strainwave.messages import as_option, listed, one_line, quoted
+from strainwave.messages import listed, one_line, quoted
+from strainwave.questions import OF_SIDES, Answer, QuestionError
 from strainwave.rig.loop import COLUMNS, Loop, Side
 
 Array = NDArray[np.float64]
 
-BOTH_SHAFTS = 'has the angle and torque of both shafts; choose with side = "input" or side = "output"'
+BOTH_SHAFTS = QuestionError("it has the angle and torque of both shafts", OF_SIDES)
 
 
 def read_loop(
@@ -69,15 +70,15 @@ def _recording(
     there = [each for each, pair in COLUMNS.items() if set(pair) <= header]
     if not columns and len(there) > 1:
         if side is None:
-            raise ValueError(one_line(f"{path}: {BOTH_SHAFTS}"))
+            raise BOTH_SHAFTS.of(one_line(str(path)))
         columns = {name: name for name in COLUMNS[side]}
     stated = {label.name for label in open_table(path).labels if label.unit is not None}
     found = recognise(path, FileMapping(columns=columns or {}, units=units or {}, kind="torsion", side=side))
     for name in (each for pair in COLUMNS.values() for each in pair if each in found.columns):
         if found.columns[name] not in stated and name not in (units or {}):
             unit = "deg" if name in ("input_angle", "twist") else "N.m"
-            column = quoted(found.columns[name])
-            raise ValueError(one_line(f"{path}: column {column} states no unit; give it, with {as_option('unit', name, unit)}"))
+            question = one_line(f"{path}: column {quoted(found.columns[name])} states no unit")
+            raise QuestionError(question, [Answer(f"it is in {unit}", {"units": {name: unit}})])
     assumed = () if columns or there else (*found.why[2:], *found.remarks)  # the first two are its columns and their side
     return found.recording, assumed
 
@@ -100,7 +101,7 @@ def loop_of(recording: Recording, *, side: Side | None = None, name: str = "", p
     """
     there = [each for each, pair in COLUMNS.items() if set(pair) <= set(recording.names)]
     if side is None and len(there) > 1:
-        raise ValueError(BOTH_SHAFTS)
+        raise BOTH_SHAFTS
     chosen = side or (there[0] if there else "input")
     if chosen not in there:
         raise ValueError(f"has no columns {' and '.join(COLUMNS[chosen])}; it has {listed(recording.names)}")

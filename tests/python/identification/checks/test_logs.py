@@ -12,6 +12,7 @@ from strainwave.identification.checks.logs import (
     inertias_of_load,
     ratio_of_encoders,
     speed_against_angle,
+    speed_of_another_clock,
     torque_constant_by_voltage,
 )
 from strainwave.identification.reading.mapping import FileMapping
@@ -94,3 +95,14 @@ def test_a_speed_in_a_wrong_unit_contradicts_its_angle(tmp_path: Path, unit: str
     (check,) = speed_against_angle(recognise(path, FileMapping(side="output")))
     assert check.failed == fails
     assert not fails or "--unit dq=rad/s" in check.remedy
+
+
+def test_a_speed_twice_the_slope_of_its_angle_is_no_other_unit(tmp_path: Path) -> None:
+    """A published record of a joint has a clock that runs twice as long as its motion took."""
+    path = tmp_path / "log.csv"
+    rows = np.column_stack([2.0 * TIME, ANGLE, SPEED, 0.8 * torque(TRUTH)])
+    np.savetxt(path, rows, delimiter=",", header="t [s],q [rad],dq [rad/s],tau [N.m]", comments="")
+    file = recognise(path, FileMapping(side="output"))
+    assert not any(check.failed for check in speed_against_angle(file))
+    (remark,) = speed_of_another_clock(file)
+    assert "which no unit makes" in remark

@@ -148,14 +148,13 @@ def test_a_loop_of_a_locked_gear_named_as_one_of_the_input_at_rest(largest: floa
 
 
 @pytest.mark.parametrize("effort", ["current", "joint_torque"])
-def test_friction_that_vanished_is_no_number(effort: str) -> None:
-    """It was printed as 1.79e-22 N.m, 3.32e-21 times that of the start set."""
-    law = sw.friction.Coulomb(coulomb=1e-22, breakaway=1e-22, viscous=0.0)
+@pytest.mark.parametrize(("coulomb", "ratio", "failed"), [(1e-22, 100.0, []), (50.0, 100.0, [True]), (50.0, 1.0, [])])
+def test_only_friction_of_a_gear_is_compared(effort: str, coulomb: float, ratio: float, failed: list[bool]) -> None:
+    """Friction that vanished was printed as 1.79e-22 N.m, 3.32e-21 times that of the start set."""
+    law = sw.friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=0.0)
     speeds = np.linspace(-100.0, 100.0, 50)
-    (check,) = friction_of_log(law, start().gear.friction_input, speeds, effort, "log.csv")
-    assert check.failed
-    assert "no friction is left" in check.message
-    assert "signs of angle, speed and torque" in check.remedy
+    checks = friction_of_log(law, start().gear.friction_input, speeds, effort, "log.csv", ratio=ratio)
+    assert [check.failed for check in checks] == failed
 
 
 def test_a_table_at_one_load_determines_coulomb_friction_and_loss_together_only() -> None:

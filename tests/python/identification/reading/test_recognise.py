@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.questions import QuestionError
 
 from tests.support.answers import options_of
 
@@ -193,6 +194,9 @@ def test_what_is_no_measurement_is_refused(tmp_path: Path) -> None:
         recognise(write(tmp_path / "a.csv", "foo,bar", [1.0, 2.0], [1.0, 2.0]))
     with pytest.raises(ValueError, match=r"it has time, position, which is no measurement that is known"):
         recognise(write(tmp_path / "b.csv", "time [s],position [rad]", TIME, SWING))
+    with pytest.raises(QuestionError, match="it is a frequency response, which is not read: give the record in time") as asked:
+        recognise(write(tmp_path / "c.csv", "Frequency (Hz),Magnitude (dB),Phase (deg)", TIME[1:], TIME[1:], TIME[1:]))
+    assert not asked.value.answers
 
 
 def test_an_angle_that_begins_anew_with_each_revolution_runs_on(tmp_path: Path) -> None:

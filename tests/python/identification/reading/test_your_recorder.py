@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from strainwave.files.tables import open_table
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import measurement_files
 
@@ -43,13 +44,12 @@ def of_rtde(folder: Path) -> Path:
 
 
 def of_libfranka(folder: Path) -> Path:
-    """As of `franka::logToCSV`."""
+    """As of `franka::logToCSV`, with a blank behind some commas of its header."""
     parts = [(["time", "success_rate"], [1e3 * TIME, np.ones_like(TIME)])]
-    for name, own, other in (("q", ANGLE, OTHER), ("q_d", ANGLE, OTHER), ("dq", SPEED, np.gradient(OTHER, TIME)),
-                             ("tau_J", TORQUE, OTHER), ("tau_ext_hat_filtered", OTHER, OTHER)):  # fmt: skip
-        parts.append(numbered(f"state.{name}[{{}}]", own, other))
-    parts.append(numbered("cmd.tau_J_d[{}]", TORQUE, OTHER))
-    return text(folder, "log.csv", *joined(parts))
+    own = {"q": ANGLE, "q_d": ANGLE, "dq": SPEED, "dq_d": SPEED, "tau_J": TORQUE, "tau_ext_hat_filtered": OTHER}
+    parts += [numbered(f"state.{name}[{{}}]", values, OTHER) for name, values in own.items()]
+    parts += [numbered(f"cmd.{name}[{{}}]", ANGLE, OTHER) for name in ("q_d", "dq_d", "tau_J_d")]
+    return text(folder, "log.csv", *joined(parts, ", "), mark=",")
 
 
 def of_trajectory_controller(folder: Path) -> Path:
@@ -74,6 +74,13 @@ def of_trajectory_controller(folder: Path) -> Path:
 def of_plotjuggler(folder: Path) -> Path:
     header = "__time,/joint_states/elbow/position,/joint_states/elbow/velocity,/joint_states/elbow/effort"
     return text(folder, "export.csv", header, [1.7e9 + TIME, ANGLE, SPEED, TORQUE])
+
+
+def of_odrive(folder: Path) -> Path:
+    """With the names of the properties that `odrivetool` reads, of firmware 0.6."""
+    turns = RATIO / (2.0 * np.pi)
+    names = "time,axis0.pos_vel_mapper.pos_rel,axis0.pos_vel_mapper.vel,axis0.motor.foc.Iq_measured"
+    return text(folder, "odrive.csv", names, [TIME, turns * ANGLE, turns * SPEED, TORQUE / 10.0])
 
 
 def of_moteus(folder: Path) -> Path:
@@ -135,6 +142,7 @@ RECORDERS: dict[str, tuple[Callable[[Path], Path], FileMapping]] = {
     "libfranka": (of_libfranka, FileMapping(joint="0")),
     "control_msgs": (of_trajectory_controller, EFFORT),
     "PlotJuggler": (of_plotjuggler, EFFORT),
+    "ODrive": (of_odrive, FileMapping(side="input", units={"angle": "rev", "speed": "rev/s"})),
     "moteus": (of_moteus, FileMapping(side="output", units={"angle": "rev", "speed": "rev/s"})),
     "ros2 topic echo": (of_echo, EFFORT),
     "printed lines": (of_print, FileMapping()),
@@ -147,6 +155,7 @@ RECORDERS: dict[str, tuple[Callable[[Path], Path], FileMapping]] = {
 
 def read(path: Path, mapping: FileMapping) -> Recognised:
     (file,) = measurement_files([path]).files
+    assert other_format(file.path) is None
     return recognise(file, mapping)
 
 
@@ -154,11 +163,12 @@ def read(path: Path, mapping: FileMapping) -> Recognised:
 def test_a_file_of_a_recorder_enters_by_one_answer(tmp_path: Path, name: str) -> None:
     write, answer = RECORDERS[name]
     found = read(write(tmp_path), answer)
-    assert (found.kind, found.side) == ("log", "output")
+    assert (found.kind, found.side) == ("log", answer.side or "output")
     rows = slice(len(TIME) - len(found.recording), None)
     time = found.recording.time - found.recording.time[0]
     assert time == pytest.approx(TIME[rows] - TIME[rows][0], abs=2e-6)
-    assert found.recording["output_angle"] == pytest.approx(ANGLE[rows], abs=1e-6)
+    angle = found.recording["output_angle"] if found.side == "output" else found.recording["input_angle"] / RATIO
+    assert angle == pytest.approx(ANGLE[rows], abs=1e-6)
     if "current" in found.recording:
         assert found.recording["current"] == pytest.approx(TORQUE[rows] / 10.0, abs=1e-6)
     else:

@@ -94,6 +94,15 @@ def test_a_number_without_effect_has_that_reason_and_is_that_of_the_set() -> Non
     assert judged["damping_fading"].why == "table.csv stays the same when it changes"
 
 
+def test_a_number_at_a_bound_is_not_identified() -> None:
+    table = sw.Recording({"speed": SPEED, "torque": 0.05 + 3e-4 * SPEED + 1e-4 * np.cos(9.0 * SPEED)},
+                         {"speed": "rad/s", "torque": "N.m"})  # fmt: skip
+    gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
+    found = sw.fit(gear, table, ["friction_input.coulomb"], bounds={"friction_input.coulomb": (0.0, 0.03)})
+    (judged,) = JudgedFit(found, "table.csv", InfluenceOfKept.none(1)).estimates({}, ())
+    assert judged.why == "ended at its bound; table.csv would move it further"
+
+
 def test_a_gear_loads_without_a_warning_and_breaks_away_no_lower_than_it_slides() -> None:
     bristles = sw.friction.LuGre(
         coulomb=0.09, breakaway=0.095, stribeck_speed=2.0, bristle_stiffness=50.0, bristle_damping=8e-3, viscous=7e-4

@@ -180,7 +180,9 @@ def test_loops_of_others_are_read(tmp_path: Path) -> None:
     both = loop.recording().with_column("twist", loop.angle, "rad").with_column("torque", loop.torque, "N.m")
     both.to_parquet(tmp_path / "both.parquet")
     assert read_loop(tmp_path / "both.parquet", side="output").side == "output"
-    with pytest.raises(ValueError, match=re.escape("both.parquet: has the angle and torque of both shafts; choose with side")):
+    with pytest.raises(
+        ValueError, match=re.escape("both.parquet: it has the angle and torque of both shafts: of the joint with --side output")
+    ):
         read_loop(tmp_path / "both.parquet")
     with pytest.raises(ValueError, match="has no columns twist and torque; it has input_angle, input_torque"):
         loop_of(loop.recording(), side="output")
