@@ -188,7 +188,9 @@ def transmission_error(
             left_out.append("order 1 of the output contains the wind-up by a weight there: one record does not separate them")
         else:
             chosen = [each for each in chosen if each != (1.0 / abs(size), "output")]
-            left_out.append("order 1 of the output is part of the wind-up by the load, from which one record does not separate it")
+            left_out.append(
+                "order 1 of the output is part of the wind-up by the load, from which one record does not separate it"
+            )
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
     found, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
     error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
