@@ -46,7 +46,7 @@ from strainwave.identification.candidates.plain import (
     one_speed,
     stretches,
 )
-from strainwave.identification.candidates.ripple import with_ripple
+from strainwave.identification.candidates.ripple import sizes_of_waves, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MIN_INERTIA_SHARE, MotionLog, inertia_of, per_torque
 from strainwave.identification.experiments.stages import series_compliance
@@ -98,8 +98,12 @@ def fit_motion(
     late = [search.tried(each) for each in _delayed(best.model, delay)] if delay else []
     best = _completed(search, best)
     if found := [each for each in late if each is not None]:
-        other = _completed(search, min(found, key=lambda each: each.error_in_band))
-        best = other if other.explains_more_than(best) else best
+        start = found[0]  # a delay alone, unless a part beside it explains more
+        for each in found[1:]:
+            start = each if each.explains_more_than(start) else start
+        other = _completed(search, start)
+        is_stand_in = bool(sizes_of_waves(best.model)) and not best.predicts_as_well_as(other)  # waves for a delay
+        best = other if is_stand_in or other.explains_more_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
     others = sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
     return (best, *others)
