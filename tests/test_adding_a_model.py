@@ -225,6 +225,7 @@ ELSEWHERE = {
     "MaxwellSlip": {
         "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
+        "identification/kinds/between_encoders.py": "elements of a log and of a torsion loop are counted",
     },
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import io
 import re
@@ -89,9 +90,19 @@ def check_round_trip(recording: sw.Recording, folder: Path) -> None:
         assert sw.Recording.read(again) == recording, f"a .{suffix} file holds it otherwise"
 
 
+def _decoded(data: bytes) -> str:
+    """The text in UTF-16 if a mark says so, else in UTF-8, else in Windows-1252."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252")
+
+
 def check_against_csv(recording: sw.Recording, data: bytes) -> None:
     """Each number is what Python's own reader finds at its place."""
-    ended = re.findall(r"[^\r\n]+(?:\r\n|\r|\n)?", data.decode("utf-8-sig"))
+    ended = re.findall(r"[^\r\n]+(?:\r\n|\r|\n)?", _decoded(data))
     lines = [line for line in ended if line.strip(" \r\n") and line[0] != "#"]
     delimiter = next(mark for mark in "\t;," if mark in lines[0] or mark == ",")
     rows = list(csv.reader(io.StringIO("".join(lines), newline=""), delimiter=delimiter, strict=True))

@@ -62,7 +62,7 @@ def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Pa
 
 def test_a_file_of_one_joint_is_that_of_all_joints(tmp_path: Path, log: Path) -> None:
     rows = np.loadtxt(log, delimiter=",", skiprows=1)[:, [0, 2, 5, 8]]
-    np.savetxt(tmp_path / "one.csv", rows, "%.6f", ",", header="time,q,dq,tau", comments="")
+    np.savetxt(tmp_path / "one.csv", rows, "%.6f", ",", header="time,q,dq,tau_J", comments="")
     joints = identify_joints("hfuc-25-100", [tmp_path / "one.csv"])
     assert (list(joints.found), joints.left_out) == (["1"], {})
 

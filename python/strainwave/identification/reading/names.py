@@ -144,8 +144,9 @@ def meaning(label: Label) -> Meaning | None:
     name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
     words = words_of(name)
     unit = STANDARD_GRAVITY if unit in ("g", "G") and ACCELERATIONS & set(words) else unit
+    sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
     if unit is not None and measures(unit, UNITS["vibration"]):
-        return Meaning("vibration", unit=unit)
+        return Meaning("vibration", sides[-1] if sides else None, unit=unit)
     is_fine = unit in FINE_UNITS or (unit is not None and measures(unit, "rad") and OF_TRANSMISSION & set(words))
     if is_fine and set(words) <= DEVIATIONS and ERRORS & set(words):
         return Meaning("twist", unit=unit)

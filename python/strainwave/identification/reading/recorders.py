@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -42,13 +43,20 @@ DYNAMIXEL_X = Registers(
     "ROBOTIS e-Manual, control table of XM430",
 )
 RECORDERS = (DYNAMIXEL_X,)
+LIBFRANKA = re.compile(
+    r"tau_J(_d)?\W*\d*\W*"
+)  # names of its torques; all its numbers are in SI units (reference of RobotState)
+SI = {"angle": "rad", "speed": "rad/s", "torque": "N.m"}
 
 
 def with_registers(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
-    """Return the columns, with raw registers of a known recorder in their units; and remarks.
+    """Return the columns of a known recorder in their units; and remarks.
 
     Registers are whole numbers without a unit. The speed must be the slope of the angle by what their counts are.
     """
+    if any(LIBFRANKA.fullmatch(column.label.name) for column in columns):
+        found = [replace(each, unit=each.unit or SI.get(each.channel.quantity)) for each in columns]
+        return found, ["columns of libfranka are in rad, rad/s and N·m"]
     time = next((convert(c.raw, c.unit or "s", "s") for c in columns if c.channel.quantity == "time"), None)
     for known in RECORDERS:
         own = {column.label.name.casefold(): column for column in columns if column.label.name.casefold() in known.counts}

@@ -41,13 +41,15 @@ def test_a_table_from_the_input_fails_no_check() -> None:
     assert of_friction(table(SPEED, LAW.steady(SPEED))).failed == ()
 
 
-def test_a_table_from_the_joint_is_asked_about_and_taken_as_said() -> None:
-    (check,) = of_friction(at_the_joint()).failed
-    assert "--side output" in check.remedy
-    found = of_friction(at_the_joint(), "output")
+@pytest.mark.parametrize("side", [None, "output"])
+def test_a_table_from_the_joint_is_read_so_by_the_friction_of_the_start_set_or_as_said(side: str | None) -> None:
+    found = of_friction(at_the_joint(), side)
     assert found.failed == ()
     assert found.gear_set.gear.friction_input.coulomb == pytest.approx(LAW.coulomb, rel=0.05)
     assert found.gear_set.gear.friction_input.viscous == pytest.approx(LAW.viscous, rel=0.05)
+
+
+def test_a_table_from_the_joint_is_taken_as_said() -> None:
     confirmed = of_friction(at_the_joint(), "input")
     assert confirmed.failed == ()
     assert confirmed.gear_set.gear.friction_input.coulomb == pytest.approx(RATIO * LAW.coulomb, rel=0.05)
