@@ -49,7 +49,7 @@ def test_friction_in_amperes_without_a_torque_constant_is_that_of_the_joint() ->
     (file,) = identify("csg-20-100", [DATA / "ur10e" / "ur-20_01_22-joint_1.csv"], mapping=said).files
     coulomb = next(each for each in file.estimates if each.path.endswith("coulomb"))
     assert coulomb.unit == "A"
-    assert abs(coulomb.value - 1.8) < 2.0 * coulomb.sigma < 0.3
+    assert abs(coulomb.value - 1.8) < 2.0 * coulomb.sigma < 0.4  # with what slow samples and other laws move
 
 
 @pytest.mark.parametrize("axis", [1, 2, 3, 4, 5, 6])

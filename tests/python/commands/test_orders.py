@@ -76,7 +76,9 @@ def test_what_cannot_be_is_refused_in_one_line(folder: Path) -> None:
     refused(folder, ["orders", "both.csv", "--rate", "inf"], "'--rate': \"inf\" is no number")
     refused(folder, ["orders", "none.csv"], "none.csv")
     refused(folder, ["orders", "hfuc-20-80", "joint.csv"], "hfuc-20-80 is a gear set", "leave it out")
-    refused(folder, ["orders", "steady.csv"], "steady.csv")
+    asked = strainwave("orders", "steady.csv", folder=folder)
+    assert (asked.returncode, asked.stdout) == (2, "")
+    assert asked.stderr.splitlines()[2].strip() == "strainwave orders steady.csv --constant rate=NUMBER"
     refused(folder, ["orders", "both.csv", "--side", "left"], "--side left must be one of input, output")
 
 

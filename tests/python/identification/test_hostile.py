@@ -102,7 +102,7 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "a shaft that stands": (log(input_angle=np.full(len(ANGLE), 1.0)), "the angle never changes"),
     "degrees called radians": (log(input_angle=np.degrees(ANGLE)), "whether (columns, )?units"),
     "swapped columns of a log": (log(input_angle=CURRENT, current=ANGLE), "log.csv.*(both ways|units|unknowns)"),
-    "swapped columns of a table": (friction(TORQUE, SPEED), "that of the start set.*units of both columns"),
+    "swapped columns of a table": (friction(TORQUE, SPEED), "that of the start set.*see whether units"),
     "a table of mN.m called N.m": (friction(SPEED, 1e3 * TORQUE), "perhaps the torque is in mN.m, not in N.m"),
     "a table of 1/min called rad/s": (friction(30.0 / np.pi * SPEED, TORQUE), "speeds may be in 1/min"),
     "a reversed torque of a table": (friction(SPEED, -TORQUE), "the torque drives the motion.*give it the sign of the speed"),

@@ -290,7 +290,7 @@ def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> No
     wrong = found_with({"load_inertia": 1.5 * TRUTH["inertia"]})
     assert "load.inertia" in {each.estimate.path for each in free.parameters}
     assert "load.inertia" not in {each.estimate.path for each in held.parameters}
-    assert told(held, "viscous")[1] <= 1.05 * told(free, "viscous")[1]
+    assert told(held, "viscous")[1] <= 1.3 * told(free, "viscous")[1]  # both with the spread between laws of friction
     assert not held.failed
     assert "given inertia of the load" in {check.name for check in wrong.failed}
 
