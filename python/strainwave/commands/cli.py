@@ -113,7 +113,8 @@ def main() -> None:
         if question is None:
             sys.exit(code)
         if question.question in asked:
-            raise AssertionError(f"asked again after an answer: {question.question}")
+            _print(f"strainwave: {question}\n", sys.stderr)
+            sys.exit(code)
         asked.append(question.question)
         if not (answer := _answer(question)):
             sys.exit(code)
@@ -165,7 +166,7 @@ def _answer(question: QuestionError) -> list[str]:
             return []
         words = question.answers[int(chosen) - 1].options
         return [word.replace(NUMBER, input(f"{NUMBER} in {word}: ").strip()) if NUMBER in word else word for word in words]
-    except EOFError:
+    except (EOFError, KeyboardInterrupt):
         return []
 
 

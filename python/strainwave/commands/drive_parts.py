@@ -70,4 +70,6 @@ def _part(family: str, text: str) -> tuple[Any, str]:
             raise ValueError(f"--{family} {text} is no model ({known}), and no drive: {error}") from None
         if part is None:
             raise ValueError(f"--{family} {name}: that set has no [{family}]")
-    return part.replace(dict(changed_number(f"--{family}", each) for each in pairs)), source
+    number = next((field["name"] for field in part.fields if field["kind"] == "number"), "NUMBER")
+    changes = [changed_number(f"--{family}", each, f"{name},{number}=1") for each in pairs]
+    return part.replace(dict(changes)), source

@@ -71,7 +71,7 @@ def whole_option(value: str | int) -> int:
     return int(value)
 
 
-def changed_number(option: str, text: str) -> tuple[str, float | str]:
+def changed_number(option: str, text: str, example: str = "load.inertia=0.6") -> tuple[str, float | str]:
     """Return the path and the value of a number that an option changes.
 
     >>> changed_number("--set", "load.inertia=0.6")
@@ -79,7 +79,7 @@ def changed_number(option: str, text: str) -> tuple[str, float | str]:
     """
     path, equals, value = text.partition("=")
     if not (path and equals and value):
-        raise ValueError(f"{option} {text}: write it as {option} load.inertia=0.6")
+        raise ValueError(f"{option} {text}: write it as {option} {example}")
     if is_whole(value):
         return path, int(value)
     try:

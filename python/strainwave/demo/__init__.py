@@ -62,7 +62,9 @@ class Demonstration:
 
 DEMONSTRATIONS = {
     "robot-joint": Demonstration(
-        "A joint of a robot, 30 s of its log: time, joint angle, speed and motor current", (ROBOT_LOG,), robot_joint
+        "A joint of a robot, simulated by an independent program: 30 s of time, joint angle, speed and motor current",
+        (ROBOT_LOG,),
+        robot_joint,
     ),
     "torsion-rig": Demonstration(
         'A torsion loop, from the figures of "Harmonic Drive Torsional Stiffness: Measurement and Hysteresis Analysis"',

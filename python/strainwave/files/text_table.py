@@ -139,7 +139,7 @@ def _csv_table(file: str, data: bytes) -> CsvTable:
 
 
 def _checked_text(file: str, data: bytes) -> bytes:
-    """The text in UTF-8, with `\\n` at the end of each line, whatever ended it."""
+    """Return the text in UTF-8, with `\\n` at the end of each line, whatever ended it."""
     try:
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             data = data.decode("utf-16").encode()
@@ -148,7 +148,8 @@ def _checked_text(file: str, data: bytes) -> bytes:
     except UnicodeDecodeError as error:
         if not set(_BEYOND_ASCII.findall(data)) <= _LETTERS_OF_WINDOWS:
             line = 1 + len(re.findall(rb"\r\n?|\n", data[: error.start]))
-            raise ValueError(f"{file} line {line} is not UTF-8: byte {error.start} is 0x{data[error.start]:02x}") from None
+            what = "complete UTF-16" if error.encoding.startswith("utf-16") else "UTF-8"
+            raise ValueError(f"{file} line {line} is not {what}: byte {error.start} is 0x{data[error.start]:02x}") from None
         data = data.decode("cp1252").encode()
     if b"\0" in data:
         raise ValueError(f"{file} holds a zero byte at {data.index(0)}, which no text does; save it as UTF-8, not as UTF-16")

@@ -380,7 +380,10 @@ def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised
 
 def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised | FileResult:
     """Return a file as it is read, or its question if neither its names nor a fit determine how."""
-    file = decided(file, source, with_ratio(known, file), given)
+    try:
+        file = decided(file, source, with_ratio(known, file), given)
+    except ValueError as error:
+        return not_used(file.path, error, file)
     return file if file.question is None else not_used(file.path, file.question, file)
 
 

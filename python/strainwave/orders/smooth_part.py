@@ -14,6 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
 from strainwave.statistics.floor import Floor, floor_of, taper
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.order_waves import order_waves
 from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
@@ -79,7 +80,7 @@ class Shaft:
         from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
         usual = float(np.median(np.abs(self.speed)))
-        period = min(round(tau / (lowest * usual)), len(self.angle)) if usual > 0.0 else len(self.angle)
+        period = min(max(round(tau / (lowest * usual)), 1), len(self.angle)) if usual > 0.0 else len(self.angle)
         for _ in range(2):
             series = series - uniform_filter1d(series, period, axis=0)
         turned = np.diff(self.sense, prepend=-self.sense[0], append=-self.sense[-1]) != 0.0
@@ -265,7 +266,7 @@ def _without_waves(own: Shaft, per_input: float) -> Shaft:
     orders = [order * per_input for order in WAVE_ORDERS if order * per_input * own.revolutions >= MIN_WAVE_PERIODS]
     if not orders:
         return own
-    waves = np.stack([wave(order * own.angle) for order in orders for wave in (np.sin, np.cos)], axis=1)
+    waves = order_waves(own.angle, orders)
     quick, weight = own.quick(np.column_stack([waves, own.angle]), orders[0])
     weighed = weight[:, None] * quick
     return Shaft.of(own.name, own.angle - waves @ solved(weighed[:, :-1], weighed[:, -1]))

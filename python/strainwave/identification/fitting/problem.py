@@ -330,9 +330,9 @@ class Problem:
             resolution = MIN_DISTANCE_SIGMA / shown if shown > 0.0 else 0.0
             value = unknown.ended(float(x[place]), resolution) if shown > 0.0 else start[place]
             if place not in held and value != x[place]:
-                x[place] = value
+                before, x[place] = x[place], value
                 if not self._is_valid(x):  # a law may exclude the limit of its number, for the sake of another one
-                    x[place] = unknown.beside_limit(resolution)
+                    x[place] = unknown.beside_limit(resolution) if value == unknown.low == 0.0 else before
         return x
 
     def _is_valid(self, x: Array) -> bool:

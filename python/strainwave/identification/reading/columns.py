@@ -211,7 +211,8 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
         neighbour = name == "other_angles"
         which = ((by_name.which if by_name else "") or str(place + 1)) if neighbour else ""
         found.append(Column(place, label, channel, which, by_user=True, neighbour=neighbour, unit=unit))
-    return found
+    sided = {each.position for each in found if each.channel.quantity == "torque" and each.channel.side}
+    return [each for each in found if each.channel != CHANNELS["torque"] or each.position not in sided]
 
 
 def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> int:

@@ -43,10 +43,9 @@ DYNAMIXEL_X = Registers(
     "ROBOTIS e-Manual, control table of XM430",
 )
 RECORDERS = (DYNAMIXEL_X,)
-LIBFRANKA = re.compile(
-    r"tau_J(_d)?\W*\d*\W*"
-)  # names of its torques; all its numbers are in SI units (reference of RobotState)
-SI = {"angle": "rad", "speed": "rad/s", "torque": "N.m"}
+# Names of torques of libfranka, whose numbers are in SI units (its reference, RobotState).
+LIBFRANKA_TORQUE = re.compile(r"(\w+\.)?tau_J(_d)?\W*\d*\W*")
+LIBFRANKA_UNITS = {"angle": "rad", "speed": "rad/s", "torque": "N.m"}
 
 
 def with_registers(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
@@ -54,8 +53,8 @@ def with_registers(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
 
     Registers are whole numbers without a unit. The speed must be the slope of the angle by what their counts are.
     """
-    if any(LIBFRANKA.fullmatch(column.label.name) for column in columns):
-        found = [replace(each, unit=each.unit or SI.get(each.channel.quantity)) for each in columns]
+    if any(LIBFRANKA_TORQUE.fullmatch(column.label.name) for column in columns):
+        found = [replace(each, unit=each.unit or LIBFRANKA_UNITS.get(each.channel.quantity)) for each in columns]
         return found, ["columns of libfranka are in rad, rad/s and N·m"]
     time = next((convert(c.raw, c.unit or "s", "s") for c in columns if c.channel.quantity == "time"), None)
     for known in RECORDERS:

@@ -157,7 +157,8 @@ def _per_minute(speed: float) -> str:
 
 def _times_as_fast(column: Column, other: Column, time: Column | None) -> float:
     """Return the median speed of a motion over that of another one; not a number if one of them rests, or without a time."""
-    if time is None:
+    angles = [each.si for each in (column, other) if each.channel.quantity == "angle"]
+    if time is None or any(np.abs(np.diff(angle)).max(initial=0.0) > np.pi for angle in angles):  # one that begins anew
         return np.nan
     own, others = (float(np.median(np.abs(_speed(each, time)))) for each in (column, other))
     return own / others if own > 0.0 and others > 0.0 else np.nan
