@@ -98,8 +98,11 @@ def fit_motion(
     late = [search.tried(each) for each in _delayed(best.model, delay)] if delay else []
     best = _completed(search, best)
     if found := [each for each in late if each is not None]:
-        beside, alone = _completed(search, min(found, key=lambda each: each.error_in_band)), _completed(search, found[0])
-        other = min((beside, alone), key=lambda each: each.error)
+        start = found[0]  # a delay alone, unless a part beside it explains more
+        for each in found[1:]:
+            start = each if each.explains_more_than(start) else start
+        other, beside = _completed(search, start), _completed(search, min(found, key=lambda each: each.error_in_band))
+        other = beside if beside.explains_more_than(other) else other
         is_stand_in = bool(sizes_of_waves(best.model)) and not best.predicts_as_well_as(other)  # waves for a delay
         best = other if is_stand_in or other.explains_more_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
