@@ -59,8 +59,8 @@ def orders(
             turn(run.path.name)
             try:
                 found.append(_of_file(run, given, ratio, rate, highest))
-            except QuestionError:
-                raise
+            except QuestionError as question:
+                raise (question if run.path.name in question.question else question.of(run.path.name)) from None
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
         turn("report")

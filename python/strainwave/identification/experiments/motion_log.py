@@ -41,6 +41,7 @@ MIN_CLIPPED = 20  # samples of one level at the end of the range
 MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
 OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
 TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
+SHARE_OF = "share of "  # in front of the name of a term of other joints: the path of its share
 FAST_QUANTILE = 0.99  # of the size of the speed
 MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
 MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
@@ -147,7 +148,7 @@ class MotionLog(ComparedByFields):
         """Zero of the effort, if the shaft moves both ways; its delay; and the shares of other bodies."""
         described = [(f"{self.effort}_zero", EFFORTS[self.effort])] if self.both_ways else []
         described += [("delay", "s")] if self.delayed else []
-        described += [(f"share of {name}", "1") for name in self.regressors]
+        described += [(f"{SHARE_OF}{name}", "1") for name in self.regressors]
         starts = self.starts or (0.0,) * len(described)
         return tuple(Nuisance(name, unit, start) for (name, unit), start in zip(described, starts, strict=True))
 

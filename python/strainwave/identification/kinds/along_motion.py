@@ -31,7 +31,7 @@ from strainwave.identification.checks.logs import (
 from strainwave.identification.checks.motion import checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
@@ -189,7 +189,7 @@ def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_cur
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
     """Return the share of each given regressor."""
-    shares = {each.path.removeprefix("share of "): each for each in found.estimates}
+    shares = {each.path.removeprefix(SHARE_OF): each for each in found.estimates}
     each = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
     return [f"shares of the regressors in the torque at the output: {listed(each)}"] if each else []
 

@@ -16,7 +16,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import bands
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain, from_motion_to_motion, held_out_rms
 from strainwave.identification.experiments.motion import Motion
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.changes import (
@@ -62,7 +62,6 @@ SPEED_BINS = 20  # of equally many samples, over which the error of a law of fri
 OF_RIGID_DRIVE = ("gear.friction_", "load.", "motor.")  # beginnings of paths of numbers that a rigid drive has
 OF_MOTION = {"input_angle", "output_angle", "input_speed", "output_speed"}
 MAX_ERROR_OF_TURNED = 0.5  # of the error: what the angle with its sign turned must leave less, to be taken
-OTHER = "share of "  # a term of other joints, whose size no saved drive contains
 
 
 def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
@@ -143,7 +142,7 @@ class _PredictedLog(ComparedByFields):
     @property
     def nuisances(self) -> Array:
         """Delay of the measurement, and terms of other joints as saved, shape (k,); the zero is no part of the drive."""
-        known = {f"{OTHER}{name}": share for name, share in self.shares.items()} | {"delay": self.delay + self.later}
+        known = {f"{SHARE_OF}{name}": share for name, share in self.shares.items()} | {"delay": self.delay + self.later}
         return np.array([known.get(each.name, 0.0) for each in self.log.nuisances])
 
     @cached_property
@@ -167,7 +166,7 @@ class _PredictedLog(ComparedByFields):
         slopes, covariance = slopes_by_numbers(gear_set, self.drive, self.at, OF_RIGID_DRIVE)
         there, directions, changes = self._estimated(gear_set)
         values = {each.name: each.value for each in changes}
-        fitted = {} if self.shares else {name: value for name, value in values.items() if name.startswith(OTHER)}
+        fitted = {} if self.shares else {name: value for name, value in values.items() if name.startswith(SHARE_OF)}
         residual = log.residual(self.drive, self.nuisances) - _explained(fitted, directions)
         changed = there.log.residual(there.drive, there.nuisances) - _explained(values, directions)
         channel, unit, measured = log.effort, log.units[0], log.recorded + self.zero
@@ -175,7 +174,7 @@ class _PredictedLog(ComparedByFields):
         found = Prediction(
             file.path.name, gear_set.name, file.kind, channel, unit, rms(residual[rows]), float(np.std(measured[rows])),
             self._plain_error(), samples=int(rows.sum()),
-            changes=tuple(each for each in changes if not each.name.startswith(OTHER)),
+            changes=tuple(each for each in changes if not each.name.startswith(SHARE_OF)),
             error_with_changes=rms(changed[rows]),
             lines=lines,
             curves=Recording(
@@ -264,9 +263,9 @@ class _PredictedLog(ComparedByFields):
             smallest, limit = MIN_CHANGE / float(np.ptp(warmer)), f"{MIN_CHANGE_TEXT} over its range"
             yield Direction(TEMPERATURE, "1/K", 0.0, total * warmer, smallest, limit, np.inf)
         for name in log.regressors:
-            shares = np.array([float(each.name == f"{OTHER}{name}") for each in log.nuisances])
+            shares = np.array([float(each.name == f"{SHARE_OF}{name}") for each in log.nuisances])
             effect = log.whole(drive, self.nuisances + shares) - self.at(drive)
-            yield Direction(f"{OTHER}{name}", "N.m", self.shares.get(name, 0.0), effect, max_sigma=np.inf)
+            yield Direction(f"{SHARE_OF}{name}", "N.m", self.shares.get(name, 0.0), effect, max_sigma=np.inf)
 
     def _temperature(self) -> Array | None:
         """Return the temperature about its mean at every sample [K]; None if it was not recorded, or hardly changes."""

@@ -19,7 +19,7 @@ from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
 from strainwave.identification.candidates.plain import from_motion_to_motion
 from strainwave.identification.candidates.torque_place import frictionless
-from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog
+from strainwave.identification.experiments.motion_log import MIN_INERTIA, SHARE_OF, MotionLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance
 from strainwave.identification.results.file_result import BEHIND_GEAR, IN_CURRENT, FileEstimate, FileResult
@@ -369,7 +369,7 @@ def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | 
             left = left - offset
             error, varies = float(np.sqrt(np.mean(left**2))), float(np.std(log.recorded[rows]))
             zero, delay = unknown.get(f"{log.effort}_zero", 0.0) + offset, unknown.get("delay", 0.0)
-            shares = {name: unknown[f"share of {name}"] for name in log.regressors}
+            shares = {name: unknown[f"{SHARE_OF}{name}"] for name in log.regressors}
         yield Validation(
             one_line(each.name), each.recognised.kind, held_out.channel, held_out.unit, error, varies, held_out.error,
             held_out.zero, zero, delay, shares,

@@ -223,7 +223,7 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
 
 
 def merged(gear: Gear) -> Gear:
-    """Return the gear without the Maxwell element that has no torque, or with the two as one that slip at similar twists."""
+    """Return the gear without a Maxwell element of no torque, or with the two that slip at the most similar twists as one."""
     elements = sorted(pairs(gear), key=lambda e: e[1] / e[0])
     if elements[0][1] == 0.0:
         return gear.replace(hysteresis=maxwell(elements[1:]))
