@@ -36,7 +36,7 @@ SHARED = Path(__file__).parents[3] / "shared"
 ARMS = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms"
 TRIALS = Path(os.environ.get("STRAINWAVE_TRIALS", SHARED / "trials"))
 MAX_COMMANDS = 3  # the first, and two that questions suggest
-ROUNDED = 2e-3  # relative difference of friction and gravity, whose truth is stated in two or three digits
+MAX_ROUNDING = 2e-3  # relative, of friction and gravity, whose truth is stated in two or three digits
 MAX_SIGMA = 3.0  # standard deviations of a number from the truth
 MIN_SHARE_OF_FIRST = 0.8  # of the recordings that are read at the first command
 NO_COMMAND = "no command is suggested"
@@ -94,7 +94,7 @@ class Outcome:
     message: str = ""
 
 
-def about(coulomb: float, viscous: float | None = None, gravity: float | None = None, off: float = ROUNDED) -> Truth:
+def about(coulomb: float, viscous: float | None = None, gravity: float | None = None, off: float = MAX_ROUNDING) -> Truth:
     """Return the truth of friction at the input and of gravity, each with a relative difference that counts as right."""
     known = {COULOMB: coulomb, VISCOUS: viscous, GRAVITY: gravity}
     return {path: (value, off) for path, value in known.items() if value is not None}

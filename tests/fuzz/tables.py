@@ -91,7 +91,7 @@ def check_round_trip(recording: sw.Recording, folder: Path) -> None:
 
 
 def _decoded(data: bytes) -> str:
-    """The text in UTF-16 if a mark says so, else in UTF-8, else in Windows-1252."""
+    """Return the text, decoded by its byte order mark, else as UTF-8, else as Windows-1252."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16")
     try:

@@ -26,10 +26,10 @@ from tests.support.firmware import Loaded, library, written
 
 Array = NDArray[np.float64]
 DURATION, FREQUENCY, SWING = 1.0, 1.0, 0.05  # s, Hz, rad: a motion to and fro that begins at rest
-STEP = 1e-3  # s, of communication
-TIMESTEP = 5e-4  # s, of engines
+COMMUNICATION_STEP = 1e-3  # s
+ENGINE_STEP = 5e-4  # s
 SOLVER_TOLERANCE = 1e-6  # of CVODE
-MANY = 1024  # joints of Newton
+NEWTON_JOINTS = 1024  # simulated at once
 DRIVING_TORQUE = 3.0  # times the friction at the input, in open loop
 SPEEDS = np.concatenate([-np.geomspace(100.0, 1.0, 50), np.geomspace(1.0, 100.0, 50)])  # rad/s of the input
 
@@ -110,7 +110,7 @@ def in_fmpy(version: int, exchange: bool) -> Callable[[sw.GearSet, Path], Compar
         import fmpy
 
         (path,) = folder.glob("*.fmu")
-        instants = np.linspace(0.0, DURATION, round(DURATION / STEP) + 1)
+        instants = np.linspace(0.0, DURATION, round(DURATION / COMMUNICATION_STEP) + 1)
         command, rate = motion().value(instants), motion().rate(instants)
         columns = [("time", instants), ("command", command), *([("command_rate", rate)] if exchange else [])]
         signals = np.rec.fromarrays([each for _, each in columns], names=[name for name, _ in columns])
@@ -118,14 +118,14 @@ def in_fmpy(version: int, exchange: bool) -> Callable[[sw.GearSet, Path], Compar
         result = fmpy.simulate_fmu(
             str(path),
             stop_time=DURATION,
-            output_interval=STEP,
+            output_interval=COMMUNICATION_STEP,
             input=signals,
             output=["output_angle"],
             fmi_type="ModelExchange" if exchange else "CoSimulation",
             **({"relative_tolerance": SOLVER_TOLERANCE} if exchange else {}),
         )
         rate_of_steps = len(instants) / (time.perf_counter() - begin)
-        wanted = sw.simulate(gear_set.drive, motion(), sample=STEP)
+        wanted = sw.simulate(gear_set.drive, motion(), sample=COMMUNICATION_STEP)
         angle = np.interp(wanted.time, result["time"], result["output_angle"])
         return Compared(share(angle, wanted["output_angle"]), "output angle", rate_of_steps)
 
@@ -149,7 +149,7 @@ numpy.save(out, [*angles, int(steps) / (time.perf_counter() - begin), model.opt.
 
 def in_plugin(gear_set: sw.GearSet, folder: Path) -> Compared:
     """Return the run of the plugin of MuJoCo, with the timestep that the export chose or 0.5 ms."""
-    steps = round(DURATION / TIMESTEP)
+    steps = round(DURATION / ENGINE_STEP)
     words = ["./gear.so", "gear.xml", str(SWING), str(FREQUENCY), str(steps), "angles.npy"]
     done = subprocess.run([sys.executable, "-c", PLUGIN_RUN, *words], cwd=folder, capture_output=True, text=True)
     if done.returncode:
@@ -228,8 +228,8 @@ def in_newton(gear_set: sw.GearSet, folder: Path) -> Compared:
     angles: Any = SimpleNamespace(value=straight.value, rate=np.zeros_like)  # as a user who sets no target speed
     found = build.followed(package, run, angles, about)
     begin = time.perf_counter()
-    build.followed(package, run, angles, about, count=MANY)
-    rate = MANY * len(run) / (time.perf_counter() - begin)
+    build.followed(package, run, angles, about, count=NEWTON_JOINTS)
+    rate = NEWTON_JOINTS * len(run) / (time.perf_counter() - begin)
     return Compared(share(found["load_torque"], run["load_torque"]), "torque of the joint", rate)
 
 
@@ -241,13 +241,13 @@ def in_control(gear_set: sw.GearSet, folder: Path) -> Compared:
     there = {"command": float(motion().value(fastest)), "command_rate": float(motion().rate(fastest))}
     linear = sw.linearise(gear_set.drive, sw.simulate(gear_set.drive, motion(fastest)).end, **there)
     plant = control.StateSpace(*linear, **linear.labels)
-    instants = np.linspace(0.0, DURATION, round(DURATION / STEP) + 1)
+    instants = np.linspace(0.0, DURATION, round(DURATION / COMMUNICATION_STEP) + 1)
     inputs = {"command": motion().value(instants), "command_rate": motion().rate(instants)}
     given = np.array([inputs.get(name, np.zeros(len(instants))) for name in plant.input_labels])
     begin = time.perf_counter()
     response = control.forced_response(plant, instants, given)
     rate = len(instants) / (time.perf_counter() - begin)
-    wanted = sw.simulate(gear_set.drive, motion(), sample=STEP)["output_angle"]
+    wanted = sw.simulate(gear_set.drive, motion(), sample=COMMUNICATION_STEP)["output_angle"]
     return Compared(share(response.outputs[plant.output_labels.index("output_angle")], wanted), "output angle", rate)
 
 

@@ -31,8 +31,8 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
     with progress() as turn:
         for name, shown in DEMONSTRATIONS.items():
             turn(name.replace("-", " "))
-            found, folder = shown.identified(), out / name
-            write_folder(folder, identify_files(found, Provenance.of_this_command(list(shown.files)), accepted=True))
-            print("\n".join([shown.heading, "", *identify_summary(found), *[shown.remark] * bool(shown.remark)]))
+            result, folder = shown.identified(), out / name
+            write_folder(folder, identify_files(result, Provenance.of_this_command(list(shown.files)), accepted=True))
+            print("\n".join([shown.heading, "", *identify_summary(result), *[shown.remark] * bool(shown.remark)]))
             print(f"wrote {folder / 'gear.toml'} and {folder / 'report.html'}\n")
     print(NEXT.strip().format(gear=out / "robot-joint" / "gear.toml"))

@@ -43,7 +43,7 @@ RUN_FREQUENCY = 0.5  # Hz
 RUN_SPEED = 100.0  # rad/s of the input at most
 RUN_TORQUE_SHARE = 0.3  # of the largest torque, that the run reaches
 RUN_SAMPLE = 2e-3  # s
-ROUNDING = 1e-9  # of the largest torque: a part of friction that makes less is rounding
+MIN_FRICTION_SHARE = 1e-9  # of the largest torque [1]: a smaller dry or viscous part is a rounding error
 MIN_SLOPE_SHARE = 1e-9  # of the stiffness: a smaller slope is rounding
 
 
@@ -381,7 +381,7 @@ def _friction_of(law: Any, fast: float, turns: float) -> ShaftFriction:
     mean = np.mean(both, axis=0).reshape(len(forward), len(angle)).mean(axis=1)
     columns = np.stack([np.ones_like(forward), forward], axis=1)
     shares = nnls(columns, mean)[0]
-    dry, viscous = np.where(shares * columns[-1] > ROUNDING * np.abs(mean).max(), shares, 0.0).tolist()
+    dry, viscous = np.where(shares * columns[-1] > MIN_FRICTION_SHARE * np.abs(mean).max(), shares, 0.0).tolist()
     return ShaftFriction(dry, viscous)
 
 

@@ -50,7 +50,7 @@ UNITS: dict[str, tuple[str, str]] = {"torque": ("N.m", "mN.m"), "current": ("A",
 
 @dataclass(frozen=True)
 class _Record:
-    """What a file shows of the friction of a gear, in the unit of its effort.
+    """Friction and speed of a recording, in the unit of its effort.
 
     Attributes:
         friction: at the speed

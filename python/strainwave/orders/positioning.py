@@ -29,7 +29,7 @@ MIN_TURNS = 0.95  # that the positions span: steps over a whole turn may end one
 MIN_SAMPLES_PER_PERIOD = 4.0  # of the highest order
 MAX_CHANCE = 1e-3  # probability with which noise alone makes a line as large at any of the orders
 MAX_LINES = 20
-BINS = 8 * MAX_ORDER  # of a turn, in which deviations are summed for their spectrum
+BINS_PER_TURN = 8 * MAX_ORDER  # of the spectrum of deviations: the highest order loses 2.6 % of its amplitude
 
 
 @dataclass(frozen=True)
@@ -192,10 +192,10 @@ def _orders(angle: Array, deviation: Array) -> tuple[tuple[tuple[float, float, f
             f"{positions} positions span {turns:.3g} turns: orders over the angle need a turn in four positions or more"
         ]
     possible = np.arange(1, highest + 1)
-    place = np.floor(angle / tau * BINS).astype(np.int64) % BINS
+    place = np.floor(angle / tau * BINS_PER_TURN).astype(np.int64) % BINS_PER_TURN
     orders, columns, left = list[int](), np.ones((len(angle), 1)), deviation - deviation.mean()
     while len(orders) < MAX_LINES and len(angle) > 3 * (columns.shape[1] + 2):
-        power = np.abs(np.fft.rfft(np.bincount(place, left, BINS)))[possible]
+        power = np.abs(np.fft.rfft(np.bincount(place, left, BINS_PER_TURN)))[possible]
         order = int(possible[np.argmax(power)])
         more = np.column_stack([columns, order_waves(angle, [order])])
         rest = deviation - more @ solved(more, deviation)

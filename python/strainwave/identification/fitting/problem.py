@@ -324,7 +324,7 @@ class Problem:
         return self._ended(with_free(np.asarray(solution.x)), whole, held, weights)
 
     def _ended(self, x: Array, start: Array, held: Sequence[int], weights: Sequence[Weights]) -> Array:
-        """Return unknowns without rounding: beside a limit that the data do not tell from it, or of one that nothing shows."""
+        """Return unknowns without rounding errors: at a bound that the data do not separate, or the start if without effect."""
         rows = np.concatenate((self.jacobian(x, weights), self.prior_rows()[0]))
         for place, (unknown, shown) in enumerate(zip(self.plan.unknowns, np.linalg.norm(rows, axis=0), strict=False)):
             resolution = MIN_DISTANCE_SIGMA / shown if shown > 0.0 else 0.0

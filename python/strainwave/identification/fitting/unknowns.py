@@ -68,7 +68,7 @@ class Unknown:
         return self.beside_limit(resolution) if self.low == OPEN_AT_ZERO else self.low
 
     def beside_limit(self, resolution: float) -> float:
-        """Return the value that stands for 0 where that is excluded: what data do not tell from it, or as little."""
+        """Return the value in place of an excluded bound of 0: the resolution of the data, at most the initial value."""
         size = abs(self.before)
         return min(max(LIMIT_TOLERANCE * size, resolution), size)
 
