@@ -67,7 +67,7 @@ def test_a_mapping_holds_for_all_files_or_for_some(tmp_path: Path) -> None:
         ('constants.rate = "fast"', 'constants.rate = "fast": it is no number in Hz'),
         ('constants.speed = "3 Nm"', 'constants.speed = "3 Nm": cannot convert "Nm" to "rad/s"'),
         ("constants.rate = true", "constants.rate = True must be a number in Hz, or a text with number and unit"),
-        ("constants.rate = nan", "constants.rate = nan must be a number in Hz, or a text with number and unit"),
+        ("constants.rate = nan", "constants.rate = nan Hz must lie in [1e-06, 1e+09]"),
         ('side = "middle"', "side = 'middle' is not known; the sides are input, output"),
         ('kind = "torsoin"', "kind = 'torsoin' is not known; did you mean torsion? The kinds are "),
         ('["*.csv"]\ncolums.a = 1', '["*.csv"] colums is not known; did you mean columns? '),
