@@ -85,13 +85,13 @@ print(f"law taken: {found.files[0].model}")
 
 fall = gear.replace(friction_input=laws["with a fall at low speed"])
 forced = sw.fit(fall, short, [f"friction_input.{each}" for each in free["with a fall at low speed"]])
-for each in sw.combinations(forced):
+for each in sw.identification.combinations(forced):
     print(each)
 
 # %% [markdown]
-# `identify` takes a simpler law. If you fit the law with a fall to these rows, `sw.combinations` reports that the numbers of
-# the fall are determined only together. Both are right: the rows contain no low speeds. So **record slow speeds if your
-# joint moves slowly**.
+# `identify` takes a simpler law. If you fit the law with a fall to these rows, `sw.identification.combinations` reports
+# that the numbers of the fall are determined only together. Both are right: the rows contain no low speeds. So **record slow
+# speeds if your joint moves slowly**.
 #
 # **A table does not separate laws that differ before sliding.** `LuGre` has bristles that bend before the contact slides. At
 # constant speed it is the law with a fall:

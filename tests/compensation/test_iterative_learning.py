@@ -72,7 +72,7 @@ def test_a_constant_lost_motion_is_learnt_at_its_rate_per_pass(gain: float) -> N
 def test_it_learns_the_lost_motion_that_the_loop_of_the_gear_has() -> None:
     """A gear with hysteresis, dragged by friction: both branches of the loop between both torques, at every angle."""
     one = drive(learner(gain=20.0), hysteresis=LOOP)
-    lost = sw.lost_motion(one.gear)
+    lost = sw.tuning.lost_motion(one.gear)
     found = widths(sw.simulate(one, passes(24), sample=0.01).end)[INNER]
     assert found == pytest.approx(lost.extent, rel=0.01)
     rigid = 2.0 * BRAKE / 2e4
@@ -141,7 +141,7 @@ def test_within_its_guard_it_does_not_diverge() -> None:
     """The cells pass at v / h = 31 Hz at most, where the loop of (s + 100)^2 lags by two times 45 degrees below 100 rad/s."""
     run = sw.simulate(drive(learner(gain=1e3, lag=0.0), hysteresis=LOOP), passes(60), sample=0.01)
     forward, backward = tables(run.end)
-    extent = sw.lost_motion(drive(NoLearning(), hysteresis=LOOP).gear).extent
+    extent = sw.tuning.lost_motion(drive(NoLearning(), hysteresis=LOOP).gear).extent
     assert max(np.abs(forward).max(), np.abs(backward).max()) < 1.5 * extent
 
 

@@ -68,7 +68,7 @@ def test_packs_and_derivatives_take_the_same_steps() -> None:
     alone = sw.simulate(one, COMMAND, DT, sample=PERIOD, method="exponential")
     many = sw.simulate_many(one, COMMAND, {"load.inertia": [one.load.inertia] * 3}, DT, sample=PERIOD)
     assert all(np.array_equal(row, alone["output_angle"]) for row in many["output_angle"])
-    found = sw.derivatives(one, COMMAND, ["control.law.proportional"], DT, sample=PERIOD)
+    found = sw.analysis.derivatives(one, COMMAND, ["control.law.proportional"], DT, sample=PERIOD)
     assert np.array_equal(found.run["output_angle"], alone["output_angle"])
     near = [
         sw.simulate(one.replace({"control.law.proportional": 2.0 + by}), COMMAND, DT, sample=PERIOD)["output_angle"]
@@ -137,7 +137,7 @@ def test_time_is_no_number_of_a_run(path: str) -> None:
     with pytest.raises(ValueError, match="must be that of the drive for all members"):
         sw.simulate_many(drive(), COMMAND, {path: [1e-3, 9e-4]})
     with pytest.raises(ValueError, match=f"no derivative by {path}"):
-        sw.derivatives(drive(), COMMAND, [path])
+        sw.analysis.derivatives(drive(), COMMAND, [path])
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
@@ -146,7 +146,7 @@ def test_time_is_no_number_of_a_run(path: str) -> None:
     [
         lambda long: sw.simulate(drive(), long, dt=1.0),
         lambda long: sw.simulate_adaptively(drive(), long, max_steps=10**9, sample=1e3),
-        lambda long: sw.derivatives(drive(), long, ["load.inertia"], dt=1.0),
+        lambda long: sw.analysis.derivatives(drive(), long, ["load.inertia"], dt=1.0),
         lambda long: sw.simulate_many(drive(), long, {"load.inertia": [0.1]}, dt=1.0),
         lambda long: sw.simulate_controlled(
             drive().replace(control=sw.control.OpenLoop()), lambda _: 0.0, long, dt=1.0, period=1e-3, sample=1e3

@@ -171,7 +171,7 @@ def test_its_derivatives_are_those_of_differences(place: str, name: str) -> None
     """Central differences, of a run that is the run alone to the bit."""
     one = alone(place, name)
     paths = [f"control.compensation.{place}.{field}" for field in VARIED.get(name, [])]
-    found = sw.derivatives(one, COMMAND, paths or ["load.inertia"], sample=1e-2)
+    found = sw.analysis.derivatives(one, COMMAND, paths or ["load.inertia"], sample=1e-2)
     single = sw.simulate(one, COMMAND, sample=1e-2, method="exponential")
     assert np.array_equal(found.run["output_angle"], single["output_angle"])
     for path in paths:

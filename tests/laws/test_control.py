@@ -162,7 +162,7 @@ def test_its_derivatives_are_those_of_differences(name: str, sampled: bool) -> N
     prefix = "control.law." if sampled else "control."
     values = {prefix + field: value for field, value in numbers_of(name).items()}
     paths = list(values)
-    found = sw.derivatives(one, COMMAND, paths, sample=1e-2)
+    found = sw.analysis.derivatives(one, COMMAND, paths, sample=1e-2)
     assert np.array_equal(found.run["output_angle"], sw.simulate(one, COMMAND, sample=1e-2)["output_angle"])
     for path, value in values.items():
         step = 1e-4 * value

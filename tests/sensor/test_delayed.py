@@ -105,5 +105,5 @@ def test_steps_that_cannot_follow_a_sensor_are_refused(sensor: object, rate: flo
     with pytest.raises(FloatingPointError, match=rf"as fast as a vibration of {rate:.4g} rad/s"):
         shown(sensor, motion, 1.01 / rate)
     still, dampings, inputs = sw.scenario.constant(0.0, 0.02), {"gear.damping": [0.0, 1.0]}, {"output_angle": motion}
-    with pytest.warns(sw.EnsembleWarning, match="2 of 2 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="2 of 2 members have no result"):
         sw.simulate_many(probe(sensor), still, dampings, 1.01 / rate, inputs=inputs)

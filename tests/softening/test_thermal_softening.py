@@ -135,7 +135,7 @@ def test_an_ensemble_in_the_cold_is_refused_steps_that_would_do_in_the_warmth() 
     command = sw.scenario.constant(0.0, 0.01)
     longest = 0.9 / _core.max_rate(drive, 0.0)
     assert sw.simulate_many(drive, command, {"gear.damping": [0.0, 1.0]}, longest).failures == {}
-    with pytest.warns(sw.EnsembleWarning, match="2 of 2 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="2 of 2 members have no result"):
         sw.simulate_many(drive, command, {"gear.damping": [0.0, 1.0]}, longest, temperature=233.15)
 
 
@@ -145,7 +145,7 @@ def test_derivatives_of_a_warm_drive_are_not_refused_steps_that_would_not_do_in_
     warm, command = COLD + 60.0, sw.scenario.constant(0.1, 0.01)
     longest = 0.9 / _core.max_rate(drive, 0.0, warm)
     with pytest.raises(FloatingPointError, match="too coarse"):
-        sw.derivatives(drive, command, ["load.inertia"], longest)
-    found = sw.derivatives(drive, command, ["load.inertia"], longest, temperature=warm)
+        sw.analysis.derivatives(drive, command, ["load.inertia"], longest)
+    found = sw.analysis.derivatives(drive, command, ["load.inertia"], longest, temperature=warm)
     run = sw.simulate(drive, command, longest, temperature=warm)
     assert np.array_equal(found.run["twist"], run["twist"])

@@ -214,7 +214,9 @@ def test_derivatives_by_play_and_stiffness_are_those_of_the_closed_form() -> Non
     drive = geared(Backlash(law=STIFF, clearance=PLAY), damping=1e3)
     start = {"output_angle": 0.0, "torque": 2.0}
     paths = ["gear.stiffness.clearance", "gear.stiffness.law.k"]
-    found = sw.derivatives(drive, sw.scenario.constant(2.0 / RATIO, 1e-3), paths, load_torque=2.0, initial=start, sample=1e-3)
+    found = sw.analysis.derivatives(
+        drive, sw.scenario.constant(2.0 / RATIO, 1e-3), paths, load_torque=2.0, initial=start, sample=1e-3
+    )
     assert [found["twist", path][0] for path in paths] == pytest.approx([0.5, -2.0 / K**2], rel=1e-9)
 
 

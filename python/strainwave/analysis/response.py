@@ -61,7 +61,7 @@ class FrequencyResponse(ComparedByFields):
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> drive = sw.Drive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
-    >>> answer = sw.frequency_response(drive, [1.0, 10.0], amplitude=0.01)
+    >>> answer = sw.analysis.frequency_response(drive, [1.0, 10.0], amplitude=0.01)
     >>> (20.0 * np.log10(abs(answer["output_angle"]))).round(1)  # dB
     array([-0.3, -4.2])
     >>> np.degrees(np.angle(answer["output_angle"])).round(1)
@@ -148,7 +148,7 @@ def frequency_response(
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> drive = sw.Drive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
-    >>> answer = sw.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
+    >>> answer = sw.analysis.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
     >>> linear = sw.linearise(drive)
     >>> abs(answer["output_angle"] / linear.response([1.0, 2.0])).round(3)
     array([1., 1.])

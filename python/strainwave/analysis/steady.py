@@ -65,7 +65,7 @@ def equilibrium(
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
-    >>> held = sw.equilibrium(sw.Drive(load=arm), command=0.5)
+    >>> held = sw.analysis.equilibrium(sw.Drive(load=arm), command=0.5)
     >>> held.input_speed, held.output_speed
     (0.0, 0.0)
     """

@@ -155,7 +155,7 @@ def diagnose(
 def _plan(gear: str | None, planned: RecordingPlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:
     """Write and print the detection limits of a drive."""
     from strainwave.commands.options import number_option
-    from strainwave.diagnose.detection_limit import detection_limit
+    from strainwave.diagnose.smallest_error import detection_limit
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.report.diagnose_plan import PlannedRecord, plan_files, plan_summary

@@ -38,7 +38,7 @@ def orders(
     from strainwave.identification.reading.mapping import check_constant
     from strainwave.identification.reading.source import MeasurementFile
     from strainwave.messages import one_line
-    from strainwave.orders.ripple import MAX_ORDER
+    from strainwave.orders.torque_ripple import MAX_ORDER
     from strainwave.questions import QuestionError
     from strainwave.report.orders import orders_files, orders_summary
     from strainwave.report.provenance import Provenance

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, check_line
@@ -46,7 +46,7 @@ from strainwave.simulation.threads import one_thread_of_algebra
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Mapped = Callable[[Path], FileMapping] | FileMapping | None
+Mapped: TypeAlias = Callable[[Path], FileMapping] | FileMapping | None
 
 
 @dataclass(frozen=True, eq=False)

@@ -74,7 +74,7 @@ class EnsembleWarning(UserWarning):
     >>> import strainwave as sw
     >>> drive, voltage = sw.Drive(load=sw.loads.Inertia(inertia=0.01)), sw.scenario.step(5.0, duration=0.1)
     >>> with warnings.catch_warnings():
-    ...     warnings.simplefilter("ignore", sw.EnsembleWarning)
+    ...     warnings.simplefilter("ignore", sw.simulation.EnsembleWarning)
     ...     runs = sw.simulate_many(drive, voltage, {"gear.stiffness.k": [1e4, 1e12]})  # too stiff for the step
     >>> list(runs.failures), runs.failures[1].split(":")[0]
     ([1], 'dt = 0.0002 s is too coarse for this drive')

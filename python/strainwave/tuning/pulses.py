@@ -109,7 +109,7 @@ class PulsePlan:
         actuation_per_torque: what the motor takes per torque: [A/(N.m)] or [1]
 
     >>> import strainwave as sw
-    >>> plan = sw.plan_pulses("position-drive", 0.005)
+    >>> plan = sw.tuning.plan_pulses("position-drive", 0.005)
     >>> [round(1e3 * width) for width in plan.widths], round(plan.torque, 3), round(plan.friction, 3)  # ms, N.m, N.m
     ([95], 0.153, 0.074)
     """
@@ -228,7 +228,7 @@ class PulsedMove:
         end: state at the end, from which another move can start
 
     >>> import strainwave as sw
-    >>> move = sw.position_by_pulses(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4)
+    >>> move = sw.tuning.position_by_pulses(sw.tuning.plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, (1e3 * move.angles).round(2)  # mrad of the output: at the start, and after each pulse
     (True, array([0.  , 2.55, 5.03]))
     """
@@ -371,7 +371,7 @@ class PulseRepeatability:
         reached: share of the drives whose error is within the tolerance
 
     >>> import strainwave as sw
-    >>> found = sw.pulse_repeatability(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
+    >>> found = sw.tuning.pulse_repeatability(sw.tuning.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
     >>> found.pulses, (1e3 * found.errors).round(2)  # mrad of the output
     (array([2, 4, 2, 4, 2]), array([ 0.04,  0.1 , -0.06, -0.07,  0.03]))
     """

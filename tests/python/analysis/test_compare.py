@@ -12,7 +12,9 @@ import pytest
 import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strainwave import Agreement, Difference, Quantity, Recording, compare
+from strainwave import Recording, compare
+from strainwave.analysis import Agreement, Difference
+from strainwave.files import Quantity
 from strainwave.files.entries import Entry
 
 from tests.support.samples import sample

@@ -69,9 +69,9 @@ def test_so_does_any_law_on_any_motor(law: object, motor: object, delay: float) 
 
 def test_it_sees_through_the_sensors_at_its_instants() -> None:
     drive = OPEN.replace(sensors=sw.Sensors(output_angle=sw.sensor.Gain(gain=1.0, offset=0.25)))
-    seen: list[sw.Observation] = []
+    seen: list[sw.simulation.Observation] = []
 
-    def zero(now: sw.Observation) -> float:
+    def zero(now: sw.simulation.Observation) -> float:
         seen.append(now)
         return 0.0
 

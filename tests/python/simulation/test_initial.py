@@ -125,7 +125,7 @@ def test_members_begin_where_each_alone_does() -> None:
 def test_derivatives_know_that_the_beginning_moves() -> None:
     paths = ["gear.stiffness.a1", "load.gravity_torque", "gear.damping"]
     initial = {"output_angle": 0.5, "output_speed": 0.2}
-    found = sw.derivatives(DRIVE, SHORT, paths, sample=1e-4, initial=initial)
+    found = sw.analysis.derivatives(DRIVE, SHORT, paths, sample=1e-4, initial=initial)
     for path in paths:
         value = float(_value(DRIVE, path))
         near = [
@@ -171,7 +171,7 @@ def test_where_nothing_balances_there_is_no_state() -> None:
     words = "no state has the quantities of initial: .* are not in equilibrium there; give another angle, or the torque$"
     with pytest.raises(ValueError, match=f"^{words}") as alone:
         sw.simulate(soft, SHORT, dt=1e-5, initial={"input_angle": 3.0})
-    with pytest.warns(sw.EnsembleWarning, match=words):
+    with pytest.warns(sw.simulation.EnsembleWarning, match=words):
         runs = sw.simulate_many(soft, SHORT, {"load.inertia": [0.1, 0.2]}, dt=1e-5, initial={"input_angle": 3.0})
     assert set(runs.failures.values()) == {str(alone.value)}
 

@@ -106,7 +106,10 @@ def test_steps_are_judged_by_how_long_they_are() -> None:
     assert short.method == sw.simulate(fast, volts, 2e-5).method
     assert short["torque"] == pytest.approx(sw.simulate(fast, volts, 2e-5)["torque"], rel=1e-9)
     assert not sw.simulate_many(fast, volts, {"load.inertia": [1e-4]}, 2e-4, sample=2e-5).failures
-    assert sw.derivatives(fast, volts, ["load.inertia"], 2e-4, sample=2e-5).run["torque"].tolist() == short["torque"].tolist()
+    assert (
+        sw.analysis.derivatives(fast, volts, ["load.inertia"], 2e-4, sample=2e-5).run["torque"].tolist()
+        == short["torque"].tolist()
+    )
     assert len(sw.simulate(fast, sw.scenario.constant(5.0, 2e-5), 2e-4)) == 2
 
 

@@ -20,7 +20,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.orders.ripple import ripple
+from strainwave.orders.torque_ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
 

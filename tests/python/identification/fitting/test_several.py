@@ -49,11 +49,11 @@ def log(load: float, seed: int = 0) -> sw.Recording:
     return sw.Recording(columns, {name: run.unit(name) for name in run.names})
 
 
-def values(found: sw.Fit) -> dict[str, float]:
+def values(found: sw.identification.Fit) -> dict[str, float]:
     return {each.path: each.value for each in found.estimates}
 
 
-def sigmas(found: sw.Fit) -> dict[str, float]:
+def sigmas(found: sw.identification.Fit) -> dict[str, float]:
     return {each.path: each.sigma for each in found.estimates}
 
 

@@ -41,9 +41,9 @@ def rippled(columns: dict[str, Array], order: float, amplitude: float, phase: fl
     return {**columns, "torque": columns["torque"] + amplitude * np.cos(order * columns["output_angle"] + phase)}
 
 
-def found(columns: dict[str, Array], **options: Any) -> sw.Ripple:
+def found(columns: dict[str, Array], **options: Any) -> sw.orders.Ripple:
     units = {name: UNITS.get(name, "rad") for name in columns}
-    return sw.ripple(sw.Recording(columns, units), "torque", **options)
+    return sw.orders.ripple(sw.Recording(columns, units), "torque", **options)
 
 
 @pytest.mark.parametrize("motion", ["to and fro", "run-up", "two speeds"])
@@ -133,7 +133,7 @@ def test_it_works_without_time_and_with_a_wrapped_angle_of_the_motor() -> None:
     recording = sw.Recording(
         {"input_angle": np.degrees(theta) % 360.0, "torque": torque}, {"input_angle": "deg", "torque": "N.m"}
     )
-    told = sw.ripple(recording, "torque", angle="input_angle", side="input")
+    told = sw.orders.ripple(recording, "torque", angle="input_angle", side="input")
     assert [(line.kind, round(line.order, 2)) for line in told.lines] == [("either", 2.0)]
     assert np.isnan(told.lines[0].frequency)
     assert any("without time" in each for each in told.remarks)

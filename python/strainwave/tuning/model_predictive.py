@@ -106,7 +106,7 @@ class PredictiveController:
     >>> import strainwave as sw
     >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), damping=5.0)
     >>> joint = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
-    >>> controller = sw.predictive(joint, error=1e-3, effort=0.5)
+    >>> controller = sw.tuning.mpc(joint, error=1e-3, effort=0.5)
     >>> run = sw.simulate_controlled(controller.drive, controller, sw.scenario.step(0.1, 0.05), period=controller.period)
     >>> controller.states, controller.unsolved
     (('input_angle', 'input_speed', 'transmission_error', 'output_speed'), 0)
@@ -278,7 +278,7 @@ class PredictiveModel:
         return cls(linear, step, driven, weight, effort, value, gains, of_bias, -of_bias @ moved)
 
 
-def predictive(
+def mpc(
     drive: GearSet | Drive | str | Path,
     *,
     period: float = 1e-3,
@@ -332,7 +332,7 @@ def predictive(
     >>> import strainwave as sw
     >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), damping=5.0)
     >>> joint = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
-    >>> controller = sw.predictive(joint, error=1e-3, effort=0.5, torque_limit=20.0)
+    >>> controller = sw.tuning.mpc(joint, error=1e-3, effort=0.5, torque_limit=20.0)
     >>> run = sw.simulate_controlled(controller.drive, controller, sw.scenario.step(0.1, 0.5), period=controller.period)
     >>> bool(abs(run["output_angle"][-1] - 0.1) < 1e-5), bool(abs(run["torque"]).max() < 20.5)
     (True, True)

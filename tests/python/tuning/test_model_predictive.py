@@ -23,7 +23,7 @@ def joint(**parts: object) -> sw.Drive:
 
 
 def moved(
-    controller: sw.PredictiveController, command: sw.scenario.Scenario, push: sw.scenario.Scenario | float = 0.0
+    controller: sw.tuning.PredictiveController, command: sw.scenario.Scenario, push: sw.scenario.Scenario | float = 0.0
 ) -> sw.Run:
     timing = {"period": controller.period, "delay": controller.delay}
     return sw.simulate_controlled(controller.drive, controller, command, load_torque=push, **timing)
@@ -33,8 +33,8 @@ def moved(
 def test_without_limits_it_is_the_regulator(horizon: int) -> None:
     """The end of the horizon costs what the regulator costs from there on, so both have the same gains, at any horizon."""
     drive, small = joint(), sw.scenario.step(1e-3, 0.2)
-    law = sw.regulator(drive, error=ERROR, effort=EFFORT)
-    controller = sw.predictive(drive, horizon=horizon, error=ERROR, effort=EFFORT, bandwidth=0.0)
+    law = sw.tuning.lqg(drive, error=ERROR, effort=EFFORT)
+    controller = sw.tuning.mpc(drive, horizon=horizon, error=ERROR, effort=EFFORT, bandwidth=0.0)
     run = moved(controller, small)
     expected = sw.simulate(drive.replace(control=sw.control.Sampled(law=law, period=1e-3)), small)
     for name, size in (("output_angle", 1e-3), ("motor_torque", np.abs(expected["motor_torque"]).max())):
@@ -43,7 +43,7 @@ def test_without_limits_it_is_the_regulator(horizon: int) -> None:
 
 def test_with_a_delay_its_gains_are_those_of_a_drive_that_remembers_its_actuation() -> None:
     """By iteration of the Riccati difference equation, with the actuation before among the states."""
-    controller = sw.predictive(joint(), delay=7e-4, error=ERROR, effort=EFFORT)
+    controller = sw.tuning.mpc(joint(), delay=7e-4, error=ERROR, effort=EFFORT)
     linear = sw.linearise(controller.drive)
     a, b = linear.A, linear.B[:, linear.inputs.index("command")]
     pieces = 2000  # forward steps of the exact transition, in place of the matrix exponential
@@ -67,10 +67,10 @@ def test_with_a_delay_its_gains_are_those_of_a_drive_that_remembers_its_actuatio
 
 def test_it_keeps_its_limits() -> None:
     """Within 2 %, as they are soft and those of a controller that samples. Without them the torque is six times as large."""
-    free = moved(sw.predictive(joint(), error=ERROR, effort=EFFORT), STEP)
+    free = moved(sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT), STEP)
     assert np.abs(free["torque"]).max() > 5.0 * LIMIT
     assert np.abs(free["input_speed"]).max() > 200.0
-    controller = sw.predictive(joint(), error=ERROR, effort=EFFORT, torque_limit=LIMIT, speed_limit=60.0)
+    controller = sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT, torque_limit=LIMIT, speed_limit=60.0)
     run = moved(controller, STEP)
     assert controller.unsolved == 0
     assert 0.95 * LIMIT < np.abs(run["torque"]).max() < 1.02 * LIMIT
@@ -83,7 +83,7 @@ def test_it_keeps_its_limits() -> None:
 def test_a_push_beyond_the_limit_leaves_it_in_hand() -> None:
     """No actuation keeps the torque then; afterwards the limit holds again."""
     push = sw.scenario.step(60.0, 0.5, start=0.25) - sw.scenario.step(60.0, 0.5, start=0.27)
-    controller = sw.predictive(joint(), error=ERROR, effort=EFFORT, torque_limit=LIMIT)
+    controller = sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT, torque_limit=LIMIT)
     run = moved(controller, STEP, push)
     assert np.abs(run["torque"]).max() > 1.2 * LIMIT
     assert np.abs(run.between(0.4, 0.5)["torque"]).max() < 1.02 * LIMIT
@@ -95,9 +95,9 @@ def test_friction_and_load_leave_no_error_where_the_bias_is_estimated() -> None:
     """Without it the regulator gives way until its gain holds the load: K_theta theta_in + K_delta delta = T / i."""
     drive = joint(friction_input=sw.friction.Stribeck(coulomb=0.03, breakaway=0.05, stribeck_speed=2.0, viscous=5e-4))
     command = sw.scenario.step(0.02, 1.0)
-    held = moved(sw.predictive(drive, error=ERROR, effort=EFFORT), command, push=10.0)
+    held = moved(sw.tuning.mpc(drive, error=ERROR, effort=EFFORT), command, push=10.0)
     assert abs(held["output_angle"][-1] - 0.02) < 2e-5
-    controller = sw.predictive(joint(), error=ERROR, effort=EFFORT, bandwidth=0.0)
+    controller = sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT, bandwidth=0.0)
     gave = moved(controller, command, push=10.0)
     gains = dict(zip(controller.states, controller.gains[:-1], strict=True))
     twist = 10.0 / 1e4
@@ -108,7 +108,7 @@ def test_friction_and_load_leave_no_error_where_the_bias_is_estimated() -> None:
 def test_a_command_that_is_known_beforehand_is_followed_before_it_turns() -> None:
     command = sw.scenario.sine(0.02, 4.0, 1.0, phase=-0.5 * np.pi, offset=0.02)
     options = {"error": ERROR, "effort": EFFORT}
-    runs = [moved(sw.predictive(joint(), preview=preview, **options), command) for preview in (None, command)]
+    runs = [moved(sw.tuning.mpc(joint(), preview=preview, **options), command) for preview in (None, command)]
     error = [np.sqrt(np.mean((run["command"] - run["output_angle"])[2500:] ** 2)) for run in runs]
     assert error[1] < 0.5 * error[0]
 
@@ -116,11 +116,11 @@ def test_a_command_that_is_known_beforehand_is_followed_before_it_turns() -> Non
 @pytest.mark.parametrize("bad", [np.nan, -np.inf, 3e38])
 def test_a_bad_sample_is_held_and_counted(bad: float) -> None:
     def pushed(fifth: float) -> tuple[list[float], int]:
-        controller = sw.predictive(joint(), error=ERROR, effort=EFFORT)
+        controller = sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT)
         angles = 0.1 * np.sin(0.3 * np.arange(9))
         angles[5] = angles[4] if fifth == 0.0 else fifth
         return [
-            controller(sw.Observation(1e-3 * k, 0.01, 0.0, 5.0, 0.0, float(angle), 0.0, 0.0, 0.0, -2.0, 2.0))
+            controller(sw.simulation.Observation(1e-3 * k, 0.01, 0.0, 5.0, 0.0, float(angle), 0.0, 0.0, 0.0, -2.0, 2.0))
             for k, angle in enumerate(angles)
         ], controller.bad_samples
 
@@ -130,7 +130,7 @@ def test_a_bad_sample_is_held_and_counted(bad: float) -> None:
 
 
 def test_a_second_run_begins_anew() -> None:
-    controller = sw.predictive(joint(), error=ERROR, effort=EFFORT)
+    controller = sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT)
     first, second = moved(controller, STEP, push=5.0), moved(controller, STEP, push=5.0)
     assert np.abs(first["output_angle"] - second["output_angle"]).max() < 1e-7
 
@@ -159,17 +159,17 @@ int main(void) {
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
     """Within what the solver leaves open: its step size adapts in Python, and not in C."""
-    controller = sw.predictive(joint(), delay=5e-4, error=ERROR, effort=EFFORT, torque_limit=LIMIT)
+    controller = sw.tuning.mpc(joint(), delay=5e-4, error=ERROR, effort=EFFORT, torque_limit=LIMIT)
     lines: list[str] = []
     given: list[float] = []
 
-    def recorded(seen: sw.Observation) -> float:
+    def recorded(seen: sw.simulation.Observation) -> float:
         known = (seen.input_angle, seen.input_speed, seen.output_angle, seen.output_speed, seen.command)
         lines.append(" ".join(map(repr, known)))
         given.append(controller(seen))
         return given[-1]
 
-    def spoilt(seen: sw.Observation) -> float:
+    def spoilt(seen: sw.simulation.Observation) -> float:
         """A sample in a hundred is lost."""
         return recorded(seen if round(seen.time / 1e-3) % 100 != 7 else seen._replace(output_speed=np.nan))
 
@@ -201,16 +201,16 @@ def test_its_c_gives_the_same_actuation(tmp_path: Path) -> None:
 )
 def test_what_it_refuses(changes: dict[str, float], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sw.predictive(joint(), **changes)  # type: ignore[arg-type]
+        sw.tuning.mpc(joint(), **changes)  # type: ignore[arg-type]
 
 
 def test_what_is_known_beforehand_is_a_scenario() -> None:
     with pytest.raises(TypeError, match=r"preview must be a scenario.*not 3\.0"):
-        sw.predictive(joint(), preview=3.0)  # type: ignore[arg-type]
+        sw.tuning.mpc(joint(), preview=3.0)  # type: ignore[arg-type]
 
 
 def test_a_run_with_another_period_than_that_of_the_design_is_refused() -> None:
-    controller = sw.predictive(joint(), error=ERROR, effort=EFFORT)
+    controller = sw.tuning.mpc(joint(), error=ERROR, effort=EFFORT)
     with pytest.raises(
         ValueError, match=r"called 0\.002 s after the last call.*a period of 0\.001 s; simulate it with period="
     ):
@@ -219,4 +219,4 @@ def test_a_run_with_another_period_than_that_of_the_design_is_refused() -> None:
 
 def test_a_gear_with_bodies_of_its_own_is_refused() -> None:
     with pytest.raises(ValueError, match=r"structure\.windup.*take the lumped gear"):
-        sw.predictive("tilt-actuator")
+        sw.tuning.mpc("tilt-actuator")

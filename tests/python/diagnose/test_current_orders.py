@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
+from strainwave.diagnose.current_orders import OrderLine, order_lines, synchronous_average
 from strainwave.diagnose.detection import threshold_of
 from strainwave.diagnose.motion import motion_of
-from strainwave.diagnose.order_lines import OrderLine, order_lines, synchronous_average
 from strainwave.diagnose.regression import regressions
 
 from tests.evidence.detection_limits import false_alarms, interval, noises, signature_drive

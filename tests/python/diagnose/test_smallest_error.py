@@ -8,9 +8,9 @@ from math import sqrt
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.diagnose.current_orders import order_lines
 from strainwave.diagnose.detection import needed_signal_to_noise
-from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
-from strainwave.diagnose.order_lines import order_lines
+from strainwave.diagnose.smallest_error import DetectionLimit, detection_limit
 from strainwave.diagnose.steady_run import COLUMN
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 

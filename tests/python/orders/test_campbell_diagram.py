@@ -20,7 +20,7 @@ def recording(speed: np.ndarray = SPEED, time: np.ndarray = TIME) -> sw.Recordin
 
 
 def test_an_order_follows_the_speed_and_a_vibration_does_not() -> None:
-    found = sw.campbell(recording(), "torque")
+    found = sw.orders.campbell(recording(), "torque")
     assert found.amplitude.shape == (len(found.speed), len(found.frequency))
     for speed, spectrum in zip(found.speed[::20], found.amplitude[::20], strict=True):
         low = found.frequency < 70.0
@@ -32,14 +32,14 @@ def test_an_order_follows_the_speed_and_a_vibration_does_not() -> None:
 
 
 def test_a_run_down_has_the_diagram_of_the_run_up() -> None:
-    up, down = sw.campbell(recording(), "torque"), sw.campbell(recording(SPEED[::-1].copy()), "torque")
+    up, down = sw.orders.campbell(recording(), "torque"), sw.orders.campbell(recording(SPEED[::-1].copy()), "torque")
     assert np.all(np.diff(down.speed) >= 0.0)
     assert down.speed == pytest.approx(up.speed, rel=0.01)
     assert down.amplitude.max() == up.amplitude.max()
 
 
 def test_lines_of_orders_and_eigenfrequencies_stand_where_they_belong() -> None:
-    figure = sw.campbell(recording(), "torque").plot(orders=[1, 2.0], eigenfrequencies=[tau * 80.0])
+    figure = sw.orders.campbell(recording(), "torque").plot(orders=[1, 2.0], eigenfrequencies=[tau * 80.0])
     axes, bar = figure.axes
     level, first, second = axes.lines
     assert np.asarray(level.get_ydata()) == pytest.approx(80.0)
@@ -54,8 +54,8 @@ def test_lines_of_orders_and_eigenfrequencies_stand_where_they_belong() -> None:
 
 def test_times_that_jitter_give_the_same_diagram() -> None:
     even, jittered = (
-        sw.campbell(recording(), "torque"),
-        sw.campbell(recording(time=TIME + 1e-4 * np.sin(TIME / 1e-3)), "torque"),
+        sw.orders.campbell(recording(), "torque"),
+        sw.orders.campbell(recording(time=TIME + 1e-4 * np.sin(TIME / 1e-3)), "torque"),
     )
     assert jittered.speed == pytest.approx(even.speed, rel=1e-3)
     assert jittered.amplitude.max() == pytest.approx(even.amplitude.max(), rel=0.02)
@@ -64,12 +64,18 @@ def test_times_that_jitter_give_the_same_diagram() -> None:
 def test_what_makes_no_diagram_is_refused() -> None:
     run = recording()
     for make, message in (
-        (lambda: sw.campbell(run, "torque", stretch=0.01), "stretch = 0.01 s has 10 samples of 0.001 s; take 0.016 s or more"),
-        (lambda: sw.campbell(run, "torque", stretch=30.0), "has 2 stretches of 30 s, of 4 to 100000 allowed; take a shorter"),
-        (lambda: sw.campbell(recording(np.full(len(TIME), 5.0)), "torque"), "input_speed does not change"),
-        (lambda: sw.campbell(run.with_column("torque", 0.0 * TIME, "N.m"), "torque"), "torque does not change"),
-        (lambda: sw.campbell(run, "current"), 'no column "current"'),
-        (lambda: sw.campbell(run, "torque").plot(orders=[0.0]), r"orders = 0.0 1 must lie in \(0, inf\)"),
+        (
+            lambda: sw.orders.campbell(run, "torque", stretch=0.01),
+            "stretch = 0.01 s has 10 samples of 0.001 s; take 0.016 s or more",
+        ),
+        (
+            lambda: sw.orders.campbell(run, "torque", stretch=30.0),
+            "has 2 stretches of 30 s, of 4 to 100000 allowed; take a shorter",
+        ),
+        (lambda: sw.orders.campbell(recording(np.full(len(TIME), 5.0)), "torque"), "input_speed does not change"),
+        (lambda: sw.orders.campbell(run.with_column("torque", 0.0 * TIME, "N.m"), "torque"), "torque does not change"),
+        (lambda: sw.orders.campbell(run, "current"), 'no column "current"'),
+        (lambda: sw.orders.campbell(run, "torque").plot(orders=[0.0]), r"orders = 0.0 1 must lie in \(0, inf\)"),
     ):
         with pytest.raises(ValueError, match=message):
             make()

@@ -71,7 +71,7 @@ class Ripple(ComparedByFields):
     >>> q = 1.5 * np.sin(np.linspace(0.0, 20.0, 4000))
     >>> torque = 4.0 * np.sign(np.gradient(q)) + 0.25 * np.cos(200 * q) + np.random.default_rng(3).normal(0.0, 0.3, len(q))
     >>> record = sw.Recording({"output_angle": q, "torque": torque}, {"output_angle": "rad", "torque": "N.m"})
-    >>> found = sw.ripple(record, "torque")
+    >>> found = sw.orders.ripple(record, "torque")
     >>> [round(line.order) for line in found.lines], round(found.resolution, 1), found.concluded
     ([200], 2.1, (100, 101))
     """
@@ -136,7 +136,7 @@ def ripple(
     >>> noise = np.random.default_rng(3).normal(0.0, 0.3, len(time))
     >>> torque = 4.0 * np.sign(np.gradient(q)) + 10.0 * np.sin(q) + 0.25 * np.cos(200 * q) + noise
     >>> units = {"time": "s", "output_angle": "rad", "torque": "N.m"}
-    >>> found = sw.ripple(sw.Recording({"time": time, "output_angle": q, "torque": torque}, units), "torque")
+    >>> found = sw.orders.ripple(sw.Recording({"time": time, "output_angle": q, "torque": torque}, units), "torque")
     >>> [(line.kind, round(line.order), round(line.amplitude, 1)) for line in found.lines], found.candidates[0].ratio
     ([('order', 200, 0.3)], 100)
     """

@@ -62,7 +62,7 @@ class OrderLine:
     >>> current = 0.8 + 0.01 * np.sin(24.0 * time) + np.random.default_rng(1).normal(0.0, 0.05, len(time))
     >>> columns = {"time": time, "input_angle": 12.0 * time, "current": current}
     >>> recording = sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
-    >>> (line,) = sw.order_lines(recording, "current", [2.0])
+    >>> (line,) = sw.diagnose.order_lines(recording, "current", [2.0])
     >>> line.detected, [round(end, 4) for end in line.interval]  # A
     (True, [0.0081, 0.0129])
     """

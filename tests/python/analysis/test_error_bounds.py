@@ -30,7 +30,7 @@ def test_it_is_that_of_the_data_sheet(
 ) -> None:
     k1, k2, k3, t1, t2 = segments
     twist = min(load, t1) / k1 + max(min(load, t2) - t1, 0.0) / k2 + max(load - t2, 0.0) / k3
-    kinematic, wind_up, loop, lost = sw.positioning_error(name, load=load)
+    kinematic, wind_up, loop, lost = sw.analysis.positioning_error(name, load=load)
     assert kinematic.bound == pytest.approx(60.0 * accuracy * ARCSEC, rel=1e-3)
     assert loop.bound == pytest.approx(60.0 * loss * ARCSEC, rel=0.02)
     assert wind_up.typical == pytest.approx(twist, rel=0.01)
@@ -42,7 +42,7 @@ def test_of_an_identified_gear_the_bound_is_three_standard_deviations_away() -> 
     gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4))
     covariance = Covariance(("gear.stiffness.k",), [[1e4]])
     identified = replace(sw.GearSet.of(gear, name="x", source="x"), covariance=covariance)
-    kinematic, wind_up, loop = sw.positioning_error(identified, load=20.0)
+    kinematic, wind_up, loop = sw.analysis.positioning_error(identified, load=20.0)
     assert (kinematic.bound, loop.bound) == (0.0, 0.0)
     assert wind_up.typical == pytest.approx(2e-3)
     assert wind_up.bound == pytest.approx(1.03 * 2e-3)
@@ -50,7 +50,7 @@ def test_of_an_identified_gear_the_bound_is_three_standard_deviations_away() -> 
 
 def test_without_a_rated_torque_it_needs_a_load() -> None:
     with pytest.raises(ValueError, match=r"has no rating rated_torque; give a load"):
-        sw.positioning_error(sw.Gear())
+        sw.analysis.positioning_error(sw.Gear())
 
 
 def test_the_command_prints_arc_seconds(tmp_path: Path) -> None:

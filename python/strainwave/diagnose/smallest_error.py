@@ -47,7 +47,7 @@ class DetectionLimit:
 
     >>> import strainwave as sw
     >>> record = {"speed": 20.0, "duration": 2.0, "sample_rate": 500.0, "noise": 0.02}
-    >>> limit = sw.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, order=2.0, **record)
+    >>> limit = sw.diagnose.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, order=2.0, **record)
     >>> round(limit.arcminutes, 3), round(1e3 * limit.current, 1), limit.insensitive  # arcmin at the output, mA
     (0.055, 12.5, False)
     """

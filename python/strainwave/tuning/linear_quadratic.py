@@ -22,7 +22,7 @@ RATE_SHARE = 1.0  # of the torque limit, by which the disturbance wanders in 1 s
 
 
 @overload
-def regulator(
+def lqg(
     drive: GearSet | Drive | str | Path,
     *,
     period: float = ...,
@@ -35,7 +35,7 @@ def regulator(
 
 
 @overload
-def regulator(
+def lqg(
     drive: GearSet | Drive | str | Path,
     *,
     period: float = ...,
@@ -50,7 +50,7 @@ def regulator(
 ) -> control.StateSpace: ...
 
 
-def regulator(
+def lqg(
     drive: GearSet | Drive | str | Path,
     *,
     period: float = 1e-3,
@@ -106,10 +106,10 @@ def regulator(
             not measure, or more than a `StateSpace`
         TypeError: `drive` is no drive
 
-    >>> law = regulator("robot-joint", error=1e-3)
+    >>> law = lqg("robot-joint", error=1e-3)
     >>> law.input_angle != 0.0 and law.output_angle != 0.0
     True
-    >>> len(regulator("robot-joint", error=1e-3, encoder="input").C)
+    >>> len(lqg("robot-joint", error=1e-3, encoder="input").C)
     6
     """
     plant = Plant.read(drive, period, delay)

@@ -23,7 +23,7 @@ def joint(stiffness: float, damping: float = 0.0) -> sw.Drive:
 
 def test_of_a_rigid_joint_it_is_that_of_a_double_integrator() -> None:
     """J w' = u: the gains are q/r and (2 J q/r)^(1/2), with q = 1/(i e), r = 1/u_0, as the period goes to zero."""
-    law = sw.regulator(joint(1e7, damping=1e3), period=1e-5, error=ERROR, effort=EFFORT)
+    law = sw.tuning.lqg(joint(1e7, damping=1e3), period=1e-5, error=ERROR, effort=EFFORT)
     inertia = ROTOR + ARM / RATIO**2
     stiff = EFFORT / (RATIO * ERROR)
     assert law.input_angle + law.output_angle / RATIO == pytest.approx(stiff, rel=2e-2)
@@ -33,7 +33,7 @@ def test_of_a_rigid_joint_it_is_that_of_a_double_integrator() -> None:
 def test_the_poles_of_the_drive_lie_on_the_symmetric_root_locus() -> None:
     """Of an undamped flexible joint: D(s) D(-s) + (u_0/e)^2 N(s) N(-s) = 0 has them as its stable roots."""
     drive = joint(2e3)
-    law = sw.regulator(drive, period=1e-5, error=ERROR, effort=EFFORT)
+    law = sw.tuning.lqg(drive, period=1e-5, error=ERROR, effort=EFFORT)
     found = np.sort_complex(sw.linearise(drive.replace(control=law)).poles)
     k, j, m = 2e3, ROTOR, ARM
     # theta_out over torque: N = k / i, D = s^2 (j m s^2 + k (j + m / i^2))
@@ -56,7 +56,7 @@ def test_errors_of_angle_and_speed_are_weighed_as_they_are_stated() -> None:
 
 def test_with_an_observer_it_holds_the_robot_joint_against_its_friction_and_weight() -> None:
     joint_set = sw.GearSet.read("robot-joint")
-    law = sw.regulator(joint_set, error=2e-4)
+    law = sw.tuning.lqg(joint_set, error=2e-4)
     found = robot_joint()
     compensation = found.chosen.candidate.drive.control.compensation
     control = sw.control.Sampled(law=law, period=1e-3, compensation=compensation)
@@ -76,10 +76,10 @@ def test_with_an_observer_it_holds_the_robot_joint_against_its_friction_and_weig
 )
 def test_what_it_refuses(changes: dict[str, float], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sw.regulator(joint(2e3, damping=1.0), **changes)
+        sw.tuning.lqg(joint(2e3, damping=1.0), **changes)
 
 
 def test_states_that_no_encoder_measures_are_refused() -> None:
     """The bodies within a staged gear; their gains were dropped."""
     with pytest.raises(ValueError, match=r"the states of the drive are .*; take the lumped gear"):
-        sw.regulator("tilt-actuator", error=1e-3)
+        sw.tuning.lqg("tilt-actuator", error=1e-3)

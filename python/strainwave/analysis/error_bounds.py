@@ -39,7 +39,7 @@ class ErrorBound:
         why: of the bound, in words
 
     >>> import strainwave as sw
-    >>> kinematic, *_ = sw.positioning_error("csg-20-100")
+    >>> kinematic, *_ = sw.analysis.positioning_error("csg-20-100")
     >>> kinematic.name, 4.0 < 206265.0 * kinematic.bound < 60.0  # arc seconds
     ('kinematic error, peak to peak', True)
     """

@@ -44,7 +44,7 @@ class Campbell(ComparedByFields):
     >>> import strainwave as sw
     >>> time = np.arange(0.0, 20.0, 1e-3)
     >>> columns = {"time": time, "input_speed": 10.0 * time, "torque": 3.0 * np.sin(10.0 * time**2)}  # order 2
-    >>> diagram = sw.campbell(sw.Recording(columns, {"time": "s", "input_speed": "rad/s", "torque": "N.m"}), "torque")
+    >>> diagram = sw.orders.campbell(sw.Recording(columns, {"time": "s", "input_speed": "rad/s", "torque": "N.m"}), "torque")
     >>> fast = diagram.amplitude[-1]  # of the stretch at the highest speed
     >>> round(float(diagram.speed[-1]), 1), round(float(diagram.frequency[fast.argmax()]), 1), diagram.unit
     (197.5, 62.0, 'N.m')
@@ -105,7 +105,7 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
     >>> time = np.arange(0.0, 20.0, 1e-3)
     >>> columns = {"time": time, "input_speed": 10.0 * time, "torque": 3.0 * np.sin(10.0 * time**2)}  # order 2
     >>> run = sw.Recording(columns, {"time": "s", "input_speed": "rad/s", "torque": "N.m"})
-    >>> diagram = sw.campbell(run, "torque")
+    >>> diagram = sw.orders.campbell(run, "torque")
     >>> fast = np.searchsorted(diagram.speed, 150.0)
     >>> strongest = diagram.amplitude[fast].argmax()
     >>> order = 2.0 * np.pi * diagram.frequency[strongest] / diagram.speed[fast]
