@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, reject, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, reject, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.simulation.excitation import Excitation

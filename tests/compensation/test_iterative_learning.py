@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave.compensation import IterativeLearning, NoLearning
 
@@ -114,7 +113,7 @@ def test_smoothing_takes_a_wave_over_the_cells_away_at_its_rate(mode: int) -> No
     one = drive(learner(gain=0.0, smoothing=sigma))
     wave = 1e-5 * np.cos(np.pi * mode * (np.arange(CELLS) + 0.5) / CELLS)
     start = one.rest().replace({f"control.compensation.learning.forward[{j}]": value for j, value in enumerate(wave)})
-    run = sw.simulate(one, passes(2 * count, END), sample=0.01, start=start)
+    run = sw.simulate(one, passes(2 * count, END), sample=0.01, initial=start)
     forward, _ = tables(run.end)
     rate = sigma * WIDTH / SPEED * (1.0 - np.cos(np.pi * mode / CELLS))
     assert forward[INNER] == pytest.approx(wave[INNER] * np.exp(-rate * count), abs=0.03e-5 * (mode > 0) + 1e-12)

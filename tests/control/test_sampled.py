@@ -8,8 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
 from tests.support.geared import RATIO, geared
@@ -84,7 +83,7 @@ def test_a_run_goes_on_where_another_ended(at: float) -> None:
     level = sw.scenario.constant(0.2, 0.2)
     whole = sw.simulate(one, level, 1e-4)
     first = sw.simulate(one, sw.scenario.constant(0.2, at), 1e-4)
-    second = sw.simulate(one, sw.scenario.constant(0.2, 0.2 - at), 1e-4, start=first.end)
+    second = sw.simulate(one, sw.scenario.constant(0.2, 0.2 - at), 1e-4, initial=first.end)
     assert second.end["output_speed"] == pytest.approx(whole.end["output_speed"], abs=1e-7)
     assert second["output_angle"][-1] == pytest.approx(whole["output_angle"][-1], abs=1e-9)
 

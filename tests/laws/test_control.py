@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, reject
-from hypothesis import strategies as st
+from hypothesis import given, reject, strategies as st
 from strainwave import _core
 
 from tests.control.discrete import ARM, CURRENT, DC, RATIO, TORQUE, drive
@@ -191,7 +190,7 @@ def test_it_goes_on_where_a_run_ended(name: str, sampled: bool) -> None:
     level = sw.scenario.constant(0.2, 0.1)
     whole = sw.simulate(one, level, sample=1e-3)
     first = sw.simulate(one, sw.scenario.constant(0.2, 0.05), sample=1e-3)
-    second = sw.simulate(one, sw.scenario.constant(0.2, 0.05), sample=1e-3, start=first.end)
+    second = sw.simulate(one, sw.scenario.constant(0.2, 0.05), sample=1e-3, initial=first.end)
     scale = np.abs(whole["output_angle"]).max()
     assert second["output_angle"][-1] == pytest.approx(whole["output_angle"][-1], abs=1e-12 * scale)
 

@@ -7,8 +7,7 @@ import re
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.support.geared import MOTOR, RATIO, K, geared
 

@@ -9,10 +9,8 @@ import pytest
 import strainwave as sw
 from scipy.optimize import brentq
 
-from tests.control.discrete import TORQUE
-from tests.control.discrete import drive as linear
-from tests.control.test_delay_margin import LAW as POSITION
-from tests.control.test_delay_margin import crossover
+from tests.control.discrete import TORQUE, drive as linear
+from tests.control.test_delay_margin import LAW as POSITION, crossover
 from tests.sensor.probe import from_elsewhere, probe, shown
 
 DELAY = 4e-3

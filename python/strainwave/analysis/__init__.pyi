@@ -1,16 +1,11 @@
 from .agreement import Agreement as Agreement
 from .difference import Difference as Difference
-from .error_bounds import ErrorBound as ErrorBound
-from .error_bounds import positioning_error as positioning_error
-from .linear import Linearisation as Linearisation
-from .linear import modes as modes
+from .error_bounds import ErrorBound as ErrorBound, positioning_error as positioning_error
+from .linear import Linearisation as Linearisation, modes as modes
 from .measured_command import MeasuredCommand as MeasuredCommand
 from .output_torque import OutputTorque as OutputTorque
-from .response import FrequencyResponse as FrequencyResponse
-from .response import frequency_response as frequency_response
-from .sensitivity import Derivatives as Derivatives
-from .sensitivity import derivatives as derivatives
+from .response import FrequencyResponse as FrequencyResponse, frequency_response as frequency_response
+from .sensitivity import Derivatives as Derivatives, derivatives as derivatives
 from .settling import settling_time as settling_time
 from .steady import equilibrium as equilibrium
-from .strokes import stroke_within as stroke_within
-from .strokes import strokes_apart as strokes_apart
+from .strokes import stroke_within as stroke_within, strokes_apart as strokes_apart

@@ -31,8 +31,7 @@ def rank(
     from strainwave.files.gear_set import GearSet
     from strainwave.identification.identify import checks_of, raise_question, read_measurements
     from strainwave.identification.kinds import KINDS
-    from strainwave.identification.rank import rank as ranked
-    from strainwave.identification.rank import table_of
+    from strainwave.identification.rank import rank as ranked, table_of
     from strainwave.identification.reading.source import measurement_files
     from strainwave.identification.results.file_result import FileResult
     from strainwave.report.identify_files import failed_lines

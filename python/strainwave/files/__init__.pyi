@@ -1,4 +1,2 @@
-from .entries import Entry as Entry
-from .entries import Quantity as Quantity
-from .ratings import RatingCheck as RatingCheck
-from .ratings import RatingWarning as RatingWarning
+from .entries import Entry as Entry, Quantity as Quantity
+from .ratings import RatingCheck as RatingCheck, RatingWarning as RatingWarning

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from math import hypot
 
 from strainwave import arguments
-from strainwave.files.units import check as check_unit
-from strainwave.files.units import convert
+from strainwave.files.units import check as check_unit, convert
 from strainwave.messages import shortened
 
 NOT_GIVEN = "not given"

@@ -16,8 +16,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Protocol, TypeVar, overload, runtime_checkable
 
-from strainwave import Drive, arguments
-from strainwave import motor as motors
+from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
 from strainwave.files import gear_file
 from strainwave.files.described import all_paths, default_of, parts
@@ -482,7 +481,7 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
         if not isinstance(key, str):
             raise TypeError(f"a number is named by a text, not {shortened(key)}")
         if not isinstance(entry, kind):
-            raise TypeError(f"{unquoted(key)} must have a strainwave.{kind.__name__}, not {shortened(entry)}")
+            raise TypeError(f"{unquoted(key)} must have a strainwave.files.{kind.__name__}, not {shortened(entry)}")
     return MappingProxyType(dict(entries))
 
 

@@ -54,7 +54,7 @@ class Identified(ComparedByFields):
     """Result of `identify`: the estimates of each file, their combination, and the checks of both.
 
     Attributes:
-        start: the set it started from
+        start_set: the set it began with
         files: the result of each file, in the order given; then what several files determine only together
         parameters: every parameter determined: the mean of the files that agree about it
         gear_set: the set with the laws of the files that determine them best, and their numbers, the load and motor of the
@@ -73,7 +73,7 @@ class Identified(ComparedByFields):
     gear.friction_input.viscous 0.0003 ± 6e-07 N.m.s/rad
     """
 
-    start: GearSet
+    start_set: GearSet
     files: tuple[FileResult, ...]
     parameters: tuple[CombinedParameter, ...]
     gear_set: GearSet
@@ -96,7 +96,7 @@ class Identified(ComparedByFields):
     @cached_property
     def states(self) -> tuple[ParameterState, ...]:
         """The state of every number of the gear."""
-        return tuple(states_of(self.start, self.gear_set, self.parameters, self.files))
+        return tuple(states_of(self.start_set, self.gear_set, self.parameters, self.files))
 
     def plot(self) -> Figure:
         """Return a figure of the identified numbers of the gear over those of the start set, each with its interval of 95 %.
@@ -109,11 +109,11 @@ class Identified(ComparedByFields):
         """
         from strainwave.identification.results.comparison_plot import over_start_figure
 
-        return over_start_figure(self.states, self.start, self.gear_set.name)
+        return over_start_figure(self.states, self.start_set, self.gear_set.name)
 
 
 def identify(
-    start: GearSet | str | Path,
+    start_set: GearSet | str | Path,
     files: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
     *,
     mapping: Mapped = None,
@@ -124,7 +124,7 @@ def identify(
     """Determine the type of each file of measurements, fit it, and combine the estimates of all to one gear.
 
     Args:
-        start: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
+        start_set: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
         files: tables of friction, torsion loops, logs of the drive, records of two encoders, records at constant speed,
             friction at rest, in any format and order; of a folder all files that may be such. Or a mapping from the kind of
             each, as "friction" or "torsion", to a path or a recording
@@ -152,12 +152,14 @@ def identify(
     if name is not None:
         check_line("name", name)
     opened = measurement_files(files)
-    read, start = read_measurements(opened, mapping, start if isinstance(start, GearSet) else GearSet.read(start))
+    read, start_set = read_measurements(
+        opened, mapping, start_set if isinstance(start_set, GearSet) else GearSet.read(start_set)
+    )
     check_one_joint(_only_read(read))
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
-    fits = _Fits.of(start, recognised, mapping, accept, progress)
+    fits = _Fits.of(start_set, recognised, mapping, accept, progress)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
     results = without_motor(results, accept=accept)
@@ -170,10 +172,10 @@ def identify(
     if not any(each.estimates or each.failed for each in results):
         raise_question(results)
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
-    checks = _checks(start, results, parameters)
+    checks = _checks(start_set, results, parameters)
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
-    gear_set = drive_set(start, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
-    return Identified(start, results, parameters, with_error_at_constant_speed(gear_set, counted), checks)
+    gear_set = drive_set(start_set, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
+    return Identified(start_set, results, parameters, with_error_at_constant_speed(gear_set, counted), checks)
 
 
 def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult]) -> GearSet:

@@ -188,7 +188,7 @@ def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
         "source": each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files",
         "widened": number(each.widened, 2) if each.widened > MIN_WIDENED else "",
         "shifts": ", ".join(f"{path} by {number(100.0 * by, 2)} %" for path, by in taken.shift_by_kept.items()),
-        "start": _start(found.start, taken),
+        "start": _start(found.start_set, taken),
         "others": [
             {
                 "file": name,

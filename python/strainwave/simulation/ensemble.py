@@ -24,8 +24,7 @@ from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Known
-from strainwave.simulation.initial import known as initial_of
+from strainwave.simulation.initial import Known, known as initial_of
 from strainwave.simulation.resolution import (
     FASTEST_ON_BRISTLES,
     MAX_STEP_PHASE,

@@ -151,7 +151,7 @@ def same_shape(one: Drive, other: Drive) -> bool:
     return one is other or _core.shape(one) == _core.shape(other)
 
 
-def start_of(drive: Drive, state: object, name: str = "start") -> State:
+def start_of(drive: Drive, state: object, name: str = "initial") -> State:
     """A state given as argument `name`, if it is one of this drive.
 
     Raises:

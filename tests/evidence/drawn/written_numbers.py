@@ -226,7 +226,7 @@ def _of_gear(found: sw.identification.Identified, saved: GearSet) -> Iterator[st
 
     A number that is not identified is that of the start set within its spread, unless the record excludes that.
     """
-    before = every(found.start.gear)
+    before = every(found.start_set.gear)
     estimates = {plain(each.path): each for file in found.files for each in file.estimates}
     for path, each in every(saved.gear).items():
         old = before[path].value if path in before else 0.0

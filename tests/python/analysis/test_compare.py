@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave import Recording, compare
 from strainwave.analysis import Agreement, Difference
 from strainwave.files import Quantity

@@ -8,8 +8,7 @@ import control
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 from strainwave import _core
@@ -70,7 +69,7 @@ def test_gravity_adds_to_the_spring_while_the_input_sticks() -> None:
     """J w^2 = k + m g l cos theta_out, and the states of the input are gone."""
     drive = geared(damping=0.0, friction_input=sw.friction.Coulomb(coulomb=5.0))
     start = drive.rest()
-    state = sw.analysis.equilibrium(drive, start=start.replace(input_angle=2.0))
+    state = sw.analysis.equilibrium(drive, initial=start.replace(input_angle=2.0))
     linear = sw.linearise(drive, state)
     assert linear.states == ("motor.current", "transmission_error", "output_speed")
     stiffness = K + 15.0 * np.cos(outputs(drive, state)["output_angle"])
@@ -251,7 +250,7 @@ def test_a_small_step_is_followed_to_second_order(command: float) -> None:
     matrix[:n, :n], matrix[:n, n] = linear.A, linear.B[:, 0]
     left_out = []
     for size in (2e-4, 1e-4):
-        run = sw.simulate(drive, sw.scenario.constant(command + size, 0.05), dt=1e-5, sample=1e-3, start=state)
+        run = sw.simulate(drive, sw.scenario.constant(command + size, 0.05), dt=1e-5, sample=1e-3, initial=state)
         states = np.array([(expm(matrix * t) @ np.append(np.zeros(n), size))[:n] for t in run["time"]])
         followed = at_rest["torque"] + states @ linear.C[row] + size * linear.D[row, 0]
         assert np.abs(run["torque"] - followed).max() <= 0.05 * np.ptp(run["torque"])
@@ -501,6 +500,6 @@ def test_a_load_that_swings_back_comes_to_rest(amplitude: float) -> None:
         load=sw.loads.Pendulum(inertia=0.8, gravity_torque=11.0, gravity_phase=0.6),
     )
     state = sw.analysis.equilibrium(drive)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), start=state, sample=0.1)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), initial=state, sample=0.1)
     assert np.ptp(run["output_angle"]) < 1e-9
     assert np.isfinite(sw.linearise(drive).poles).all()

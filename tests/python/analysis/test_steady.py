@@ -27,7 +27,7 @@ BREAKAWAY = 4.66  # N.m, of document A's actuator at the output
 
 def stays(drive: sw.Drive, state: _core.State, command: float, load_torque: float = 0.0) -> None:
     """A run from `state` does not move, but for rounding."""
-    run = sw.simulate(drive, sw.scenario.constant(command, 0.2), load_torque=load_torque, start=state)
+    run = sw.simulate(drive, sw.scenario.constant(command, 0.2), load_torque=load_torque, initial=state)
     for name in ("input_angle", "output_angle", "twist", "current"):
         assert np.ptp(run[name]) <= 1e-9 * max(np.abs(run[name]).max(), 1e-3), name
 
@@ -109,7 +109,7 @@ def test_a_side_that_friction_holds_stays_where_it_is() -> None:
     drive = geared(friction_input=sw.friction.Coulomb(coulomb=0.9, breakaway=1.0))
     start = drive.rest()
     start = start.replace(input_angle=2.0, transmission_error=1e-4)
-    state = sw.analysis.equilibrium(drive, start=start)
+    state = sw.analysis.equilibrium(drive, initial=start)
     found = outputs(drive, state)
     assert state.input_slip_direction == 0.0
     assert found["input_angle"] == 2.0
@@ -178,7 +178,7 @@ def test_an_output_held_off_its_command_is_pushed_there_by_the_integral(fixed: s
 def test_where_it_was_pushed_to_it_rests(structure: str) -> None:
     drive = misaligned(structure, "flexspline")
     held = sw.analysis.equilibrium(drive)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 3e-5, start=held, record=["output_angle", "current"])
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 3e-5, initial=held, record=["output_angle", "current"])
     assert run["output_angle"] == pytest.approx(0.0, abs=1e-10)
     assert run["current"] == pytest.approx(held["motor.current"], rel=1e-6)
     assert held["motor.current"] < 0.0  # it came from the side of positive angles
@@ -196,7 +196,7 @@ def test_hysteresis_and_bristles_remember_the_way() -> None:
     expected = -0.3 / 50.0 * (1.0 - np.exp(-50.0 / 0.3 * abs(found["input_angle"])))
     assert state["friction_input.deflection"] == pytest.approx(expected, rel=1e-9)
     assert 50.0 * state["friction_input.deflection"] == pytest.approx(-found["torque"] / RATIO, rel=1e-9)
-    back = sw.analysis.equilibrium(drive, start=state)
+    back = sw.analysis.equilibrium(drive, initial=state)
     assert outputs(drive, back)["twist"] != pytest.approx(0.0, abs=1e-6)
     stays(drive, state, 0.0, 5.0)
 
@@ -291,7 +291,7 @@ def test_an_integral_brings_the_speed_to_its_command(motor: sw.motor.DC, sensor:
         current = 3.0 / RATIO / MOTOR.torque_constant
         assert found["voltage"] == pytest.approx(MOTOR.resistance * current + MOTOR.back_emf * 30.0, rel=1e-9)
         assert state["control.error_integral"] == pytest.approx(found["voltage"], rel=1e-9)
-    run = sw.simulate(drive, sw.scenario.constant(1.5, 0.1), load_torque=3.0, start=state)
+    run = sw.simulate(drive, sw.scenario.constant(1.5, 0.1), load_torque=3.0, initial=state)
     assert np.ptp(run["input_speed"]) < 1e-8
 
 
@@ -314,7 +314,7 @@ def test_a_drive_with_bristles_and_losses_under_load_runs_on_as_it_is() -> None:
     )
     for command, load_torque in ((12.0, 3.0), (-12.0, 3.0), (0.0, 30.0)):
         state = sw.analysis.equilibrium(drive, command=command, load_torque=load_torque)
-        run = sw.simulate(drive, sw.scenario.constant(command, 0.2), load_torque=load_torque, start=state)
+        run = sw.simulate(drive, sw.scenario.constant(command, 0.2), load_torque=load_torque, initial=state)
         for name in ("input_speed", "twist", "current"):
             assert run[name] == pytest.approx(np.full(len(run), run[name][0]), rel=1e-9), name
         assert abs(run["input_speed"][0]) > 1.0
@@ -338,7 +338,7 @@ def test_below_breakaway_a_drive_in_open_loop_rests_above_it_runs() -> None:
 def test_a_free_drive_stays_where_it_is() -> None:
     start = geared(sw.loads.Inertia(inertia=0.5)).rest()
     start = start.replace(input_angle=1.0)
-    assert sw.analysis.equilibrium(geared(sw.loads.Inertia(inertia=0.5)), start=start).input_angle == 1.0
+    assert sw.analysis.equilibrium(geared(sw.loads.Inertia(inertia=0.5)), initial=start).input_angle == 1.0
 
 
 # Refusals
@@ -389,6 +389,6 @@ def test_gravity_decides_whether_the_pendulum_above_is_stable() -> None:
     start = drive.rest()
     up = start.replace(transmission_error=-pi + 1e-6)
     soft = drive.replace(gear=drive.gear.replace(stiffness=sw.stiffness.Linear(k=1e-3)))
-    state = sw.analysis.equilibrium(soft, start=up)
+    state = sw.analysis.equilibrium(soft, initial=up)
     assert cos(outputs(soft, state)["output_angle"]) == pytest.approx(-1.0, abs=1e-3)
     assert sw.linearise(soft, state).poles.real.max() > 0.0

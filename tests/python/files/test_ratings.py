@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.files import ratings
 from strainwave.files.entries import Quantity
 from strainwave.files.gear_set import GearSet

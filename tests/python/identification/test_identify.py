@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.identification.identify import Identified, identify, with_means
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine, distance, mean_of
@@ -18,8 +17,7 @@ from strainwave.identification.results.file_result import FileEstimate, FileResu
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import QuestionError
 
-from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
-from tests.python.identification.candidates.test_motion import SPEED as SWING
+from tests.python.identification.candidates.test_motion import RATIO, SPEED as SWING, TRUTH, record
 from tests.support.answers import options_of
 
 SPEED = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])

@@ -7,8 +7,7 @@ from math import pi, tau
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
 UNITS = {"time": "s", "input_angle": "rad", "torque": "N.m"}

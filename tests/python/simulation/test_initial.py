@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.support.geared import RATIO, K, geared
 from tests.support.reference_drive import DRIVE
@@ -159,11 +158,6 @@ def _value(model: Any, path: str) -> Any:
 def test_what_is_no_beginning_is_refused(initial: Any, kind: type[Exception], message: str) -> None:
     with pytest.raises(kind, match=message):
         sw.simulate(geared(motor=sw.motor.DC()), SHORT, initial=initial)
-
-
-def test_a_start_and_an_initial_state_exclude_each_other() -> None:
-    with pytest.raises(ValueError, match="give one of them"):
-        sw.simulate(DRIVE, SHORT, start=DRIVE.rest(), initial={})
 
 
 def test_where_nothing_balances_there_is_no_state() -> None:

@@ -110,11 +110,11 @@ def test_bristles_and_stribeck_friction_are_moved_too() -> None:
 def test_a_move_starts_where_another_ended() -> None:
     plan = sw.tuning.plan_pulses("position-drive", 2e-3)
     first = sw.tuning.position_by_pulses(plan, 1e-4)
-    second = sw.tuning.position_by_pulses(sw.tuning.plan_pulses("position-drive", -2e-3), 1e-4, start=first.end)
+    second = sw.tuning.position_by_pulses(sw.tuning.plan_pulses("position-drive", -2e-3), 1e-4, initial=first.end)
     assert first.reached
     assert second.reached
     assert second.angles[0] == 0.0
-    rest = sw.simulate(plan.drive, sw.scenario.constant(0.0, 0.01), start=second.end, record=["output_angle"])
+    rest = sw.simulate(plan.drive, sw.scenario.constant(0.0, 0.01), initial=second.end, record=["output_angle"])
     assert abs(rest["output_angle"][0]) == pytest.approx(abs(first.angles[-1] + second.angles[-1]), abs=1e-12)
 
 

@@ -38,14 +38,12 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.determined import friction_at
+from strainwave.identification.results.determined import PATH as STEADY, friction_at
 from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
-from strainwave.identification.results.motor_inertia import LOAD as INERTIA
-from strainwave.identification.results.motor_inertia import MOTOR
+from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
