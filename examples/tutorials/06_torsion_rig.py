@@ -173,5 +173,5 @@ print(f"friction {mine.friction_input.coulomb:.4f} N.m found, {on_the_rig.fricti
 # ## Where to go on
 #
 # * [Build and use a torsion test rig](../how-to/torsion-rig.md): what to build, cameras, uncertainty.
-# * [Analyse a torsion loop](../how-to/torsion-analysis.md): the definitions of stiffness, hysteresis and lost motion.
+# * [Analyse a torsion loop](../how-to/torsion-rig.md#analyse-a-torsion-loop): the definitions of stiffness, hysteresis and lost motion.
 # * [Simulate a joint](04_simulate_a_joint.md): what this gear does in a joint.
