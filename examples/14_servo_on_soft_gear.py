@@ -1,4 +1,4 @@
-"""A servo on the soft gear of document T: limit cycle and bandwidth over amplitude.
+"""A servo on a soft gear: limit cycle and bandwidth over amplitude.
 
 Document T warns that low stiffness at a reversal of the torque may bring "instability, limit cycling, or reduced bandwidth".
 Here its gear, as the loop of Table 2 has it, carries an arm, and the position loop is closed on the arm. Look at the steps:

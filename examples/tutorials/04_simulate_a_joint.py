@@ -227,7 +227,8 @@ figure.legend(loc="outside lower center", ncols=3)
 #
 # ## Where to go on
 #
-# * [Simulate a drive](../how-to/simulate.md): steps, scenarios, temperature, noise.
-# * [The parts of a drive](../how-to/drives.md): other motors, controllers, loads and sensors.
-# * [Which model when](../how-to/which-model.md): friction and hysteresis that fit your joint.
-# * [Compensate torsion, friction and kinematic error](../how-to/compensate.md): what of this error a controller can remove.
+# * [Simulate a drive](../../docs/how-to/simulate.md): steps, scenarios, temperature, noise.
+# * [The parts of a drive](../../docs/how-to/drives.md): other motors, controllers, loads and sensors.
+# * [Which model when](../../docs/how-to/which-model.md): friction and hysteresis that fit your joint.
+# * [Compensate torsion, friction and kinematic error](../../docs/how-to/compensate.md): what a
+#   controller can remove of this error.

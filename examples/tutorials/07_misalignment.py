@@ -167,8 +167,9 @@ print(*Path("later.csv").read_text().splitlines()[:3], sep="\n")
 #
 # ## Where to go on
 #
-# * [Diagnose a gear from its motor current](../how-to/diagnose.md): the report, false alarms, remaining life.
-# * [Detection limit of the motor current](../how-to/detection-limit.md): what the limit depends on.
-# * [Estimate a misalignment from the motor current](../validation/misalignment-from-current.md): from the orders back to
-#   the geometry.
-# * [Fault data and a detector](09_fault_data.md): the same question for many units.
+# * [Diagnose a gear from its motor current](../../docs/how-to/diagnose.md): the report, false alarms, remaining life.
+# * [Detection limit of the motor current](../../docs/how-to/diagnose.md#detection-limit-of-the-motor-current): what the
+#   limit depends on.
+# * [Estimate a misalignment from the motor current](../../docs/validation/misalignment-from-current.md):
+#   from the orders back to the geometry.
+# * [Fault data and a detector](09_fault_data.py): the same question for many units.
