@@ -29,7 +29,7 @@ def rank(
     fails, it is printed first, and the exit code is 3.
     """
     from strainwave.files.gear_set import GearSet
-    from strainwave.identification.identify import checks_of, raise_question, read_measurements
+    from strainwave.identification.identify import checks_of, not_used, raise_question, read_measurements
     from strainwave.identification.kinds import KINDS
     from strainwave.identification.rank import rank as ranked, table_of
     from strainwave.identification.reading.source import measurement_files
@@ -41,10 +41,14 @@ def rank(
         read, start = read_measurements(opened, given.mapping_of(opened.files), GearSet.read(gear))
         for path, file in read.items():
             turn(path.name)
+            try:
+                models = () if isinstance(file, FileResult) else ranked(start, file)
+            except ValueError as error:
+                file = not_used(path, error)
             if isinstance(file, FileResult):
                 raise_question([file])
                 raise ValueError(f"{path.name}: {file.refused}")
-            lines += [f"{path.name}: {KINDS[file.kind].title}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
+            lines += [f"{path.name}: {KINDS[file.kind].title}", *(f"  {line}" for line in table_of(models)), ""]
             failed += failed_lines(check for check in checks_of(start, file) if check.failed)
     print("\n".join([*failed, *lines]).rstrip())
     if failed:

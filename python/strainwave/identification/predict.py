@@ -8,7 +8,7 @@ from pathlib import Path
 from strainwave import Drive
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.identify import Mapped, check_arguments, raise_question, read_measurements, without_name
+from strainwave.identification.identify import Mapped, check_arguments, not_used, raise_question, read_measurements
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import Measurement, MeasurementFiles, measurement_files
@@ -55,14 +55,15 @@ def predict(
     check_arguments(files, mapping)
     gear_set = _gear_set(gear)
     read, gear_set = read_measurements(measurement_files(files), mapping, gear_set)
-    found, results = [], list[FileResult]()
+    found, results = list[Prediction](), list[FileResult]()
     for file in read.values():
         progress(file.path.name if isinstance(file, Recognised) else file.name)
-        if isinstance(file, Recognised):
-            found.append(_predicted(file, gear_set))
-        else:
-            found.append(Prediction(file.name, gear_set.name, refused=file.refused))
-            results.append(file)
+        result = _predicted(file, gear_set) if isinstance(file, Recognised) else file
+        if isinstance(result, FileResult):
+            results.append(result)
+            kind = "" if result.recognised is None else result.recognised.kind
+            result = Prediction(result.name, gear_set.name, kind, refused=result.refused)
+        found.append(result)
     if all(each.refused for each in found):
         raise_question(results)
         raise ValueError(f"no file can be predicted: {'; '.join(f'{each.name}: {each.refused}' for each in found)}")
@@ -75,10 +76,10 @@ def _gear_set(gear: GearSet | Gear | Drive | str | Path) -> GearSet:
     return GearSet.read(gear) if isinstance(gear, str | Path) else GearSet.of(gear, name="the gear", source="given")
 
 
-def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
+def _predicted(file: Recognised, gear_set: GearSet) -> Prediction | FileResult:
     """Return the comparison of a file, or why there is none."""
     gear_set = with_ratio(GearSoFar(gear_set), file).gear_set
     try:
         return kind_named(file.kind).predict(file.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
     except (ValueError, FloatingPointError) as error:
-        return Prediction(file.path.name, gear_set.name, file.kind, refused=without_name(str(error), file.path))
+        return not_used(file.path, error, file)

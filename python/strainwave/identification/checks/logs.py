@@ -17,6 +17,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED, HeldOut
 from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
+from strainwave.questions import NUMBER
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
@@ -32,7 +33,8 @@ MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its uni
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
 MAX_SPEED_FACTOR = 2.45  # between a speed and the slope of its angle: the nearest units, rpm and deg/s, lie a factor of 6 apart
 MAX_FILTERED_FACTOR = 1.5  # likewise: filters and noise change it by less
-SPEED_UNITS = ("rad/s", "deg/s", "rpm", "rev/s")
+USUAL_UNITS = {"speed": ("rad/s", "deg/s", "rpm", "rev/s"), "angle": ("rad", "deg", "rev")}
+MAX_OFF_UNIT = 0.1  # relative: a unit that is nearer explains a factor
 RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
 
 
@@ -82,21 +84,25 @@ def unit_of_torque(file: Recognised) -> Iterator[Check]:
             "unit of the torque", file.path.name, share, MAX_SHARE_OF_WHOLE, "1", share > MAX_SHARE_OF_WHOLE,
             f"{file.columns[name]} contains whole numbers and is the name of CiA 402 for thousandths of the rated torque, but "
             f"{unit} is taken",
-            "give the rated torque of the motor, as " + as_option("unit", file.columns[name], "permille of 0.4 N.m"),
+            "give the rated torque of the motor, as " + as_option("unit", file.columns[name], f"permille of {NUMBER} N.m"),
         )  # fmt: skip
 
 
 def speed_against_angle(file: Recognised) -> Iterator[Check]:
     """Yield the check that a speed is the slope of the angle of the same shaft, in the units that both are taken in."""
     for factor, speed, names in _speed_factors(file):
-        usual = {unit: convert(1.0, unit, "rad/s") for unit in SPEED_UNITS}
-        fitting = next((unit for unit, size in usual.items() if abs(_own_size(file, speed) / factor / size - 1.0) < 0.1), "")
-        hint = as_option("unit", names[1], fitting or "UNIT")
+        sizes = {"speed": _own_size(file, speed) / factor, "angle": _own_size(file, speed.replace("speed", "angle")) * factor}
+        fitting = [
+            as_option("unit", name, unit)
+            for quantity, name in zip(("angle", "speed"), names, strict=True)
+            for unit in USUAL_UNITS[quantity]
+            if abs(sizes[quantity] / convert(1.0, unit, USUAL_UNITS[quantity][0]) - 1.0) < MAX_OFF_UNIT
+        ]
         off = max(factor, 1.0 / factor)
         yield Check(
             "speed against angle", file.path.name, off, MAX_SPEED_FACTOR, "1", off > MAX_SPEED_FACTOR,
             f"{names[1]} is {factor:.4g} times the slope of {names[0]}, in the units that they are taken in",
-            f"one unit is wrong: give it, with {hint} if it is that of the speed, or that of the angle",
+            f"one unit is wrong: {' or '.join(fitting) or 'no usual one makes this factor; see whether the time is right'}",
         )  # fmt: skip
 
 
@@ -122,10 +128,11 @@ def _speed_factors(file: Recognised) -> Iterator[tuple[float, str, list[str]]]:
             yield factor, speed, names
 
 
-def _own_size(file: Recognised, speed: str) -> float:
-    """Return the size of the unit of a speed [rad/s]."""
-    unit = file.units.get(speed) or file.units.get(f"reflected_{speed[-5:]}", "rad/s")
-    return convert(1.0, unit, "rad/s") if measures(unit, "rad/s") else 1.0
+def _own_size(file: Recognised, channel: str) -> float:
+    """Return the size of the unit of an angle [rad] or a speed [rad/s]."""
+    si = USUAL_UNITS[channel[-5:]][0]
+    unit = file.units.get(channel) or file.units.get(f"reflected_{channel[-5:]}", si)
+    return convert(1.0, unit, si) if measures(unit, si) else 1.0
 
 
 def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check]:

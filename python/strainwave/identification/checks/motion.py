@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
-from strainwave.identification.checks.mistakes import wrong_units
+from strainwave.identification.checks.mistakes import MISTAKEN
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
+from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.messages import as_option
 from strainwave.orders.torque_ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
@@ -43,7 +46,7 @@ MAX_NEGATIVE_PART = 1.0  # of the held-out error of plain least squares: a large
 
 
 def checks_of_motion(
-    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, source: str, joints: Collection[str] = ()
+    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, file: Recognised
 ) -> Iterator[Check]:
     """Yield the checks of a log by its own motion.
 
@@ -52,14 +55,14 @@ def checks_of_motion(
         drive: as far as it was known before
         recording: of the log, with its angle in the unit of the file
         held_out: its error on data held out, and that of plain least squares
-        source: name of the file
-        joints: names of other joints that move
+        file: that contains the log
     """
+    source, joints = file.path.name, file.neighbours
     alone = not best.log.regressors
     if alone and not np.any(best.log.extra):
         yield from (by_ratio := list(ratio_by_gravity(best, drive, recording, source)))
         if not any(check.failed for check in by_ratio) and _has_gravity(best):
-            yield from angle_in_gravity(best, drive, recording, source)
+            yield from angle_in_gravity(best, drive, recording, file)
     yield from ratio_by_orders(drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
@@ -70,7 +73,7 @@ def checks_of_motion(
 # ---- Gravity ---------------------------------------------------------------------------------------------------------
 
 
-def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, source: str) -> Iterator[Check]:
+def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, file: Recognised) -> Iterator[Check]:
     """Yield the check that gravity goes with the sine of the angle in the unit and of the side that are taken for it.
 
     A wrong unit or side of an angle scales inertia and friction, which absorb it. Gravity of a joint that moves far enough
@@ -81,19 +84,19 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     if len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK:
         return
     usual = _squares(log, drive, _best_scale(best, drive), delay)  # a ratio near the one taken may be the simpler mistake
-    share, found = 1.0, ""
-    for what, factor in _mistakes(recording, ratio).items():
+    share, found, remedy = 1.0, "", ""
+    for what, factor, option in _mistakes(recording, ratio, file.columns):
         if np.ptp(log.motion.angle) * factor / ratio > MAX_JOINT_ANGLE:
             continue
         other = _squares(log, drive, factor, delay)
         gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))
         if gain > share and _is_less(other, usual):
-            share, found = gain, what
+            share, found, remedy = gain, what, option
     wrong = f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}"
     yield Check(
-        "angle in the sine of gravity", source, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
+        "angle in the sine of gravity", file.path.name, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
         wrong if found else "gravity goes with the sine of its angle: no other unit or side of it leaves less",
-        "see whether unit and side of the angle are right, and state them: --unit or --column input_angle= or output_angle=",
+        f"see whether it is so, and state it: {remedy}" if found else "",
     )  # fmt: skip
 
 
@@ -121,7 +124,8 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
         "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
         f"gravity goes with the sine of the motor's angle over about {ratio / scale:.3g}, the ratio of the gear is "
         f"{ratio:.6g}",
-        "see whether the start set is that of this gear, or give its ratio: --constant ratio=NUMBER",
+        "see whether the start set is that of this gear, or give the ratio on its plate, if it is near this one: "
+        f"--constant ratio={ratio / scale:.3g}",
     )  # fmt: skip
 
 
@@ -176,13 +180,15 @@ def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator
     )  # fmt: skip
 
 
-def _mistakes(recording: Recording, ratio: float) -> dict[str, float]:
-    """Return likely mistakes of the angle, and the true angle over the one that is taken."""
-    name = "input_angle" if "input_angle" in recording else "output_angle"
-    wrong = {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(name)).items()}
-    if name == "input_angle":
-        return {**wrong, "it is that of the output": ratio}
-    return {**wrong, "it is that of the input": 1.0 / ratio}
+def _mistakes(recording: Recording, ratio: float, columns: Mapping[str, str]) -> Iterator[tuple[str, float, str]]:
+    """Yield likely mistakes of the angle: in words, the true angle over the one that is taken, and the option that mends it."""
+    name, other, factor = ("input_angle", "output_angle", ratio)
+    if name not in recording:
+        name, other, factor = other, name, 1.0 / ratio
+    unit, column = recording.unit(name), columns.get(name, name)
+    for right in MISTAKEN.get(unit, ()):
+        yield f"the angle is in {right}, not in {unit}", convert(1.0, right, unit), as_option("unit", column, right)
+    yield f"it is that of the {other.removesuffix('_angle')}", factor, as_option("column", other, column)
 
 
 def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array:

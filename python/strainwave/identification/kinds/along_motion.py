@@ -116,7 +116,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_given_inertia(taken, name),
         *_torque_constant(taken, name),
     ]
-    checks += checks_of_motion(best, drive, recording, held_out, name, file.neighbours)
+    checks += checks_of_motion(best, drive, recording, held_out, file)
     pictures = (Picture(predicted), *between.pictures)
     return (
         FileResult(
