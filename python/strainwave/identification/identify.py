@@ -30,7 +30,7 @@ from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
 from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
-from strainwave.identification.readings import decided
+from strainwave.identification.readings import answered, decided
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
 from strainwave.identification.results.drive import drive_set, name_of_files
@@ -349,6 +349,7 @@ def read_measurements(
 ) -> tuple[dict[Path, Recognised | FileResult], GearSet]:
     """Return each file as it is read, or why it is refused, by its path; and the set with the ratio given with all files."""
     read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
+    asked = {path: each.question for path, each in read.items() if isinstance(each, FileResult) and each.question is not None}
     sources = {file.path: file for file in opened.files}
     in_one_reading = consistent(_only_read(read), sources)
     start = with_ratio_of_all(start, in_one_reading)
@@ -356,6 +357,9 @@ def read_measurements(
         source = sources[each.path]
         given = _mapping_of(mapping, each.path, source.kind) or FileMapping()
         read[each.path] = _decided(each, source, GearSoFar(start, start), given)
+    for path, question in asked.items():
+        given = _mapping_of(mapping, path, sources[path].kind) or FileMapping()
+        read[path] = _answered(question, sources[path], GearSoFar(start, start), given)
     for link in opened.links:
         read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
     return read, start
@@ -387,6 +391,16 @@ def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given:
     except ValueError as error:
         return not_used(file.path, error, file)
     return file if file.question is None else not_used(file.path, file.question, file)
+
+
+def _answered(
+    question: QuestionError, source: MeasurementFile, known: GearSoFar, given: FileMapping
+) -> Recognised | FileResult:
+    """Return a file in the one answer to its question that the numbers leave, or the question with those that are possible."""
+    try:
+        return answered(question, source, known, given)
+    except (ValueError, FloatingPointError) as error:
+        return not_used(source.path, error if isinstance(error, QuestionError) else question)
 
 
 def not_used(path: Path, error: Exception, file: Recognised | None = None) -> FileResult:
