@@ -32,7 +32,9 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
         for name, shown in DEMONSTRATIONS.items():
             turn(name.replace("-", " "))
             result, folder = shown.identified(), out / name
-            write_folder(folder, identify_files(result, Provenance.of_this_command(list(shown.files)), accepted=True))
+            write_folder(
+                folder, identify_files(result, Provenance.of_this_command(list(shown.files)), accepted=True, folder=folder)
+            )
             print("\n".join([shown.heading, "", *identify_summary(result), *[shown.remark] * bool(shown.remark)]))
             print(f"wrote {folder / 'gear.toml'} and {folder / 'report.html'}\n")
     print(NEXT.strip().format(gear=out / "robot-joint" / "gear.toml"))

@@ -57,7 +57,7 @@ def _one_gear(
     with progress(len(read)) as turn:
         found = identified(gear, opened, mapping=mapping, accept=accept, name=name, progress=turn)
         turn("report")
-        files = identify_files(found, Provenance.of_this_command(read), accepted=accept)
+        files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
         write_folder(out, files)
     print("\n".join(identify_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
@@ -81,7 +81,9 @@ def _every_joint(
         turn("report")
         provenance = Provenance.of_this_command(paths_in(opened))
         for joint, found in joints.found.items():
-            write_folder(out / folder_of(joint), identify_files(found, provenance, accepted=accept))
+            write_folder(
+                out / folder_of(joint), identify_files(found, provenance, accepted=accept, folder=out / folder_of(joint))
+            )
         write_folder(out, joints_files(joints, provenance))
     print("\n".join(joints_summary(joints)))
     folders = ", ".join(map(folder_of, joints.found))
