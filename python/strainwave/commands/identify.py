@@ -50,6 +50,7 @@ def _one_gear(
     from strainwave.files.writing import write_folder
     from strainwave.identification.identify import identify as identified
     from strainwave.identification.results.drive import not_written
+    from strainwave.report.first_screen import next_lines
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
@@ -61,8 +62,10 @@ def _one_gear(
         write_folder(out, files)
     print("\n".join(identify_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
-    if "gear.toml" in files and (lacking := not_written(found.files)):
-        print(f"gear.toml: {found.gear_set.name}, {lacking}")
+    if "gear.toml" in files:
+        if lacking := not_written(found.files):
+            print(f"gear.toml: {found.gear_set.name}, {lacking}")
+        print("\n".join(next_lines(found, out)))
     return bool(found.failed)
 
 

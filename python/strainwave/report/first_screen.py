@@ -17,12 +17,13 @@ from strainwave.typeset import number, uncertain, unit
 
 PREDICTED = ("log", "friction")  # kinds of files that `predict` compares
 NEEDED: dict[Subject, str] = {  # for a picture that the first screen lacks
-    "torque": "the torque or current of a drive in motion.",
-    "friction": "torque at several speeds, best both ways, that separates friction from the rest.",
-    "twist": "a torsion loop, or the angles of both shafts under a known torque that changes.",
-    "error": "the angles of both shafts over a turn of the input, with an order that stands out.",
+    "torque": "the torque or current of a drive in motion",
+    "friction": "torque at several speeds, best both ways, that separates friction from the rest",
+    "twist": "a torsion loop, or the angles of both shafts under a known torque that changes",
+    "error": "the angles of both shafts over a turn of the input, with an order that stands out",
 }
 LARGEST_TORQUE = "40"  # N.m, to begin with if the set has no rating (assumed)
+USUAL_GEAR = "csg-20-100"
 
 
 def pictures(found: Identified) -> Iterator[dict[str, Any]]:
@@ -83,8 +84,16 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
     largest = f" (largest torque in place of {LARGEST_TORQUE} N·m)" if torque else ""
     steps.append((f"Write the joint for MuJoCo and URDF{largest}", ["export", "joint", str(gear), *torque]))
     if compared is None:
-        steps.append(("Write the gear as MJCF", ["export", "mjcf", str(gear), *torque]))
+        steps.append(
+            ("Compare it with a gear of the catalogue (strainwave gears lists them)", ["compare", USUAL_GEAR, str(gear)])
+        )
     return [(what, shlex.join(["strainwave", *words])) for what, words in steps]
+
+
+def next_lines(found: Identified, folder: Path) -> Iterator[str]:
+    """Yield what to do next, each with its command, in lines for a terminal."""
+    for what, command in next_commands(found, folder):
+        yield from (f"{what}:", f"  {command}")
 
 
 def _is_predicted(file: FileResult, found: Identified) -> bool:

@@ -192,7 +192,7 @@ def test_every_file_that_was_fitted_has_a_drawing_of_its_own(page: str, found: I
         assert drawn == bool(result.pictures)
     first = [title for title in titles if title.endswith((", warm.csv", ", loop.csv")) and "modelled" not in title]
     assert first == ["Friction over speed, warm.csv", "Twist over torque, loop.csv"]
-    assert "Not determined by these files: torque, measured and predicted, which needs the torque or current" in root.text
+    assert "Not determined by these files: torque, measured and predicted (needs the torque or current" in root.text
     names = [each.attributes["id"] for each in root.walk() if "id" in each.attributes]
     assert len(names) == len(set(names))
     assert {link.attributes["href"][1:] for link in root.find("a")} <= set(names)
