@@ -56,7 +56,7 @@ def numbers_by_source(found: Identified) -> dict[str, list[tuple[str, str]]]:
         first = next((each for each in own if each.value and each.unit != "1"), None)
         if effect not in determined and first is not None:
             words = f"{_with_spread(first, found)} {unit(first.unit)}"
-            rows.setdefault(f"from the start set {found.start.name}", []).append((name_of_path(first.path), words))
+            rows.setdefault(f"from the start set {found.start_set.name}", []).append((name_of_path(first.path), words))
     return rows
 
 
