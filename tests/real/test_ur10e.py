@@ -39,11 +39,11 @@ def halves(joint: int, folder: Path) -> tuple[Path, Path]:
 
 
 @pytest.fixture(scope="module")
-def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float], sw.Prediction]:
+def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float], sw.identification.Prediction]:
     """The second half of a joint, predicted by the gear of the first half with a torque constant."""
 
     @cache
-    def by_the_first_half(joint: int, constant: float) -> sw.Prediction:
+    def by_the_first_half(joint: int, constant: float) -> sw.identification.Prediction:
         folder = tmp_path_factory.mktemp("halves")
         first, second = halves(joint, folder)
         found = sw.identify("csg-20-100", [first], mapping=mapping(joint, constant), accept=constant != TORQUE_CONSTANT)
@@ -56,7 +56,9 @@ def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float]
 
 @pytest.mark.slow("identification")
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
-def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int, float], sw.Prediction]) -> None:
+def test_the_first_half_predicts_the_second(
+    joint: int, predicted: Callable[[int, float], sw.identification.Prediction]
+) -> None:
     found = predicted(joint, TORQUE_CONSTANT)
     errors = f"error {found.error:.3f} A of {found.varies:.3f}, {found.allowed:.3f} allowed, plain {found.plain:.3f}"
     print(f"\njoint {joint}: {errors}")
@@ -70,7 +72,7 @@ def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int
 
 
 @pytest.mark.slow("identification")
-def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int, float], sw.Prediction]) -> None:
+def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int, float], sw.identification.Prediction]) -> None:
     assert predicted(2, 4.0 * TORQUE_CONSTANT).error == pytest.approx(predicted(2, TORQUE_CONSTANT).error, rel=0.05)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
-from strainwave.orders.ripple import Ripple
+from strainwave.orders.torque_ripple import Ripple
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report import figures
 

@@ -15,12 +15,11 @@ from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
 from strainwave.native import kernels
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import beginning_numbers
+from strainwave.simulation.initial import Initial, beginning_numbers
 from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
 from strainwave.simulation.run import Course, Run, check_meaning, progressing, recorded_of
 from strainwave.simulation.scenario import Scenario
-from strainwave.simulation.state import State
 
 Array = NDArray[np.float64]
 
@@ -75,8 +74,7 @@ def simulate_controlled(
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
     inputs: Mapping[str, Scenario | float] | None = None,
-    start: State | None = None,
-    initial: Mapping[str, float] | None = None,
+    initial: Initial | None = None,
     record: Sequence[str] | None = None,
     progress: bool = False,
 ) -> Run:
@@ -94,7 +92,7 @@ def simulate_controlled(
         period: time from one call to the next [s]
         delay: time from a call to its effect [s], at most `period`
         unit: of the command
-        dt, sample, load_torque, temperature, inputs, start, initial, record, progress: as for `simulate`
+        dt, sample, load_torque, temperature, inputs, initial, record, progress: as for `simulate`
 
     Returns:
         as `simulate`; the column `command` holds the command, the motor's columns what it made of the actuation
@@ -130,7 +128,7 @@ def simulate_controlled(
     unit = arguments.text("unit", unit)
     recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
-    state = beginning_numbers(drive, start, initial, _under(0.0, excitation.first()))
+    state = beginning_numbers(drive, initial, _under(0.0, excitation.first()))
     actions = _actions(command.duration, period, delay)
     excitation.check_laid_out(dt)
     course = Course.of(drive, excitation, recorded, dt, interval, actions)

@@ -24,8 +24,7 @@ from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Known
-from strainwave.simulation.initial import known as initial_of
+from strainwave.simulation.initial import Known, known as initial_of
 from strainwave.simulation.resolution import (
     FASTEST_ON_BRISTLES,
     MAX_STEP_PHASE,
@@ -74,7 +73,7 @@ class EnsembleWarning(UserWarning):
     >>> import strainwave as sw
     >>> drive, voltage = sw.Drive(load=sw.loads.Inertia(inertia=0.01)), sw.scenario.step(5.0, duration=0.1)
     >>> with warnings.catch_warnings():
-    ...     warnings.simplefilter("ignore", sw.EnsembleWarning)
+    ...     warnings.simplefilter("ignore", sw.simulation.EnsembleWarning)
     ...     runs = sw.simulate_many(drive, voltage, {"gear.stiffness.k": [1e4, 1e12]})  # too stiff for the step
     >>> list(runs.failures), runs.failures[1].split(":")[0]
     ([1], 'dt = 0.0002 s is too coarse for this drive')

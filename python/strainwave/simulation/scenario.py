@@ -27,6 +27,18 @@ from strainwave.files.recording import Recording
 from strainwave.messages import shortened
 from strainwave.simulation.memory import check_instants, room_for
 
+__all__ = [
+    "Scenario",
+    "Wave",
+    "chirp",
+    "constant",
+    "pulse_train",
+    "ramp",
+    "sine",
+    "step",
+    "table",
+]
+
 Array = NDArray[np.float64]
 MAX_PULSES = 1e6  # of a pulse train
 MIN_DURATION = 1e-30  # s: so short that its reciprocal and its square are still finite
@@ -417,3 +429,7 @@ def _from(start: float, duration: float, level: float, slope: float) -> Scenario
     before = [0.0] if start > 0.0 else []
     starts, levels, slopes = (np.array([*before, last]) for last in (start, level, slope))
     return Scenario(duration, starts, levels, slopes)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -34,7 +34,7 @@ class LostMotion:
         ratio: size of the ratio of the gear, input over output [1]
 
     >>> import strainwave as sw
-    >>> lost = sw.lost_motion(sw.rig.printed_gear(0), swing=36.0)  # N.m of friction and inertia at the output
+    >>> lost = sw.tuning.lost_motion(sw.rig.printed_gear(0), swing=36.0)  # N.m of friction and inertia at the output
     >>> [round(1e3 * angle, 1) for angle in (lost.width, lost.extent, lost.overshoot())]  # mrad at the output
     [8.8, 10.4, 12.4]
     """
@@ -139,7 +139,7 @@ class PositioningPath:
         rests: time at the end of the rest at each target [s], shape (n,)
 
     >>> import strainwave as sw
-    >>> path = sw.positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
+    >>> path = sw.tuning.positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
     >>> path.rests.round(3), path.command.value(path.rests).round(6)
     (array([0.875, 2.246]), array([0.2, 0.1]))
     """

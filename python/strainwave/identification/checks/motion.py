@@ -24,7 +24,7 @@ from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option
 from strainwave.orders.comb import RATIOS
-from strainwave.orders.ripple import ripple
+from strainwave.orders.torque_ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
 
