@@ -86,6 +86,12 @@ class Identified(ComparedByFields):
         return tuple(check for check in self.checks if check.failed)
 
     @property
+    def unchecked(self) -> dict[str, str]:
+        """Ratio or torque constant with which estimates of logs scale, if no log checks it: their values, by name."""
+        logs = [each.unchecked for each in self.files if each.recognised and each.recognised.kind == "log" and each.estimates]
+        return {name: value for name, value in logs[0].items() if all(name in each for each in logs)} if logs else {}
+
+    @property
     def accepted(self) -> GearSet:
         """The gear set with its failed checks in its note: accepted, if it is used all the same."""
         if not self.failed:
