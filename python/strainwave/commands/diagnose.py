@@ -63,7 +63,7 @@ def joint(
     ] = False,
     out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/diagnose"),
 ) -> None:
-    """Diagnose a joint from its torque or motor current.
+    r"""Diagnose a joint from its torque or motor current.
 
     Each order of the gear is compared with noise, and with the healthy joint. Without a baseline lines are compared with noise
     and with the expected values of the gear alone. A recording without an alarm is no proof of health: the report contains the
@@ -71,7 +71,8 @@ def joint(
 
     Examples:
         strainwave diagnose joint robot_log.csv --gear hfuc-20-80
-        strainwave diagnose joint robot_log_later.csv --gear gear.toml --baseline robot_log.csv
+        strainwave diagnose joint robot_log_later.csv --gear gear.toml \
+          --baseline robot_log.csv
     """
     from strainwave.files.writing import write_folder
     from strainwave.identification.reading.source import distinct_names, measurement_files
@@ -124,8 +125,8 @@ def limit(
 
     Examples:
         strainwave diagnose limit robot-joint --speed 20 --duration 10 --noise 0.05
-        strainwave diagnose limit tilt-actuator --speed 30 --duration 20 --noise 0.05 \
-          --torque 20 --order 2
+        strainwave diagnose limit tilt-actuator --speed 30 --duration 20 \
+          --noise 0.05 --torque 20 --order 2
     """
     from strainwave.commands.options import number_option
     from strainwave.diagnose.smallest_error import detection_limit

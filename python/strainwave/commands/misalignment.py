@@ -23,7 +23,7 @@ def misalignment(
 
     Examples:
         strainwave diagnose misalignment tilt-actuator-lumped --stroke 20 --time 1
-        strainwave diagnose misalignment tilt-actuator-lumped --stroke 20 --time 2 --out slow
+        strainwave diagnose misalignment tilt-actuator-lumped --stroke 20 --time 2
     """
     from itertools import product
     from math import radians

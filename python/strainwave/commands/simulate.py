@@ -36,7 +36,7 @@ def simulate(
 
     Examples:
         strainwave simulate robot-joint --scenario move.toml
-        strainwave simulate robot-joint --scenario move.toml --out run.parquet --plot run.svg
+        strainwave simulate robot-joint --scenario move.toml --plot run.svg
     """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.recording import Recording
