@@ -1,4 +1,4 @@
-"""Document T's soft gear with a compensated controller: the limit cycle of example 14 gone, and the arm where it should be.
+"""The soft gear of example 14 with a compensated controller: its limit cycle gone, and the arm where it should be.
 
 A fast position loop on the arm swings for ever; one on the motor rests, but leaves the arm off by the hysteresis. Here the
 fast loop stays on the motor, and a slow integral of the error of the arm shifts its command: an `AdaptiveFourier` of order 0.
