@@ -96,11 +96,11 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
             the torque change its size
 
     Source:
-        document T, section "Discussion" (unidirectional positioning); the loop: own derivation
+        the torsional stiffness article, section "Discussion" (unidirectional positioning); the loop: own derivation
 
     >>> import math
     >>> import strainwave as sw
-    >>> lost = lost_motion(sw.rig.printed_gear(0), swing=36.0)  # document T, 0.36 N.m at the input of 1:100
+    >>> lost = lost_motion(sw.rig.printed_gear(0), swing=36.0)  # of the article, 0.36 N.m at the input of 1:100
     >>> round(math.degrees(lost.input_width), 6)
     50.5
     """
@@ -188,7 +188,7 @@ def positioning_path(
         ValueError: there is no target, a number is not finite or out of its range, or the path has too many pieces
 
     Source:
-        document T, section "Discussion"; motion of minimum jerk: FlashHogan1985
+        the torsional stiffness article, section "Discussion"; motion of minimum jerk: FlashHogan1985
 
     >>> path = positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
     >>> [round(float(path.command.value(time)), 9) for time in path.rests]

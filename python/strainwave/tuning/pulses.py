@@ -51,7 +51,7 @@ def pulse_travel(torque: float, width: float, inertia: float, friction: float) -
         ValueError: a number is out of its range
 
     Source:
-        document P, "pulse" command of the experiments; own derivation
+        the position control article, "pulse" command of the experiments; own derivation
 
     >>> round(pulse_travel(torque=0.15, width=0.02, inertia=1.2e-3, friction=0.072), 6)
     0.027083
@@ -181,7 +181,7 @@ def plan_pulses(
             nor a voltage, or its friction does not hold it at rest
 
     Source:
-        document P, experiments (pulse control); own derivation
+        the position control article, experiments (pulse control); own derivation
 
     >>> plan = plan_pulses("position-drive", 0.002)
     >>> len(plan.widths), round(1e3 * plan.widths[0])  # ms
@@ -294,7 +294,7 @@ def position_by_pulses(
         ValueError: a number is out of its range, or the drive does not come to rest after a pulse
 
     Source:
-        document P, experiments (pulse control); the correction: own derivation
+        the position control article, experiments (pulse control); the correction: own derivation
 
     >>> move = position_by_pulses(plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, move.pulses < 6

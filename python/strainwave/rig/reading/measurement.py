@@ -98,8 +98,8 @@ def read_test(
     """Read the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). The remarks list each photograph without an angle; the other steps remain. If the folder contains the
-    planned steps, `plan.csv`, the record is compared with them.
+    erratum 11 of the torsional stiffness article). The remarks list each photograph without an angle; the other steps remain.
+    If the folder contains the planned steps, `plan.csv`, the record is compared with them.
 
     Args:
         folder: of the test
