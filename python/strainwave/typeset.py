@@ -120,6 +120,15 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
     return f"{number(value / 10.0**power, digits)} {prefixed(of, power)}".strip()
 
 
+def percent(share: float) -> str:
+    """Return a share in print, to two digits.
+
+    >>> percent(0.0484)
+    '4.8 %'
+    """
+    return f"{number(100.0 * share, 2)} %"
+
+
 def symbols(text: str) -> Markup:
     """Return a text as HTML, escaped, with the symbols in it set as such.
 

@@ -50,6 +50,7 @@ def _one_gear(
     from strainwave.files.writing import write_folder
     from strainwave.identification.identify import identify as identified
     from strainwave.identification.results.drive import not_written
+    from strainwave.report.first_screen import next_lines
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
@@ -57,12 +58,14 @@ def _one_gear(
     with progress(len(read)) as turn:
         found = identified(gear, opened, mapping=mapping, accept=accept, name=name, progress=turn)
         turn("report")
-        files = identify_files(found, Provenance.of_this_command(read), accepted=accept)
+        files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
         write_folder(out, files)
     print("\n".join(identify_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
-    if "gear.toml" in files and (lacking := not_written(found.files)):
-        print(f"gear.toml: {found.gear_set.name}, {lacking}")
+    if "gear.toml" in files:
+        if lacking := not_written(found.files):
+            print(f"gear.toml: {found.gear_set.name}, {lacking}")
+        print("\n".join(next_lines(found, out)))
     return bool(found.failed)
 
 
@@ -81,7 +84,9 @@ def _every_joint(
         turn("report")
         provenance = Provenance.of_this_command(paths_in(opened))
         for joint, found in joints.found.items():
-            write_folder(out / folder_of(joint), identify_files(found, provenance, accepted=accept))
+            write_folder(
+                out / folder_of(joint), identify_files(found, provenance, accepted=accept, folder=out / folder_of(joint))
+            )
         write_folder(out, joints_files(joints, provenance))
     print("\n".join(joints_summary(joints)))
     folders = ", ".join(map(folder_of, joints.found))

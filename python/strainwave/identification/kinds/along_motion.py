@@ -38,6 +38,7 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
+from strainwave.identification.results.curves import picture_of_friction, picture_of_turn
 from strainwave.identification.results.determined import PATH as STEADY, friction_at
 from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -90,6 +91,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     if set(ENCODERS) <= set(recording.names):
         errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=NUMBER")
         between, known = between_encoders(taken, judged, errors, known, file.path.name)
+        if any(each.significant and each.shaft == "input" for each in errors.orders):
+            between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
             squared = drive.gear.kinematics.ratio**2
@@ -117,7 +120,9 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_torque_constant(taken, name),
     ]
     checks += checks_of_motion(best, drive, recording, held_out, file)
-    pictures = (Picture(predicted), *between.pictures)
+    dry = [each for each in estimates if each.path == COULOMB and (not each.why or each.in_combination)]
+    of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
+    pictures = (Picture(predicted), *of_friction, *between.pictures)
     return (
         FileResult(
             name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
