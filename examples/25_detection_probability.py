@@ -1,9 +1,9 @@
 """Probability that a crack is found from the motor current, over its severity: a small version of the detection benchmark.
 
 Units differ in friction and stiffness, days of a unit in friction and load. The comparison with healthy days of a unit is that
-of `strainwave diagnose`, at one false alarm in a thousand. The simplest detector is the change of the current's rms without its
-mean; its threshold is the largest change on 12 healthy days of other units. Look at severity 0: twelve days are too few for a
-threshold. The bands are intervals of 95 %.
+of `strainwave diagnose joint`, at one false alarm in a thousand. The simplest detector is the change of the current's rms
+without its mean; its threshold is the largest change on 12 healthy days of other units. Look at severity 0: twelve days are too
+few for a threshold. The bands are intervals of 95 %.
 """
 
 import numpy as np

@@ -35,7 +35,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 #
 # Three facts are not in the log. You find the first two on data sheets:
 #
-# * **The gear.** The joint has a strain wave gear of size 20 and ratio 80. `strainwave gears 20-80` lists the catalogue sets
+# * **The gear.** The joint has a strain wave gear of size 20 and ratio 80. `strainwave list gears 20-80` lists the sets
 #   of this size; `hfuc-20-80` is one of them. Its numbers are the start; those that the log determines are replaced.
 # * **The torque constant** of the motor, 0.0755 N·m/A. Without it all torques are in A.
 # * **The side** of the angle: in front of the gear or behind it. Here the names `q` and `qd` are enough, because robots name

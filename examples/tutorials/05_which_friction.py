@@ -7,11 +7,11 @@
 # ## 1. A table of friction
 #
 # `friction.csv` is a table of 13 speeds in both directions. In each row the motor turned the gear at one speed, with
-# nothing at the output, and the torque was averaged. `rank` fits every law to it, and computes the error on rows that were
+# nothing at the output, and the torque was averaged. `--rank` fits every law to it, and computes the error on rows that were
 # not fitted.
 
 # %% [console]
-# $ strainwave rank hfuc-20-80 friction.csv
+# $ strainwave identify hfuc-20-80 friction.csv --rank
 
 # %% [markdown]
 # | column | meaning |
@@ -118,7 +118,7 @@ print(f"largest difference in a table: {np.abs(lugre.steady(grid) - stribeck.ste
 # fitted together.
 
 # %% [console]
-# $ strainwave rank hfuc-20-80 robot_log.csv --constant torque_constant=0.0755
+# $ strainwave identify hfuc-20-80 robot_log.csv --constant torque_constant=0.0755 --rank
 
 # %% [markdown]
 # Each line is a set of effects; its error is further right. The table shows:

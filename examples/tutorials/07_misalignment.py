@@ -100,8 +100,8 @@ for load, limit in limits.items():
     print("      remarks:", *limit.remarks or ["none"])
 
 # %% [markdown]
-# On the command line the same is `strainwave diagnose --plan --gear joint.toml --speed 10 --load 20 --duration 10 --noise
-# 0.05 --sample-rate 500 --order 2`.
+# On the command line the same is `strainwave diagnose limit joint.toml --speed 10 --torque 20 --duration 10 --noise
+# 0.05 --rate 500 --order 2`.
 #
 # Now make both recordings, with this noise, on the joint with 15 µm:
 
@@ -147,8 +147,8 @@ day("misaligned.csv", sw.dataset.with_faults(arm, [sw.fault.Misalignment(housing
 print(*Path("later.csv").read_text().splitlines()[:3], sep="\n")
 
 # %% [console]
-# $ strainwave diagnose later.csv misaligned.csv --gear arm.toml --baseline baseline > diagnosis.txt || echo "exit code $?"
-# $ sed -n '/csv:/,/indicator/p' diagnosis.txt
+# $ strainwave diagnose joint later.csv misaligned.csv --gear arm.toml --baseline baseline > found.txt || echo "exit code $?"
+# $ sed -n '/csv:/,/indicator/p' found.txt
 
 # %% [markdown]
 # The exit code is 3 because a recording differs from the baseline. The healthy joint of the later day gives no alarm,

@@ -185,7 +185,7 @@ axes.legend()
 #
 # | message or effect | cause, and what to do |
 # |---|---|
-# | `… has no [motor] and no [load]` | The file is a gear alone. Add the parts, as above, or begin from `strainwave drives`. |
+# | `… has no [motor] and no [load]` | Add the parts, as above, or begin from a drive (`strainwave list drives`). |
 # | `there is no C++20 compiler …` | `pip install 'strainwave[compiler]'`, or export sources: `--platform source` of an FMU. |
 # | `drive.control = … must be sampled` | Put the law into `sw.control.Sampled`, and simulate it so too. |
 # | firmware gives other numbers | `-ffp-contract=off` is missing, or the period differs from that in the header. |

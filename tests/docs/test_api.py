@@ -64,7 +64,7 @@ def test_every_verb_has_a_section_with_its_options(written: Path) -> None:
     page = (written / "command-line.rst").read_text(encoding="utf-8")
     sections = re.split(r"^\.\. _strainwave-", page, flags=re.MULTILINE)[1:]
     verbs = {section.partition(":")[0] for section in sections}
-    assert {"identify", "export-fmu", "rig-analyse", "misalignment", "cache"} <= verbs
+    assert {"identify", "export-fmu", "rig-analyse", "diagnose-misalignment", "doctor-kernels"} <= verbs
     assert len(verbs) == len(sections)
     (simulate,) = (section for section in sections if section.startswith("simulate:"))
     assert ".. option:: drive <str>" in simulate

@@ -4,9 +4,9 @@ Units are drawn from what the catalogue leaves open of a CSG-25-100: stiffness, 
 and torque constant. Each has its own baseline of six days; friction and load differ from day to day. Three faults grow in each
 unit: a misalignment, a crack and a bearing. Load, noise and length of the record vary.
 
-Detectors: the comparison of `strainwave diagnose` with its own stated false-alarm rate, at the orders that it names and at that
-of the bearing, which is asked for; under the first condition also the whole diagnosis, which searches for lines itself and is
-asked for no order; and two simple ones, the relative change of the rms of the current, and of its rms without the mean.
+Detectors: the comparison of `strainwave diagnose joint` with its own stated false-alarm rate, at the orders that it names and
+at that of the bearing, which is asked for; under the first condition also the whole diagnosis, which searches for lines itself
+and is asked for no order; and two simple ones, the relative change of the rms of the current, and of its rms without the mean.
 Thresholds of these are what one in a thousand healthy records of the training units exceeds under the training conditions.
 Reported are records of other units, under the training conditions and under others. Intervals are exact, of 95 %. Each unit has
 each fault once.

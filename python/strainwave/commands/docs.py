@@ -17,7 +17,12 @@ def docs(
     path: Annotated[bool, typer.Option("--path", help="Print the file, and open nothing.")] = False,
     agents: Annotated[bool, typer.Option("--agents", help="Print the guide for coding agents, as plain text.")] = False,
 ) -> None:
-    """Open the documentation in the browser, without a network."""
+    """Open the documentation in the browser, without a network.
+
+    Examples:
+        strainwave docs identify --path
+        strainwave docs --agents
+    """
     if agents:
         print(_package().joinpath("AGENTS.md").read_text("utf-8"), end="")
         return

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from strainwave.commands.file_options import FileOptions
-from strainwave.commands.options import numeric, with_groups
+from strainwave.commands.options import folder, numeric, with_groups
 from strainwave.commands.progress import progress
 
 if TYPE_CHECKING:
@@ -24,13 +24,17 @@ def orders(
     ratio: Annotated[float | None, numeric("Ratio of the gear, with all its digits; found, if the file determines it.")] = None,
     rate: Annotated[float | None, numeric("Samples per second of files without time, in Hz.")] = None,
     highest: Annotated[float | None, numeric("Order up to which ripple is looked for, at most 100000.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
+    out: Annotated[Path, folder("Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
 ) -> None:
-    """Find the orders of a gear: its kinematic error from two encoders, its ripple from torque or current.
+    """Find kinematic error, ripple and ratio of a gear in recordings.
 
     The angles of both shafts determine ratio, kinematic error and lost motion. Torque or current and one angle determine the
     lines that repeat with the angle, and from them the ratio. Lines that repeat with time, as mains and resonances, are
     separated if the speed varies; lines of other joints that move, if their angles are in the file.
+
+    Examples:
+        strainwave orders robot_log.csv
+        strainwave orders robot_log.csv --ratio 80 --out out/ripple
     """
     from strainwave.arguments import number
     from strainwave.files.gear_set import catalogue

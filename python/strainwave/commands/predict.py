@@ -9,7 +9,7 @@ import typer
 
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
-from strainwave.commands.options import with_groups
+from strainwave.commands.options import folder, with_groups
 from strainwave.commands.progress import progress
 
 
@@ -18,12 +18,17 @@ def predict(
     gear: Annotated[str, typer.Argument(help="The saved gear or drive, as gear.toml of identify, or a set by name.")],
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Later recordings of this gear, or folders of them.")],
     given: FileOptions,
-    out: Annotated[Path, typer.Option(help="Folder for report.html and the numbers.")] = Path("out/predict"),
+    out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/predict"),
 ) -> None:
-    """Compare later recordings with what a saved gear or drive predicts, and report what changed.
+    r"""Compare later recordings with the prediction of a saved gear.
 
     Logs of a drive in motion need a load in the saved file; tables of friction do not. Recordings are read as by identify. If
     one contradicts the saved gear, the exit code is 3.
+
+    Examples:
+        strainwave predict gear.toml robot_log_later.csv \
+          --constant torque_constant=0.0755
+        strainwave predict gear.toml friction.csv
     """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder

@@ -1,7 +1,7 @@
 """Misalignment of a wave generator: ramps of an actuator with it, sweeps of its levels, and its estimate from a record.
 
 What is here is what one calls for a misalignment, and what that returns. Diagnoses by orders are `sw.diagnose.order_lines` and
-`sw.diagnose.detection_limit`; the command is `strainwave diagnose`.
+`sw.diagnose.detection_limit`; the command is `strainwave diagnose joint`.
 """
 
 import lazy_loader

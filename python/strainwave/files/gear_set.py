@@ -125,7 +125,7 @@ class GearSet:
         if missing := [name for name in ("motor", "load") if getattr(self, name) is None]:
             missing_parts = f"no [{'] and no ['.join(missing)}]"
             raise ValueError(
-                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave drives lists whole drives"
+                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave list drives lists whole drives"
             )
         return _drive(vars(self))
 

@@ -85,7 +85,7 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
     steps.append((f"Write the joint for MuJoCo and URDF{largest}", ["export", "joint", str(gear), *torque]))
     if compared is None:
         steps.append(
-            ("Compare it with a gear of the catalogue (strainwave gears lists them)", ["compare", USUAL_GEAR, str(gear)])
+            ("Compare it with a gear of the catalogue (strainwave list gears lists them)", ["compare", USUAL_GEAR, str(gear)])
         )
     return [(what, shlex.join(["strainwave", *words])) for what, words in steps]
 

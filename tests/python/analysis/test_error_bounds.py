@@ -54,7 +54,7 @@ def test_without_a_rated_torque_it_needs_a_load() -> None:
 
 
 def test_the_command_prints_arc_seconds(tmp_path: Path) -> None:
-    done = strainwave("show", "csg-20-100", "--load", "52", folder=tmp_path)
+    done = strainwave("show", "csg-20-100", "--torque", "52", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     table = done.stdout.partition("positioning error at the output [arcsec]\n")[2].splitlines()
     assert [re.findall(r"  (\d+) +(\d+)  ", row) for row in table[1:3]] == [[("24", "48")], [("431", "560")]]

@@ -153,7 +153,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["simulate", "joint.toml", "--scenario", "mine.toml"], ('mine.toml "kinematics" is not known; there are name, note',)),
         (["simulate", "joint.toml", "--scenario", "a.csv"], ("a.csv has no column command; it has time, torque",)),
         (["simulate", "mine.toml", "--scenario", "ramp.toml"], ("mine has no [motor] and no [load]",)),
-        (["simulate", "position-driv", "--scenario", "ramp.toml"], ('"position-driv"', "`strainwave drives`")),
+        (["simulate", "position-driv", "--scenario", "ramp.toml"], ('"position-driv"', "`strainwave list drives`")),
         (["simulate", "none.toml", "--scenario", "ramp.toml"], ("none.toml cannot be read",)),
         ([*SIMULATE, "more"], ("unexpected extra argument", "more")),
         ([*SIMULATE, "--dtt", "1"], ("No such option: --dtt",)),
@@ -200,7 +200,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["show", "nothing"], ('no set "nothing"',)),
         (["show", "joint.toml", "--run", "none.csv"], ("none.csv cannot be read",)),
         (["show", "a.csv"], ("a.csv holds measurements",)),
-        (["drives", "nonsense"], ('has "nonsense" in its name', "`strainwave drives` lists all")),
+        (["list", "drives", "nonsense"], ('has "nonsense" in its name', "`strainwave list drives` lists all")),
         (["simulat"], ("No such command 'simulat'", "simulate", "see strainwave --help")),
         (["--bogus"], ("No such option: --bogus",)),
     ],
@@ -293,10 +293,10 @@ def test_a_drive_is_shown_with_every_number(folder: Path) -> None:
 
 
 def test_drives_are_listed_with_what_they_are(tmp_path: Path) -> None:
-    listed = strainwave("drives", folder=tmp_path).stdout.splitlines()
+    listed = strainwave("list", "drives", folder=tmp_path).stdout.splitlines()
     assert [line.split()[0] for line in listed] == sw.catalogue("drives")
     assert listed[0].split(maxsplit=1)[1] == sw.GearSet.read(sw.catalogue("drives")[0]).name
-    assert strainwave("drives", "position-drive", folder=tmp_path).stdout.startswith("position-drive ")
+    assert strainwave("list", "drives", "position-drive", folder=tmp_path).stdout.startswith("position-drive ")
 
 
 @pytest.mark.slow("commands")

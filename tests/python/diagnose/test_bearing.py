@@ -79,7 +79,7 @@ def test_the_command_names_the_element(records: dict[str, sw.Recording], tmp_pat
     JOINT.save(tmp_path / "joint.toml")
     records["bearing"].to_csv(tmp_path / "bearing.csv")
     options = ("--gear", "joint.toml", "--bearing", "23,4.763,46", "--out", "out")
-    done = strainwave("diagnose", "bearing.csv", *options, folder=tmp_path)
+    done = strainwave("diagnose", "joint", "bearing.csv", *options, folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "(bearing, outer ring): above noise" in " ".join(done.stdout.split())
     (joint,) = json.loads((tmp_path / "out" / "results.json").read_text())["joints"]
@@ -109,8 +109,4 @@ def test_options_that_do_not_fit_are_refused_in_one_line(
     options: tuple[str, ...], reason: str, tmp_path: Path, records: dict[str, sw.Recording]
 ) -> None:
     records["later"].to_csv(tmp_path / "later.csv")
-    refused(tmp_path, ("diagnose", "later.csv", *options), reason)
-
-
-def test_a_plan_has_no_recording_whose_orders_a_bearing_names(tmp_path: Path) -> None:
-    refused(tmp_path, ("diagnose", "--plan", "--bearing", "23,4.763,46"), "does not use --bearing")
+    refused(tmp_path, ("diagnose", "joint", "later.csv", *options), reason)

@@ -320,7 +320,7 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
     with pytest.raises(
         ValueError,
         match=exactly(
-            "bare has no [motor] and no [load]; a drive needs a motor and a load; strainwave drives lists whole drives"
+            "bare has no [motor] and no [load]; a drive needs a motor and a load; strainwave list drives lists whole drives"
         ),
     ):
         _ = bare.drive
@@ -332,7 +332,8 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
     assert whole.replace(control=None, sources=sources).drive.control == sw.control.OpenLoop(gain=1.0)
     sources = {path: entry for path, entry in sources.items() if not path.startswith("load.")}
     with pytest.raises(
-        ValueError, match=exactly("whole has no [load]; a drive needs a motor and a load; strainwave drives lists whole drives")
+        ValueError,
+        match=exactly("whole has no [load]; a drive needs a motor and a load; strainwave list drives lists whole drives"),
     ):
         _ = whole.replace(control=None, load=None, sources=sources).drive
 

@@ -1,4 +1,4 @@
-"""The command `strainwave plan-experiments`: which measurements to make next."""
+"""The command `strainwave plan`: which measurements to make next."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from strainwave.commands.options import numeric
 from strainwave.number_texts import is_number, number_in
 
 
-def plan_experiments(
+def plan(
     start: Annotated[
         str, typer.Argument(help="A set by name, as hfuc-25-100, a gear file, or a data sheet: what is known so far.")
     ],
@@ -40,11 +40,14 @@ def plan_experiments(
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
     torque_limit: Annotated[str | None, typer.Option(help='At the output, as "50 N.m"; the rating, if not given.')] = None,
 ) -> None:
-    """Plan which measurements to make next, to know chosen numbers best.
+    """Rank candidate measurements by what they reach per minute.
 
-    Speeds of a friction table and torsion loops within the limits of the gear are compared by the standard deviations that
-    they reach in the time they take. Printed are the standard deviations before and after, and what would remain
-    unknown, and why.
+    Candidates are the speeds of a friction table and torsion loops within the limits of the gear. The output has the standard
+    deviation of each wanted number before and after, and what would remain unknown, and why.
+
+    Examples:
+        strainwave plan csg-25-100 --want gear.friction_input
+        strainwave plan gear.toml --want gear.friction_input --speed-limit "3000 rpm"
     """
     from typing import Any
 

@@ -1,4 +1,4 @@
-"""The verb `cache`: the kernels of this machine, listed and removed."""
+"""The verb `doctor kernels`: the kernels of this machine, listed and removed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def filled(kernels: Path) -> None:
 
 def test_kernels_are_listed_the_last_used_first(kernels: Path, tmp_path: Path) -> None:
     filled(kernels)
-    result = strainwave("cache", folder=tmp_path)
+    result = strainwave("doctor", "kernels", folder=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     assert result.stdout.splitlines() == [
         "drive             job     size  compiled in   age",
@@ -42,26 +42,29 @@ def test_kernels_are_listed_the_last_used_first(kernels: Path, tmp_path: Path) -
 
 def test_kernels_are_removed(kernels: Path, tmp_path: Path) -> None:
     filled(kernels)
-    assert strainwave("cache", "--clear", folder=tmp_path).stdout == f"removed 2 kernels from {kernels}\n"
+    assert strainwave("doctor", "kernels", "--clear", folder=tmp_path).stdout == f"removed 2 kernels from {kernels}\n"
     assert not list(kernels.iterdir())
-    assert strainwave("cache", folder=tmp_path).stdout == f"0 kernels, 0.00 MB, in {kernels}\n"
+    assert strainwave("doctor", "kernels", folder=tmp_path).stdout == f"0 kernels, 0.00 MB, in {kernels}\n"
 
 
 def test_without_a_cache_nothing_is_made(kernels: Path, tmp_path: Path) -> None:
-    assert strainwave("cache", folder=tmp_path).stdout == f"0 kernels, 0.00 MB, in {kernels}\n"
-    assert strainwave("cache", "--clear", folder=tmp_path).stdout == f"removed 0 kernels from {kernels}\n"
+    assert strainwave("doctor", "kernels", folder=tmp_path).stdout == f"0 kernels, 0.00 MB, in {kernels}\n"
+    assert strainwave("doctor", "kernels", "--clear", folder=tmp_path).stdout == f"removed 0 kernels from {kernels}\n"
     assert not kernels.exists()
 
 
 def test_kernels_that_are_switched_off_are_said_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STRAINWAVE_KERNELS", "off")
-    assert strainwave("cache", folder=tmp_path).stdout == "no kernel is used: they are switched off by STRAINWAVE_KERNELS\n"
+    assert (
+        strainwave("doctor", "kernels", folder=tmp_path).stdout
+        == "no kernel is used: they are switched off by STRAINWAVE_KERNELS\n"
+    )
 
 
 def test_a_folder_that_cannot_be_trusted_is_refused(kernels: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     filled(kernels)
     kernels.chmod(0o777)
-    for arguments in (["cache"], ["cache", "--clear"]):
+    for arguments in (["doctor", "kernels"], ["doctor", "kernels", "--clear"]):
         refused(tmp_path, arguments, f"other users may write to {kernels}")
     monkeypatch.setenv("STRAINWAVE_KERNELS", "kernels")
-    refused(tmp_path, ["cache"], "must be off or an absolute path")
+    refused(tmp_path, ["doctor", "kernels"], "must be off or an absolute path")

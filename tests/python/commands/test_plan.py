@@ -1,4 +1,4 @@
-"""The verb `plan-experiments`: what it prints, and what it refuses."""
+"""The verb `plan`: what it prints, and what it refuses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FRICTION = ("--want", "gear.friction_input", "--experiment", "friction")
 
 def test_the_plan_of_the_command_is_that_of_the_function(tmp_path: Path) -> None:
     said = strainwave(
-        "plan-experiments", "csg-25-100", *FRICTION, "--noise", "friction=0.002", "--minutes", 8, "--speed-limit", "1000 rpm",
+        "plan", "csg-25-100", *FRICTION, "--noise", "friction=0.002", "--minutes", 8, "--speed-limit", "1000 rpm",
         folder=tmp_path,
     )  # fmt: skip
     plan = sw.identification.plan_experiments(
@@ -28,7 +28,7 @@ def test_the_plan_of_the_command_is_that_of_the_function(tmp_path: Path) -> None
 
 def test_a_data_sheet_is_planned_for_too(tmp_path: Path) -> None:
     (tmp_path / "sheet.toml").write_text('name = "x"\n[datasheet]\nratio = -80\nsize = 20\npeak_torque = "96 N.m"\n')
-    said = strainwave("plan-experiments", "sheet.toml", "--want", "gear.stiffness", "--experiment", "torsion", folder=tmp_path)
+    said = strainwave("plan", "sheet.toml", "--want", "gear.stiffness", "--experiment", "torsion", folder=tmp_path)
     assert said.returncode == 0
     assert "± 96 N.m at the output" in said.stdout
 
@@ -53,12 +53,12 @@ def test_a_data_sheet_is_planned_for_too(tmp_path: Path) -> None:
     ],
 )
 def test_what_makes_no_plan_is_refused_in_words_of_the_command(tmp_path: Path, options: tuple[str, ...], message: str) -> None:
-    said = strainwave("plan-experiments", "csg-25-100", *options, folder=tmp_path)
+    said = strainwave("plan", "csg-25-100", *options, folder=tmp_path)
     assert (said.returncode, said.stdout) == (2, "")
     assert message in said.stderr
     assert said.stderr.count("\n") == 1
 
 
 def test_a_limit_that_no_rating_states_is_asked_for(tmp_path: Path) -> None:
-    said = strainwave("plan-experiments", "hfuc-50-120", *FRICTION, folder=tmp_path)
+    said = strainwave("plan", "hfuc-50-120", *FRICTION, folder=tmp_path)
     assert said.stderr.startswith("strainwave: --speed-limit is needed for friction")
