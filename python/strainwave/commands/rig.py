@@ -113,7 +113,6 @@ def simulate(
         strainwave rig simulate --positions 0 --out rehearsal
         strainwave rig simulate hfuc-20-80 --positions 0 --out hfuc
     """
-    import sys
 
     from strainwave.rig.bench.steps_file import write_steps
     from strainwave.rig.reading.measurement import PLAN
@@ -123,7 +122,7 @@ def simulate(
     bench = _rig(name)
     made = options.plan(bench)
     steps = made.steps
-    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
+    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed)
     write_steps(steps, out / PLAN)
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
     if abs(made.peak - options.torque) > 1e-9 * options.torque:
@@ -216,8 +215,6 @@ def analyse(
         strainwave rig analyse rehearsal
         strainwave rig analyse rehearsal --out results
     """
-    from rich.console import Console
-
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.messages import pairs
@@ -228,24 +225,22 @@ def analyse(
     from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
     target = _target(paths, out)
-    with Console(stderr=True).status("reading") as status:
-        given = EvaluationOptions(
-            rig=None if name is None else _rig(name),
-            gear_set=None if gear is None else GearSet.read(gear),
-            rated_torque=rated_torque,
-            reference=reference,
-            friction=friction,
-            positions=None if positions is None else _numbers("--positions", positions),
-            columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
-            units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
-        )
-        found, read = evaluate_paths(paths, given, status.update)
-        status.update("report")
-        provenance = _provenance(read)
-        files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-        files["results.json"] = results_json(results(found, provenance.date))
-        files["report.html"] = rig_report(found, provenance, list(files))
-        write_folder(target, files)
+    given = EvaluationOptions(
+        rig=None if name is None else _rig(name),
+        gear_set=None if gear is None else GearSet.read(gear),
+        rated_torque=rated_torque,
+        reference=reference,
+        friction=friction,
+        positions=None if positions is None else _numbers("--positions", positions),
+        columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
+        units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
+    )
+    found, read = evaluate_paths(paths, given)
+    provenance = _provenance(read)
+    files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
+    files["results.json"] = results_json(results(found, provenance.date))
+    files["report.html"] = rig_report(found, provenance, list(files))
+    write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
     if left := [each for each in there if each not in files]:

@@ -40,6 +40,7 @@ from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.progress import Progress, in_turn
 from strainwave.questions import QuestionError
 from strainwave.simulation.threads import one_thread_of_algebra
 
@@ -85,6 +86,12 @@ class Identified(ComparedByFields):
         return tuple(check for check in self.checks if check.failed)
 
     @property
+    def unchecked(self) -> dict[str, str]:
+        """Ratio or torque constant with which estimates of logs scale, if no log checks it: their values, by name."""
+        logs = [each.unchecked for each in self.files if each.recognised and each.recognised.kind == "log" and each.estimates]
+        return {name: value for name, value in logs[0].items() if all(name in each for each in logs)} if logs else {}
+
+    @property
     def accepted(self) -> GearSet:
         """The gear set with its failed checks in its note: accepted, if it is used all the same."""
         if not self.failed:
@@ -119,7 +126,7 @@ def identify(
     mapping: Mapped = None,
     accept: bool = False,
     name: str | None = None,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Identified:
     """Determine the type of each file of measurements, fit it, and combine the estimates of all to one gear.
 
@@ -131,7 +138,7 @@ def identify(
         mapping: what a person states of all files, or a function that returns it for the path of each
         accept: whether files are used although a check of them fails
         name: of the gear, one line of text; by default that of its files, as `gear of joint_5`
-        progress: called with the name of each file as its turn comes
+        progress: as of `sw.simulate`
 
     Returns:
         result of each file, and the gear; look at its `failed` checks before it is used
@@ -159,7 +166,8 @@ def identify(
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
-    fits = _Fits.of(start_set, recognised, mapping, accept, progress)
+    with in_turn(progress, len(recognised)) as turn:
+        fits = _Fits.of(start_set, recognised, mapping, accept, turn)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
     results = without_motor(results, accept=accept)
@@ -256,9 +264,9 @@ class _Fits:
     """The fits of all files, one after the other in the order of their kinds."""
 
     def __init__(
-        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, progress: Callable[[str], None]
+        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, turn: Callable[[str], None]
     ) -> None:
-        self.known, self.copies, self.mapping, self.accept, self.progress = known, copies, mapping, accept, progress
+        self.known, self.copies, self.mapping, self.accept, self.turn = known, copies, mapping, accept, turn
         self.results = dict[Path, FileResult]()
         self.together = list[FileResult]()
 
@@ -269,11 +277,11 @@ class _Fits:
         files: Sequence[Recognised],
         mapping: Mapped = None,
         accept: bool = False,
-        progress: Callable[[str], None] = lambda stage: None,
+        turn: Callable[[str], None] = lambda name: None,
     ) -> _Fits:
         """Return the fits of files from a start set."""
         before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
-        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, progress)
+        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, turn)
         fits.fit_all(files)
         return fits
 
@@ -286,7 +294,7 @@ class _Fits:
         for kind in kinds:
             mine = [file for file in files if turns[file.path][0] == kind.name]
             for file in sorted(mine, key=lambda file: turns[file.path][1]):
-                self.progress(file.path.name)
+                self.turn(file.path.name)
                 self.fit(own[file.path], file)
             self.fit_together(kind.fit_together, self._originals(kind, own, files))
         for kind in kinds:

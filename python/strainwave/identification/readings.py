@@ -185,7 +185,8 @@ def _most_probable(
         assert first.record is not None
         what = listed(dict.fromkeys(way.effort.described for way in near if way.effort is not None))
         question = f"{first.effort.column} may be {what}, and neither its name nor a fit decides; {usual.shown(first.record)}"
-    ranked = sorted(near, key=lambda way: -way.evidence) if is_of_same_columns else near
+    asked = near + [ways[0] for ways in by_reading if not set(ways) & set(near)]
+    ranked = sorted(asked, key=lambda way: -way.evidence) if is_of_same_columns else asked
     raise QuestionError(one_line(question), [way.answer for way in ranked[:MAX_ANSWERS]])
 
 

@@ -100,6 +100,8 @@ def _verdict(found: Identified, accepted: bool) -> str:
         parts.insert(0, f"{failed} of {_several(checks, 'check')} failed, and {written}")
     else:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
+    if found.unchecked:
+        parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")
     sentence = "; ".join(parts)
     return f"{sentence[0].upper()}{sentence[1:]}.".replace(" %", f"{NO_BREAK_SPACE}%")
 

@@ -22,6 +22,7 @@ from strainwave.files.writing import claiming, making
 from strainwave.messages import listed, one_line, quoted
 from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
+from strainwave.progress import Progress, counted
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import Known, known as initial_of
@@ -34,7 +35,6 @@ from strainwave.simulation.resolution import (
     too_coarse,
     too_stiff,
 )
-from strainwave.simulation.run import progressing
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
 from strainwave.simulation.threads import available_threads
@@ -348,7 +348,7 @@ def simulate_many(
     initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     backend: Backend = "cpu",
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Ensemble:
     """Run a drive many times through one command, each time with other numbers, on all cores.
 
@@ -395,7 +395,7 @@ def simulate_many(
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
     plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     try:
-        with progressing(progress, plan.members * plan.steps) as shown:
+        with counted(progress, "simulating", plan.members * plan.steps) as shown:
             ensemble = plan.run(0, plan.members, shown)
     except MemoryError:
         size = f"{1e-9 * 8 * plan.members * len(plan.recorded) * len(plan.time):.3g} GB"
@@ -419,7 +419,7 @@ def simulate_to(
     initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     backend: Backend = "cpu",
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Path:
     """Run an ensemble as `simulate_many`, and write the members to files as they come: memory stays flat for any count.
 
@@ -457,7 +457,7 @@ def simulate_to(
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
     plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     folder, failures = Path(folder), dict[int, str]()
-    with making(folder), claiming(folder), progressing(progress, plan.members * plan.steps) as shown:
+    with making(folder), claiming(folder), counted(progress, "simulating", plan.members * plan.steps) as shown:
         files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
         for part in files.parts():
             if not files.has(part):

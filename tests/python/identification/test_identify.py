@@ -273,7 +273,7 @@ def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Pat
     with pytest.raises(QuestionError) as asked:
         identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
     of_motor = "--constant resistance=NUMBER --constant torque_constant=NUMBER"
-    assert options_of(asked.value) == [of_motor, "--column current=voltage"]
+    assert options_of(asked.value) == [of_motor, "--column current=voltage --unit voltage=A"]
 
 
 @pytest.mark.slow("identification")

@@ -22,6 +22,9 @@ from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
+RATIO_OF_ENCODERS = "ratio of two encoders"  # names of checks
+CONSTANT_BY_VOLTAGE = "torque constant by the voltage"
+INERTIA_IN_TWO_WAYS = "inertia of the load in two ways"
 FRICTION_BIAS = 0.02  # of an inertia by the torque of a motor: what a law of friction lacks goes into it (assumed)
 MIN_RATIO_SIGMA = 3.0  # standard deviations beyond which a measured ratio is another one
 MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by less
@@ -142,7 +145,7 @@ def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check
     expected = abs(drive.gear.kinematics.ratio)
     off, limit = abs(abs(ratio.value) - expected), max(MIN_RATIO_SIGMA * ratio.sigma, MIN_RATIO_DIFFERENCE * expected)
     yield Check(
-        "ratio of two encoders", source, off, limit, "1", off > limit,
+        RATIO_OF_ENCODERS, source, off, limit, "1", off > limit,
         f"the angles of input and output have the ratio {abs(ratio.value):.5g} ± {ratio.sigma:.2g}, the gear {expected:.6g}",
         f"if the ratio of the gear is that of the angles, give --constant ratio={abs(ratio.used):.6g}; a belt or pulley before "
         "the gear is part of it; else see whether both angles are in the units they are taken for",
@@ -172,7 +175,7 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
         return
     off = abs(abs(induced) / constant - 1.0)
     yield Check(
-        "torque constant by the voltage", source, off, MAX_CONSTANT_DIFFERENCE, "1", off > MAX_CONSTANT_DIFFERENCE,
+        CONSTANT_BY_VOLTAGE, source, off, MAX_CONSTANT_DIFFERENCE, "1", off > MAX_CONSTANT_DIFFERENCE,
         f"the motor induces {abs(induced):.4g} ± {sigma:.1g} V·s/rad, which is its torque constant in N·m/A, but "
         f"{constant:.4g} N·m/A is taken",
         f"give --constant torque_constant={abs(induced):.4g} if voltage and current are those of a DC motor or of one phase "
@@ -192,7 +195,7 @@ def inertias_of_load(by_spring: tuple[float, float], by_torque: tuple[float, flo
     of_other = float(np.hypot(of_noise, FRICTION_BIAS * other))
     apart = abs(one - other) / max(float(np.hypot(of_one, of_other)), 1e-300)
     return Check(
-        "inertia of the load in two ways", source, apart, MAX_INERTIA_SIGMA, "1", apart > MAX_INERTIA_SIGMA,
+        INERTIA_IN_TWO_WAYS, source, apart, MAX_INERTIA_SIGMA, "1", apart > MAX_INERTIA_SIGMA,
         f"the load has an inertia of {one:.3g} ± {of_one:.1g} {unit} by how it winds the gear up, and {other:.3g} ± "
         f"{of_other:.1g} by the torque of the motor: {apart:.2g} standard deviations apart",
         "see whether torque constant, ratio, motor_inertia and the side of the torque are right",

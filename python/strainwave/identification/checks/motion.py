@@ -23,17 +23,21 @@ from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option
+from strainwave.orders.comb import RATIOS
 from strainwave.orders.torque_ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
+RATIO_BY_ORDERS = "ratio by orders"  # name of the check
 STANDARD_GRAVITY = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
 MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
 RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
 RIPPLE_COLUMNS = ("current", "motor_torque", "torque")  # in which the ripple of the wave generator is looked for
+MAX_ROWS_OF_RIPPLE = 2**14
+MIN_ROWS_PER_PERIOD = 4.0  # of the main line of a gear of the largest ratio
 MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
 MOTION_BLOCKS = 10  # of the motion
 MOVED_BY_OTHERS = ("load.", "gear.friction_mesh.")  # numbers of a load, and of a loss under it, which other joints change
@@ -164,7 +168,7 @@ def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator
     if column is None or "output_angle" not in recording or "input_angle" in recording:
         return
     try:
-        concluded = ripple(recording, column, angle="output_angle", side="output").concluded
+        concluded = ripple(_coarser(recording, column), column, angle="output_angle", side="output").concluded
     except ValueError:  # too short, too slow or at rest: there is nothing to compare
         return
     if not concluded:
@@ -172,12 +176,31 @@ def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator
     ratio = abs(float(drive.gear.kinematics.ratio))
     off = min(abs(each - ratio) for each in concluded)
     found = " or ".join(map(str, concluded))
+    options = " or ".join(f"--constant ratio={each}" for each in concluded)
     yield Check(
-        "ratio by orders", source, off, 1.0, "1", off > 1.0,
+        RATIO_BY_ORDERS, source, off, 1.0, "1", off > 1.0,
         f"the ripple of the {column.replace('_', ' ')} over the angle of the output is that of a ratio of {found}, the ratio "
         f"of the gear is {ratio:.6g}",
-        f"see whether the start set is that of this gear, or give its ratio: --constant ratio={concluded[0]}",
+        f"see whether the start set is that of this gear, or give its ratio: {options}",
     )  # fmt: skip
+
+
+def _coarser(recording: Recording, column: str) -> Recording:
+    """Return the means of neighbouring rows, so many that a line of the largest ratio remains; the first ones of a long record.
+
+    A ratio is concluded from some ten thousand rows as from more, in less time.
+    """
+    angle = np.unwrap(recording.values("output_angle", "rad"))
+    step = np.abs(np.diff(angle))
+    usual = float(np.median(step[step > 0.0])) if np.any(step > 0.0) else np.inf
+    period = np.pi / (RATIOS[-1] * usual)  # of the main line, in rows
+    every = max(1, min(int(period / MIN_ROWS_PER_PERIOD), len(angle) // MAX_ROWS_OF_RIPPLE))
+    rows = min(len(angle) // every, MAX_ROWS_OF_RIPPLE) * every
+    names = [name for name in ("time", "output_angle", column) if name in recording]
+    means = {
+        name: (angle if name == "output_angle" else recording[name])[:rows].reshape(-1, every).mean(axis=1) for name in names
+    }
+    return Recording(means, {name: "rad" if name == "output_angle" else recording.unit(name) for name in names})
 
 
 def _mistakes(recording: Recording, ratio: float, columns: Mapping[str, str]) -> Iterator[tuple[str, float, str]]:

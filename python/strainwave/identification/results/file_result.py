@@ -165,6 +165,7 @@ class FileResult(ComparedByFields):
         fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
         bend: angle of the input in which bristles of its friction bend at reversals [rad]; 0 if it does not show them
         between: the fit of the gear between both encoders; None without one
+        unchecked: numbers of the drive with which its estimates scale, and that nothing in it checks: their values, by name
     """
 
     name: str
@@ -184,6 +185,7 @@ class FileResult(ComparedByFields):
     fit: Fit | None = None
     bend: float = 0.0
     between: Fit | None = None
+    unchecked: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def fits(self) -> tuple[Fit, ...]:
