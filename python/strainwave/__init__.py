@@ -22,6 +22,7 @@ except Exception as error:  # in a clone also one of the build, which compiles w
         f"`source .venv/bin/activate` finds the tools for that; a wheel must be one for Python "
         f"{sys.version_info.major}.{sys.version_info.minor} on {sysconfig.get_platform()}"
     ) from None
+from strainwave import presented_models as _presented_models
 from strainwave._core import (
     Compensation,
     Drive,
@@ -355,6 +356,13 @@ def from_datasheet(ratio: float, **figures: Any) -> Gear:
 
 Gear.from_datasheet = staticmethod(from_datasheet)  # type: ignore[method-assign]
 del from_datasheet
+_presented_models.present(
+    [
+        *(compensation, control, fault, friction, hysteresis, kinematic_error, kinematics, loads, meter, motor, onset),
+        *(sensor, softening, stiffness, structure, thermal, variation),
+    ],
+    [Gear, Drive, Compensation, Sensors],
+)
 
 
 def __getattr__(name: str) -> Any:

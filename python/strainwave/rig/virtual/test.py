@@ -19,6 +19,7 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import save
 from strainwave.files.writing import making, replacing
+from strainwave.presentation import Presented
 from strainwave.rig.bench.rig_file import write_rig
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
@@ -45,7 +46,7 @@ COLUMNS = {
 
 
 @dataclass(frozen=True, eq=False)
-class VirtualTest(ComparedByFields):
+class VirtualTest(ComparedByFields, Presented):
     """A virtual test and its truth: the recorded steps, and the true values of each, shape (n,).
 
     Attributes:
