@@ -220,9 +220,9 @@ def analyse(
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.messages import pairs
-    from strainwave.report.results_json import results_json
-    from strainwave.report.rig import rig_report, summary
-    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
+    from strainwave.report.files_of import evaluation_files
+    from strainwave.report.rig import summary
+    from strainwave.report.rig_files import loop_names
     from strainwave.rig.loop import COLUMNS
     from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
@@ -238,10 +238,7 @@ def analyse(
         units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
     )
     found, read = evaluate_paths(paths, given)
-    provenance = _provenance(read)
-    files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-    files["results.json"] = results_json(results(found, provenance.date))
-    files["report.html"] = rig_report(found, provenance, list(files))
+    files = evaluation_files(found, _provenance(read))
     write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
