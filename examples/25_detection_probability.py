@@ -34,7 +34,7 @@ def day(unit: np.ndarray, severity: float = 0.0) -> np.ndarray:
     friction, push = 1.0 + np.array([0.1, 0.05]) * chance.uniform(-1.0, 1.0, 2)
     factors = unit * (friction, 1.0)
     numbers = {path: factors[scaled[path.rpartition(".")[2]]] * value for path, value in own.items()}
-    drive = sw.with_faults(joint.replace(numbers), [sw.fault.FlexsplineCrack(severity=severity)])
+    drive = sw.dataset.with_faults(joint.replace(numbers), [sw.fault.FlexsplineCrack(severity=severity)])
     command = sw.scenario.constant(speed / 100.0, 1.5 + duration)
     run = sw.simulate(drive, command, 8e-4, load_torque=load * push, sample=4e-3, record=["input_angle", "current"])
     record = run.between(1.5, 1.5 + duration)

@@ -177,6 +177,6 @@ for name, values in areas.items():
 #
 # ## Where to go on
 #
-# * [Data sets for learning](../how-to/datasets.md): plans, splits, many machines.
-# * [Diagnose a gear from its motor current](../how-to/diagnose.md): the comparison with a baseline on your recordings.
-# * [Detection probability of a diagnosis](../validation/detection-benchmark.md): three faults over their severity.
+# * [Data sets for learning](../../docs/how-to/datasets.md): plans, splits, many machines.
+# * [Diagnose a gear from its motor current](../../docs/how-to/diagnose.md): the comparison with a baseline on your recordings.
+# * [Detection probability of a diagnosis](../../docs/validation/detection-benchmark.md): three faults over their severity.

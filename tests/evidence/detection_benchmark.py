@@ -329,7 +329,7 @@ def severity_cell(result: Result, fault: str, detector: str) -> str:
 def planned(case: Case) -> float:
     """Return the severity of a misalignment whose order 4 is the planned detection limit, by noise alone."""
     drive = gear_set().drive.replace(load=sw.loads.Inertia(inertia=0.1))
-    limit = sw.detection_limit(
+    limit = sw.diagnose.detection_limit(
         drive, speed=case.condition.speed, load_torque=case.condition.load, duration=case.length, sample_rate=1.0 / SAMPLE,
         noise=case.noise, order=4.0, false_alarm=FALSE_ALARM, tests=4,
     )  # fmt: skip

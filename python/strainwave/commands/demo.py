@@ -6,18 +6,13 @@ from pathlib import Path
 from typing import Annotated
 
 from strainwave.commands.options import folder
-from strainwave.commands.progress import progress
+from strainwave.progress import in_turn
 
-NEXT = """
-Your own log: name its gear, or one of its size and ratio (strainwave list gears), and the torque constant of the motor.
+OWN_LOG = """\
+Your own log: name its gear, or one of its size and ratio (strainwave list gears), and the torque constant of the motor:
   strainwave identify hfuc-20-80 YOUR-LOG.csv --constant torque_constant=0.0755
-What changed since:
-  strainwave predict {gear} YOUR-LOG.csv --constant torque_constant=0.0755
-Its numbers for URDF, MuJoCo and others:
-  strainwave export joint {gear} --max-torque 40
 The tutorials, which begin with this log:
-  strainwave docs
-"""
+  strainwave docs"""
 
 
 def demo(out: Annotated[Path, folder("Folder for the results.")] = Path("out/demo")) -> None:
@@ -31,14 +26,17 @@ def demo(out: Annotated[Path, folder("Folder for the results.")] = Path("out/dem
     """
     from strainwave.demo import DEMONSTRATIONS
     from strainwave.files.writing import write_folder
+    from strainwave.report.first_screen import next_lines
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
-    with progress() as turn:
+    with in_turn(None) as turn:
         for name, shown in DEMONSTRATIONS.items():
             turn(name.replace("-", " "))
             result, folder = shown.identified(), out / name
-            write_folder(folder, identify_files(result, Provenance.of_this_command(list(shown.files)), accepted=True))
+            provenance = Provenance.of_this_command(list(shown.files))
+            write_folder(folder, identify_files(result, provenance, accepted=True, folder=folder))
             print("\n".join([shown.heading, "", *identify_summary(result), *[shown.remark] * bool(shown.remark)]))
-            print(f"wrote {folder / 'gear.toml'} and {folder / 'report.html'}\n")
-    print(NEXT.strip().format(gear=out / "robot-joint" / "gear.toml"))
+            print(f"wrote {folder / 'gear.toml'} and {folder / 'report.html'}")
+            print("\n".join([*next_lines(result, folder), ""]))
+    print(OWN_LOG)

@@ -14,8 +14,8 @@ from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.help import Verbs
 from strainwave.commands.misalignment import misalignment
 from strainwave.commands.options import Drive, folder, numeric, with_groups
-from strainwave.commands.progress import progress
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM
+from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS, QuestionError
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def joint(
     question = replace(question, hours=by_name, ramp_drive=question.gear_set if geometry else None)
     mapping = given.mapping_of(opened)
     read = [*paths_in(files), *paths_in(healthy)]
-    with progress() as turn:
+    with in_turn(None) as turn:
         joints = _joints(files, mapping) if given.joint == ALL_JOINTS else (given.joint,)
         found = [_of_joint(joint, files, healthy, names, mapping, question, rate, turn) for joint in joints]
         turn("report")
@@ -129,7 +129,7 @@ def limit(
           --noise 0.05 --torque 20 --order 2
     """
     from strainwave.commands.options import number_option
-    from strainwave.diagnose.detection_limit import detection_limit
+    from strainwave.diagnose.smallest_error import detection_limit
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.report.diagnose_plan import PlannedRecord, plan_files, plan_summary
@@ -139,7 +139,7 @@ def limit(
     record = PlannedRecord(model.name, speed, torque, duration, rate, noise)
     orders = [number_option(each) for each in order or []] or list(PLANNED_ORDERS)
     whole, limits = model.drive, []
-    with progress(len(orders)) as turn:
+    with in_turn(None, len(orders)) as turn:
         for one in orders:
             turn(f"order {one:g}")
             limits.append(

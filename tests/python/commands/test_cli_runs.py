@@ -56,7 +56,7 @@ def test_a_drive_runs_through_a_scenario_as_in_python(kind: str, folder: Path) -
     result = strainwave(*words, folder=folder)
     assert (result.returncode, result.stderr) == (0, "")
     run = sw.Recording.read(folder / f"run.{kind}")
-    expected = sw.ScenarioFile.read(folder / "ramp.toml", JOINT).simulate(JOINT.drive, sample=2e-3)
+    expected = sw.simulation.ScenarioFile.read(folder / "ramp.toml", JOINT).simulate(JOINT.drive, sample=2e-3)
     assert all(np.array_equal(run[name], expected[name]) for name in expected.names)
     assert run.title == "CSG-25-100: Ramp and push"
     lines = result.stdout.splitlines()
@@ -231,7 +231,7 @@ def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch:
     def full(*_: object, **__: object) -> None:
         raise MemoryError("2e+09 samples take 16 GB, more memory than there is; sample less often")
 
-    monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
+    monkeypatch.setattr(sw.simulation.ScenarioFile, "simulate", full)
     refused(folder, SIMULATE, "2e+09 samples take 16 GB", "sample less often")
 
 
@@ -239,7 +239,7 @@ def test_memory_that_python_lacks_is_told_in_words(folder: Path, monkeypatch: py
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
+    monkeypatch.setattr(sw.simulation.ScenarioFile, "simulate", full)
     refused(folder, SIMULATE, "this takes more memory than there is")
 
 
@@ -250,7 +250,7 @@ def test_arithmetic_that_no_bound_foresaw_is_told_in_one_line(
     def overflowing(*_: object, **__: object) -> None:
         raise error
 
-    monkeypatch.setattr(sw.ScenarioFile, "simulate", overflowing)
+    monkeypatch.setattr(sw.simulation.ScenarioFile, "simulate", overflowing)
     refused(folder, SIMULATE, f"a number is too large or too small to compute with: {error}")
 
 

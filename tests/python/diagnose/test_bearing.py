@@ -52,7 +52,7 @@ def test_the_orders_are_those_of_the_fault() -> None:
     for element, order in zip(("outer_ring", "inner_ring", "ball", "cage"), orders.values(), strict=True):
         assert order == changes_of(JOINT.drive, BEARING.replace(element=element))[0].order
     ratio = float(JOINT.gear.kinematics.ratio)
-    known = sw.bearing_orders(23, 4.763e-3, 46e-3, outer_speed=1.0 / ratio)  # the circular spline is fixed
+    known = sw.orders.bearing_orders(23, 4.763e-3, 46e-3, outer_speed=1.0 / ratio)  # the circular spline is fixed
     assert orders["bearing, outer ring"] == pytest.approx(known.outer_ring, rel=1e-12)
     two = bearing_orders([BEARING, BEARING], JOINT.gear.kinematics)
     assert "bearing 2, outer ring" in two
