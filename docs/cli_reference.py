@@ -67,9 +67,8 @@ def section(name: str, verb: Any) -> str:
     records = [each.get_help_record(context) for each in parameters if each.name != "help"]
     text += [option(*record) for record in records if record]  # a hidden option has none
     if examples := (verb.epilog or "").partition("Examples:\n")[2]:
-        text.append(
-            f"Examples:\n\n.. code-block:: console\n\n{indent(dedent(examples), '   $ ', lambda line: 'strainwave' in line)}"
-        )
+        lines = re.sub(r"^(?=strainwave)", "$ ", dedent(examples), flags=re.MULTILINE)
+        text.append(f"Examples:\n\n.. code-block:: console\n\n{indent(lines, '   ')}")
     return "\n\n".join(text)
 
 
