@@ -23,7 +23,7 @@ Value = float | str | tuple[float, float] | None
 
 MAX_REPR = 120  # characters
 PAGE_WIDTH = 80  # characters of a line of a table
-MAX_NAME_WIDTH = 44  # characters; a longer name has a line of its own
+MAX_NAME_WIDTH = 32  # characters; a longer name has a line of its own
 MIN_NOTE_WIDTH = 24  # characters; a note with less room stands below its row
 MAX_PRINTED_ROWS = 500  # of a table; data and frames have all
 MAX_LISTED_NUMBERS = 4  # of an array; of a longer one both ends of its range are stated
